@@ -1,5 +1,5 @@
-//! Kernels on plain numbers: what is emitted, run without a compiler, for checks, oracles and mutation tests.
-//! Matrices are row-major `f64`.
+//! Evaluates kernels with plain numbers: the emitted computation without a compiler, for checks, oracles and mutation
+//! tests. Matrices are row-major `f64`.
 
 mod functionals;
 mod mutants;
@@ -15,7 +15,7 @@ use clebsch_program::{Array, Call, Doubles, Unvalued};
 pub use functionals::Asked;
 pub use mutants::Mutant;
 
-/// A matrix with its rows and columns.
+/// A matrix with its numbers of rows and columns.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Matrix {
     /// Rows.
@@ -54,16 +54,16 @@ impl Matrix {
     }
 }
 
-/// What went wrong in an evaluation.
+/// Why an evaluation failed.
 #[derive(Clone, PartialEq, Debug)]
 pub enum EvalError {
     /// No value was given for this letter.
     Missing(String),
-    /// A value has another shape than its letter.
+    /// A value and its letter have different shapes.
     Shape(String),
-    /// A dimension has only a name.
+    /// The size of a dimension is not given.
     NamedDimension,
-    /// No function was given for this functional, or none for the derivative asked for.
+    /// No function was given for this functional, or the function lacks the requested derivative.
     Functional(String),
 }
 
@@ -89,7 +89,7 @@ pub struct Assignment {
 }
 
 impl Assignment {
-    /// Without values.
+    /// No values.
     pub fn new() -> Assignment {
         Assignment::default()
     }
@@ -111,19 +111,19 @@ impl Assignment {
         }
     }
 
-    /// Gives every dimension that has only a name its size, in the order of declaration.
+    /// Sets the sizes of all named dimensions, in the order of declaration.
     #[must_use]
     pub fn sized(mut self, sizes: Vec<usize>) -> Assignment {
         self.sizes = sizes;
         self
     }
 
-    /// Sets a number that does not change in time.
+    /// Sets a scalar that does not change in time.
     pub fn set_scalar(&mut self, name: &str, value: f64) {
         self.set(name, 0, 1, 1, &[value]);
     }
 
-    /// The value that does not change in time, under this name.
+    /// The value of this name that does not change in time.
     pub(crate) fn value(&self, name: &str) -> Option<&Matrix> {
         let found = self.values.iter().find(|(n, s, _)| n == name && *s == 0);
         found.map(|(_, _, value)| value)
@@ -162,7 +162,7 @@ impl Assignment {
     }
 }
 
-/// Letters under names of their own, at every time level.
+/// Names for letters at every time level.
 struct ByLevel;
 
 impl Inputs for ByLevel {
@@ -189,7 +189,7 @@ impl Evaluator {
         }
     }
 
-    /// The values of its results.
+    /// The values of the results of the program.
     pub fn run(&self, values: &Assignment) -> Result<Vec<Matrix>, EvalError> {
         run_lowered(&self.symbols, &self.lowered, values)
     }

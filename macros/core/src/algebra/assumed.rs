@@ -8,15 +8,15 @@ use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Letter};
 use crate::work;
 
-/// Most coordinates of a letter that an equation is solved for.
+/// The largest number of coordinates of a letter for which an equation is solved.
 const LARGEST: usize = 64;
 
-/// Most equations that are taken into account.
+/// The largest number of equations that are taken into account.
 pub(crate) const MOST: usize = 24;
 
-/// The point of an attempt, with every equation `e = 0` satisfied. `None` where this attempt finds no such point.
-/// Each attempt may solve an equation for another letter, so that an equation with several branches, such as `(a -
-/// b)*(a - c) = 0`, is satisfied on each of them.
+/// The point of an attempt, at which every equation `e = 0` holds. `None` if this attempt finds no such point. Each
+/// attempt may solve an equation for another letter, so that an equation with several branches, such as `(a - b)*(a -
+/// c) = 0`, is satisfied on each of them.
 pub(crate) fn point<'a>(
     symbols: &'a Symbols,
     attempt: u64,
@@ -25,7 +25,7 @@ pub(crate) fn point<'a>(
     start(Point::new(symbols, attempt), attempt, equations)
 }
 
-/// The same, with this size for every dimension that has only a name.
+/// Like [`point`], with the given size for every named dimension.
 pub(crate) fn point_of_size<'a>(
     symbols: &'a Symbols,
     attempt: u64,
@@ -48,14 +48,14 @@ fn start<'a>(mut point: Point<'a>, attempt: u64, equations: &[Expr]) -> Option<P
     Some(point)
 }
 
-/// Whether points with these assumptions exist: without them nothing can be concluded from them.
+/// Whether a point that satisfies the assumptions can be found. Without one, the assumptions prove nothing.
 pub(crate) fn reachable(symbols: &Symbols, equations: &[Expr]) -> bool {
-    // Half of all numbers have a root: with two quadratic equations a point in four is found.
+    // Half of all numbers have a root, so with two quadratic equations one attempt in four succeeds.
     (0..ATTEMPTS / 4).any(|attempt| point(symbols, attempt, equations).is_some())
 }
 
-/// Whether the expression vanishes wherever the equations hold: at exact random points of that
-/// kind. `false` where none is found.
+/// Whether the expression vanishes wherever the equations hold, tested at exact random points. `false` if no such
+/// point is found.
 pub(crate) fn vanishes(symbols: &Symbols, equations: &[Expr], e: &Expr) -> bool {
     let points = (0..ATTEMPTS).filter_map(|attempt| point(symbols, attempt, equations)?.value(e));
     let mut found = 0;
@@ -105,7 +105,7 @@ fn satisfy(
     None
 }
 
-/// Directions in which a letter may move and keep its structure.
+/// Directions in which a letter may change without losing its structure.
 fn directions(point: &Point, l: Letter) -> Option<Vec<Matrix>> {
     let value = point.letter(l)?;
     let (rows, cols) = (value.rows, value.cols);
@@ -137,7 +137,7 @@ fn moved(base: &Matrix, directions: &[Matrix], by: &[u64]) -> Matrix {
     pairs.fold(base.clone(), |m, (d, t)| m.plus(&d.clone().scaled(*t)))
 }
 
-/// Moves the letter so that the equation holds; the directions in which it still may move.
+/// Changes the letter so that the equation holds; gives the directions that remain free.
 fn solve(point: &mut Point, e: &Expr, l: Letter, directions: &[Matrix]) -> Option<Vec<Matrix>> {
     let base = point.letter(l)?;
     let at = |point: &Point, t: &[u64]| {
@@ -174,7 +174,7 @@ fn solve(point: &mut Point, e: &Expr, l: Letter, directions: &[Matrix]) -> Optio
     if here.data.len() != 1 {
         return None;
     }
-    // One number, quadratic along a line: e(s) = a s² + b s + c.
+    // One scalar equation, quadratic along a line: e(s) = a s² + b s + c.
     let along = |s: u64| -> Option<u64> {
         let by: Vec<u64> = t.iter().map(|x| mul(*x, s)).collect();
         Some(at(point, &by)?.at(0, 0))
@@ -204,7 +204,7 @@ fn affine(columns: &[Matrix], right: &Matrix) -> Option<(Vec<u64>, Vec<Vec<u64>>
         })
         .collect();
     let pivots = eliminate(&mut rows, n);
-    // A row that says 0 = 1.
+    // The row states 0 = 1.
     if rows.iter().skip(pivots.len()).any(|r| r[n] != 0) {
         return None;
     }
@@ -224,7 +224,7 @@ fn affine(columns: &[Matrix], right: &Matrix) -> Option<(Vec<u64>, Vec<Vec<u64>>
     Some((particular, null.collect()))
 }
 
-/// Reduces rows to echelon form over their first `n` columns; the columns of the pivots.
+/// Reduces rows to echelon form over their first `n` columns; gives the columns of the pivots.
 pub(crate) fn eliminate(rows: &mut [Vec<u64>], n: usize) -> Vec<usize> {
     let mut pivots = Vec::new();
     for c in 0..n {
@@ -260,7 +260,7 @@ pub(crate) fn rank(rows: &[Vec<u64>]) -> usize {
     eliminate(&mut rows.to_vec(), n).len()
 }
 
-/// Independent rows, each one reduced by those before it.
+/// Linearly independent rows, each reduced by the previous ones.
 #[derive(Default)]
 pub(crate) struct Independent {
     /// Each row with the column of its leading one.
@@ -268,12 +268,12 @@ pub(crate) struct Independent {
 }
 
 impl Independent {
-    /// How many there are.
+    /// The number of rows.
     pub(crate) fn len(&self) -> usize {
         self.rows.len()
     }
 
-    /// The row less its part along those known, with its leading one; nothing if it depends on them.
+    /// The row minus its projection on the known rows, scaled to a leading one. None if it depends on them.
     pub(crate) fn reduced(&self, row: &[u64]) -> Option<(usize, Vec<u64>)> {
         let mut rest = row.to_vec();
         for (column, known) in &self.rows {
@@ -290,7 +290,7 @@ impl Independent {
         Some((column, scaled.collect()))
     }
 
-    /// Adds a row that [`Independent::reduced`] gave.
+    /// Adds a row returned by [`Independent::reduced`].
     pub(crate) fn push(&mut self, row: (usize, Vec<u64>)) {
         self.rows.push(row);
     }
@@ -344,7 +344,7 @@ mod tests {
             for e in &equations {
                 assert!(p.value(e).is_some_and(|v| v.vanishes()));
             }
-            // More than a multiple of the identity is left to J.
+            // J remains more general than a multiple of the identity.
             let at = Letter {
                 symbol: j,
                 shift: Shift::HERE,

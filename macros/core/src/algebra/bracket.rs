@@ -1,5 +1,5 @@
-//! Canonical numbers made of words: brackets `u^T A v` (transposition, triple products, axial
-//! vectors) and traces (rotation and transposition). A value that equals its opposite is zero.
+//! Canonical scalars from words: brackets `u^T A v` (transposition, triple products, axial vectors) and traces
+//! (rotation and transposition). A value that equals its negative is zero.
 
 use super::Algebra;
 use super::factor::{Factor, Word};
@@ -25,7 +25,7 @@ impl Algebra<'_> {
         Poly::term(Shape::SCALAR, coefficient, term)
     }
 
-    /// The value of a word that runs from a row to a column.
+    /// The value of a word that starts with a row and ends with a column.
     pub(super) fn bracket(&self, word: &[Factor]) -> Poly {
         let zero = Poly::zero(Shape::SCALAR);
         if !self.spend(1) {
@@ -75,8 +75,8 @@ impl Algebra<'_> {
         }
     }
 
-    /// Every way to write a bracket: itself and its transpose; with a hat in it, `a . (u x w)` in
-    /// any order of the three vectors, in the frame in which the one under the hat is bare.
+    /// All forms of a bracket: itself and its transpose; if it contains a hat, also `a . (u x w)` in any order of the
+    /// three vectors, in the frame in which the vector of the hat has no factor.
     fn forms(&self, word: &[Factor]) -> Vec<(bool, Word)> {
         let Some((k, u)) = word.iter().enumerate().rev().find_map(|(k, f)| match f {
             Factor::Hat(u) => Some((k, u)),
@@ -214,7 +214,7 @@ impl Algebra<'_> {
         if let [Factor::Hat(_)] = word.as_slice() {
             return zero;
         }
-        // Vectors of quaternions at both ends are neighbours on the circle.
+        // Left multiplications by vectors at both ends are adjacent under the cyclic trace.
         if let [Factor::Pure(_), .., Factor::Pure(_)] = word.as_slice() {
             word.rotate_right(1);
             let mut out = Poly::zero(Shape::square(Dim::Fixed(4)));
@@ -252,10 +252,9 @@ impl Algebra<'_> {
         }
     }
 
-    /// A hat of a cyclic word and the length of the gap to the next hat, if `hat G hat` can be
-    /// opened there in one way only: the gap is empty, or it is the only kind that is orthogonal.
-    /// A loop of rotations and two hats can be opened on either side, with results that are equal
-    /// by Cayley-Hamilton only: such a loop stays closed.
+    /// A hat in a cyclic word and the distance to the next hat, if `hat G hat` can be expanded there in one way only.
+    /// This is so if the gap is empty, or if only this gap is orthogonal. A loop of rotations and two hats can be
+    /// expanded on either side, and the results agree only by Cayley-Hamilton. Such a loop is not expanded.
     fn open_gap(&self, word: &[Factor]) -> Option<(usize, usize)> {
         let n = word.len();
         let hats: Vec<usize> = (0..n)
@@ -280,7 +279,7 @@ impl Algebra<'_> {
         empty.or(orthogonal).map(|(i, gap, _)| (*i, *gap))
     }
 
-    /// The number that a bracket or trace becomes when the hats at `i` and `j` are multiplied out.
+    /// The scalar that results if the hats at `i` and `j` of a bracket or trace are expanded.
     fn expanded(&self, word: &[Factor], i: usize, j: usize) -> Poly {
         let closed = self.shape_of(&word[0]).rows != Dim::Fixed(1);
         let mut out = Poly::zero(Shape::SCALAR);

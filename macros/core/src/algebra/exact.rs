@@ -1,6 +1,6 @@
-//! Decisions beyond the normal form: evaluation at random points in exact arithmetic modulo the
-//! prime 2^61 - 1. Special identities of three dimensions, which no reordering of words shows,
-//! vanish there at every point; anything else at one point with probability below 1e-16.
+//! Decisions beyond the normal form: evaluation at random points in exact arithmetic modulo the prime 2^61 - 1.
+//! Special identities of three dimensions, which no reordering of words reveals, vanish there at every point. Any
+//! other expression vanishes at a point with probability below 1e-16.
 
 pub(super) use super::prime::{HALF, QUARTER, mix, power, root};
 use super::prime::{PRIME, of_rational};
@@ -20,13 +20,13 @@ pub(crate) use matrix::{Matrix, paired};
 /// Points at which an identity must hold.
 pub(crate) const POINTS: u64 = 6;
 
-/// Attempts to find a point where every root exists and every divisor is non-zero.
+/// Attempts to find a point at which every root exists and no divisor is zero.
 pub(crate) const ATTEMPTS: u64 = 100;
 
-/// Attempts of a check that may find no point.
+/// Attempts of a check for which a point need not exist.
 const FEW_ATTEMPTS: u64 = 4;
 
-/// The value of a dimension that has only a name.
+/// The value of a named dimension.
 #[derive(Clone, Copy)]
 enum Size {
     Smallest,
@@ -34,8 +34,7 @@ enum Size {
     Given(usize),
 }
 
-/// One point: every letter has the value it was given, or one made from the seed and the letter
-/// itself.
+/// One point: every letter has the value set for it, or a value computed from the seed and the letter.
 #[derive(Clone)]
 pub(crate) struct Point<'a> {
     symbols: &'a Symbols,
@@ -45,7 +44,7 @@ pub(crate) struct Point<'a> {
     found: Found,
 }
 
-/// Values at a point, so that what expressions share is evaluated once. A copy begins without any.
+/// Values at a point, so that shared subexpressions are evaluated once. A copy starts empty.
 #[derive(Default)]
 struct Found(RefCell<Hashed<Matrix>>);
 
@@ -56,8 +55,7 @@ impl Clone for Found {
 }
 
 impl<'a> Point<'a> {
-    /// The point of an attempt. Named dimensions take their smallest and their largest
-    /// size by turns.
+    /// The point of an attempt. Named dimensions alternate between their smallest and their largest size.
     pub(crate) fn new(symbols: &'a Symbols, attempt: u64) -> Point<'a> {
         Point {
             symbols,
@@ -71,14 +69,14 @@ impl<'a> Point<'a> {
         }
     }
 
-    /// The same point with this size for every dimension that has only a name.
+    /// The same point with this size for every named dimension.
     pub(crate) fn sized(mut self, size: usize) -> Point<'a> {
         self.size = Size::Given(size);
         self.found = Found::default();
         self
     }
 
-    /// Other values of all letters, and the same sizes.
+    /// A point with other values of all letters and the same sizes.
     pub(crate) fn redrawn(&self, attempt: u64) -> Point<'a> {
         Point {
             size: self.size,
@@ -86,7 +84,7 @@ impl<'a> Point<'a> {
         }
     }
 
-    /// Gives a letter its value.
+    /// Sets the value of a letter.
     pub(crate) fn set(&mut self, letter: Letter, value: Matrix) {
         self.given.insert(letter, value);
         let found = self.found.0.get_mut();
@@ -136,7 +134,7 @@ impl<'a> Point<'a> {
                 Matrix::from_fn(rows, cols, |i, j| if i == j { raw(i, i) } else { 0 })
             }
             Structure::Orthogonal => cayley(&Matrix::from_fn(rows, cols, skew))?,
-            // The same transform of a vector read as a quaternion.
+            // The same transform, applied to a vector as a quaternion.
             Structure::UnitQuaternion => {
                 let v = [raw(1, 0), raw(2, 0), raw(3, 0)];
                 cayley(&pure(&v))?
@@ -202,8 +200,7 @@ impl<'a> Point<'a> {
             Node::Power(a, q) => {
                 let base = number(a)?;
                 let value = self.powered(base, *q);
-                // At any point, half of all constants do not have a root: any value serves then, if it depends on the
-                // constant alone.
+                // Half of all constants have no root. Any value then serves, if it depends on the constant only.
                 let constant = value.is_none() && expr::letters(a).is_empty();
                 Matrix::number(match constant && base != 0 {
                     true => mix(base ^ mix(q.numerator() as u64)),
@@ -220,7 +217,7 @@ impl<'a> Point<'a> {
                 let a = go(a)?;
                 Matrix::number(a.inverted().map_or(0, |(_, det)| det))
             }
-            // A polynomial: it has a value where the matrix is singular.
+            // A polynomial, which is defined for singular matrices too.
             Node::Adjugate(a) => go(&crate::expr::adjugate_polynomial(a))?,
             Node::Dot(a, b) => go(a)?.transposed().times(&go(b)?),
             Node::Cross(a, b) => hat(&go(a)?).times(&go(b)?),
@@ -290,10 +287,10 @@ impl<'a> Point<'a> {
         })
     }
 
-    /// A function of a number, of which this alone is used: that it is one, its parity, and what
-    /// trigonometric and hyperbolic functions of one argument have to do with one another. They
-    /// are rational in `t = tan(x/2)` and in `t = tanh(x/2)`, and `t` is odd in `x`. The sign is
-    /// some odd function: that its square is 1 would make false identities of signs too likely.
+    /// A function of a scalar. Only three properties are used: that it is a function, its parity, and the relations
+    /// between trigonometric or hyperbolic functions of one argument. These are rational in `t = tan(x/2)` or `t =
+    /// tanh(x/2)`, and `t` is odd in `x`. The sign is an arbitrary odd function: if its square were 1, false
+    /// identities of signs would be too likely.
     fn called(&self, function: Function, x: u64) -> Option<u64> {
         let odd = |tag: u64| {
             let (size, minus) = match x > PRIME / 2 {
@@ -348,7 +345,7 @@ impl<'a> Point<'a> {
         let base = match q.denominator() {
             1 => base,
             2 => root(base)?,
-            // Other roots: some value that depends on the base alone.
+            // Other roots: an arbitrary value that depends on the base only.
             n => mix(base ^ mix(self.seed ^ u64::try_from(n).ok()?)),
         };
         let base = if num < 0 { inverse(base)? } else { base };
@@ -363,7 +360,7 @@ fn cayley(a: &Matrix) -> Option<Matrix> {
     Some(below.times(&id.plus(a)))
 }
 
-/// The left multiplication by a vector, read as a quaternion.
+/// The left multiplication by a vector, taken as a quaternion.
 pub(crate) fn pure(v: &[u64]) -> Matrix {
     let [x, y, z] = [0, 1, 2].map(|i| v.get(i).copied().unwrap_or(0));
     let [a, b, c] = [x, y, z].map(negate);
@@ -427,8 +424,8 @@ fn hat(v: &Matrix) -> Matrix {
     }
 }
 
-/// Whether the expression vanishes at every one of the fixed random points. `false` also when no
-/// point was found at which it has a value.
+/// Whether the expression vanishes at every one of the fixed random points. `false` also if no point is found at
+/// which it is defined.
 pub fn vanishes(symbols: &Symbols, e: &Expr) -> bool {
     let mut found = 0;
     for attempt in 0..ATTEMPTS {
@@ -446,8 +443,8 @@ pub fn vanishes(symbols: &Symbols, e: &Expr) -> bool {
     false
 }
 
-/// Whether the expression has a value other than zero at one random point. `false` where that proves nothing:
-/// functionals of sites cannot be evaluated here, and modulo a prime neither of two roots is the positive one.
+/// Whether the expression is nonzero at a random point. `false` if that proves nothing: functionals of sites cannot
+/// be evaluated here, and modulo a prime neither of two roots is the positive one.
 pub fn differs_from_zero(symbols: &Symbols, e: &Expr) -> bool {
     if has_root(e) {
         return false;

@@ -80,7 +80,7 @@ pub enum Factor {
 pub type Word = Vec<Factor>;
 
 impl Algebra<'_> {
-    /// Shape of a factor, transposed where the factor is.
+    /// The shape of a factor; transposed if the factor is.
     pub(super) fn shape_of(&self, f: &Factor) -> Shape {
         let (shape, transposed) = match f {
             Factor::Letter {
@@ -142,7 +142,7 @@ impl Algebra<'_> {
         matches!(f, Factor::Letter { source, .. } if self.structure(*source).is_orthogonal())
     }
 
-    /// The transpose of a factor, with the sign that skew ones give.
+    /// The transpose of a factor, with the sign for skew factors.
     pub(super) fn transposed(&self, f: &Factor) -> (bool, Factor) {
         match f {
             Factor::Letter {
@@ -262,7 +262,7 @@ impl Algebra<'_> {
 
 /// Queries for the reduction of a model.
 impl Algebra<'_> {
-    /// The shape of a factor, transposed where the factor is.
+    /// The shape of a factor; transposed if the factor is.
     pub(crate) fn factor_shape(&self, f: &Factor) -> Shape {
         self.shape_of(f)
     }
@@ -282,7 +282,7 @@ impl Algebra<'_> {
         self.cancelled(word)
     }
 
-    /// The group that a product lies in whatever its letters are, if all of them lie in one.
+    /// The group that contains a product for all values of its letters, if all letters belong to one group.
     pub(crate) fn structure_of_word(&self, word: &[Factor]) -> Option<Structure> {
         let mut found = None;
         for f in word {

@@ -1,6 +1,6 @@
-//! Functionals in normal forms: opaque letters, one for each functional, arguments and derivatives. Known of
-//! them is that derivatives are linear in directions and seeds, symmetric in their directions, and that
-//! `<s, D f(x)[u]>` is `<(D f(x))^T[s], u>`; at random points they have random derivatives.
+//! Functionals in normal forms: one opaque letter for each functional, arguments and derivatives. Derivatives are
+//! linear in directions and seeds and symmetric in their directions, and `<s, D f(x)[u]>` equals `<(D f(x))^T[s],
+//! u>`. Nothing else is known. At random points they have random derivatives.
 
 mod sites;
 #[cfg(test)]
@@ -16,10 +16,10 @@ use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::{self, Applied, Expr, FunctionalId, Kind, Node, Reach};
 use crate::work;
 
-/// The largest number of entries of a value whose derivatives are written by the derivatives of its entries.
+/// The largest number of entries of a value whose derivatives are expressed by derivatives of its entries.
 const LARGEST: u32 = 16;
 
-/// Most products for the value of one derivative at a point.
+/// The largest number of products for the value of one derivative at a point.
 const MOST: usize = 20_000;
 
 /// Identifies an opaque value: two values are the same if their arguments agree in normal form, and their sorted
@@ -32,7 +32,7 @@ pub(super) struct Opened {
     back: Option<(u8, Poly)>,
 }
 
-/// Directions and the seed, each one term or as it is.
+/// Directions and the seed: one term of each, or each unchanged.
 #[derive(Clone)]
 struct Slots {
     coefficient: Rational,
@@ -44,7 +44,7 @@ struct Slots {
 impl Algebra<'_> {
     /// The normal form of a value or a pull-back.
     pub(super) fn functional(&self, e: &Expr, a: &Applied, back: Option<(u8, &Expr)>) -> Poly {
-        // Arguments hold functionals in their turn: each is lowered once.
+        // Arguments contain functionals in turn, and each is lowered once.
         let key = (e.clone(), self.blocks.get());
         if let Some(known) = self.given.borrow().get(&key) {
             return known.clone();
@@ -82,8 +82,8 @@ impl Algebra<'_> {
         out
     }
 
-    /// The same by gradients of the entries of the value: pull-backs of unit seeds, which also replace the transposed
-    /// derivative. Nothing if the expression is one already.
+    /// The expression in gradients of the entries of the value. These are pull-backs of unit seeds, which also
+    /// replace the transposed derivative. None if the expression is of that form already.
     fn by_entries(&self, a: &Applied, back: Option<(u8, &Expr)>, value: Kind) -> Option<Expr> {
         let s = self.symbols;
         let basis = basis(s, value)?;
@@ -91,7 +91,7 @@ impl Algebra<'_> {
         if value.shape.is_scalar() || back.is_some_and(|(_, seed)| unit(seed)) {
             return None;
         }
-        // Whatever order the directions came in, the same one is taken out.
+        // The choice does not depend on the order of the directions.
         let last = match back {
             Some(_) => None,
             None => {
@@ -118,7 +118,7 @@ impl Algebra<'_> {
         Some(expr::sum(terms.collect::<Vec<_>>(), shape))
     }
 
-    /// Directions and the seed term by term.
+    /// Directions and the seed, term by term.
     fn slots(&self, reach: Reach, a: &Applied, seed: Option<&Expr>) -> Vec<Slots> {
         let mut all = vec![Slots {
             coefficient: Rational::ONE,
@@ -175,7 +175,7 @@ impl Algebra<'_> {
     ) -> Poly {
         along.sort();
         let arguments: Vec<Poly> = a.arguments.iter().map(|x| self.lower(x)).collect();
-        // Letters that cancel in the arguments must not come back.
+        // Letters that cancel in the arguments must not reappear.
         let shorter = |own: &Expr, key: &Poly| {
             let raised = self.raise(key);
             let (left, all) = (expr::letters(&raised), expr::letters(own));
@@ -234,8 +234,8 @@ impl Algebra<'_> {
     }
 }
 
-/// The matrix units of a shape, each with the unit that has the same gradient; `None` if the shape is too large, or
-/// its size has only a name.
+/// The matrix units of a shape, each with the unit that has the same gradient. `None` if the shape is too large or
+/// has a named size.
 fn basis(s: &expr::symbol::Symbols, value: Kind) -> Option<Vec<(Expr, Expr)>> {
     let Shape { rows, cols } = value.shape;
     let (Dim::Fixed(n), Dim::Fixed(m)) = (rows, cols) else {
@@ -265,7 +265,7 @@ fn basis(s: &expr::symbol::Symbols, value: Kind) -> Option<Vec<(Expr, Expr)>> {
 /// quantities, its row and its column.
 type Entry = (u8, usize, usize);
 
-/// The entry that represents this entry, and whether the two are opposite; nothing for an entry that is zero.
+/// The representative of this entry, and whether it has the opposite sign. None if the entry is zero.
 fn standing(structure: Structure, i: usize, j: usize) -> Option<(bool, usize, usize)> {
     match structure {
         Structure::Symmetric => Some((false, i.min(j), i.max(j))),
@@ -279,7 +279,7 @@ fn standing(structure: Structure, i: usize, j: usize) -> Option<(bool, usize, us
     }
 }
 
-/// The entries of a matrix that are not zero.
+/// The nonzero entries of a matrix.
 fn entries(a: &Matrix) -> Vec<(usize, usize, u64)> {
     let places = (0..a.rows).flat_map(|i| (0..a.cols).map(move |j| (i, j)));
     let all = places.map(|(i, j)| (i, j, a.at(i, j)));
@@ -287,8 +287,8 @@ fn entries(a: &Matrix) -> Vec<(usize, usize, u64)> {
 }
 
 impl Point<'_> {
-    /// The value of a functional or of its pull-back: computed from its arguments alone, linear in directions and seed.
-    /// `None` for a functional of all sites, since a point contains no other sites.
+    /// The value of a functional or of its pull-back. It depends on the arguments only, and linearly on directions
+    /// and seed. `None` for a functional of all sites, since a point contains no other sites.
     pub(super) fn functional(&self, e: &Expr) -> Option<Matrix> {
         let (a, back) = match e.node() {
             Node::Given(a) => (a, None),
@@ -327,7 +327,7 @@ impl Point<'_> {
         let entry = |i: usize, j: usize| {
             let mut total = 0;
             for (k, l, weight) in &seed {
-                // The entry of the value, and the entry of the argument whose pull-back it is.
+                // The entry of the value, and the entry of the argument for its pull-back.
                 let (own, other) = match open {
                     Some(which) => (standing(f.value.structure, *k, *l), Some((which, i, j))),
                     None => (standing(f.value.structure, i, j), None),
@@ -353,7 +353,7 @@ fn signed(x: u64, minus: bool) -> u64 {
     if minus { negate(x) } else { x }
 }
 
-/// The products so far, each with every entry of one more direction.
+/// The products so far, each multiplied by every entry of one more direction.
 fn more(
     found: &[(u64, Vec<Entry>)],
     which: u8,

@@ -1,5 +1,5 @@
-//! Normal forms are kept: what expressions share is brought to its own once. Takes an expression; gives its normal form, shared
-//! with those who ask again.
+//! The cache of normal forms: each shared subexpression is lowered once. Takes an expression; gives its normal form,
+//! shared between queries.
 
 use super::Algebra;
 use super::poly::Poly;
@@ -19,7 +19,7 @@ impl Algebra<'_> {
         Rc::unwrap_or_clone(self.lowered(e))
     }
 
-    /// The same, shared with those who ask again.
+    /// The normal form of an expression, shared with earlier queries.
     pub(super) fn lowered(&self, e: &Expr) -> Rc<Poly> {
         if e.size() < SHARED {
             return Rc::new(self.normal_form(e));

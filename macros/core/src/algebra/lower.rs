@@ -12,7 +12,7 @@ use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Function, Map, Node, Parity, Part};
 
 impl Algebra<'_> {
-    /// The normal form of an expression, whose parts may be known.
+    /// The normal form of an expression, whose parts may be cached.
     pub(super) fn normal_form(&self, e: &Expr) -> Poly {
         let shape = e.shape();
         if self.exhausted() {
@@ -128,7 +128,7 @@ impl Algebra<'_> {
                 },
                 Map::Rotation => match a.node() {
                     Node::Letter(at) => self.one_factor(shape, rotation_of(*at, false)),
-                    // Rotations are taken of letters only.
+                    // Only letters have rotations.
                     _ => {
                         self.exhaust();
                         Poly::zero(shape)
@@ -138,7 +138,7 @@ impl Algebra<'_> {
         }
     }
 
-    /// Whether it is one letter, transposed or not, that may have an inverse.
+    /// Whether the expression is a single letter, possibly transposed, that may have an inverse.
     fn is_plain_letter(&self, a: &Expr) -> bool {
         match a.node() {
             Node::Letter(at) => self.symbols.get(at.symbol).structure != Structure::Skew,
@@ -182,7 +182,7 @@ impl Algebra<'_> {
         }
     }
 
-    /// Product of normal forms; a number times a matrix is allowed either way.
+    /// Product of normal forms; a scalar may multiply a matrix from either side.
     pub(super) fn mul(&self, a: &Poly, b: &Poly) -> Poly {
         let shape = if a.shape.is_scalar() && !b.shape.is_scalar() && b.shape.rows != Dim::Fixed(1)
         {
@@ -223,7 +223,7 @@ impl Algebra<'_> {
         out
     }
 
-    /// Applies a map that is linear in the word.
+    /// Applies a map that is linear in the words.
     fn linear(&self, a: &Poly, shape: Shape, f: impl Fn(&[Factor]) -> Poly) -> Poly {
         let mut out = Poly::zero(shape);
         for (t, c) in &a.terms {
@@ -237,7 +237,7 @@ impl Algebra<'_> {
         out
     }
 
-    /// The only term, if there is exactly one.
+    /// The term of a polynomial with exactly one term.
     fn single(a: &Poly) -> Option<(&Term, Rational)> {
         let mut terms = a.terms.iter();
         match (terms.next(), terms.next()) {
@@ -285,14 +285,14 @@ impl Algebra<'_> {
             && t.monomial.iter().all(|(atom, _)| self.is_positive(atom))
             && let Some(m) = monomial::power(&t.monomial, q)
         {
-            // Only for positive numbers is (x y)^q = x^q y^q.
+            // (x y)^q = x^q y^q holds for positive numbers only.
             let term = Term {
                 monomial: m,
                 word: Word::new(),
             };
             return Poly::term(Shape::SCALAR, Rational::ONE, term);
         }
-        // One base for all multiples of a sum: the leading coefficient comes out.
+        // All multiples of a sum have the same base, because the leading coefficient is factored out.
         let leading = a.terms.values().next().copied().unwrap_or(Rational::ONE);
         let outside = q.as_integer().and_then(|n| leading.power(n));
         let (key, meaning, outside) = match (leading.inverse(), outside) {
@@ -482,7 +482,7 @@ impl Algebra<'_> {
         out
     }
 
-    /// `sum of E_i (E_i^T v) E_i^T`, and one letter where the size has only a name.
+    /// `sum of E_i (E_i^T v) E_i^T`; one letter for a named size.
     fn diagonal(&self, v: &Poly, whole: &Expr) -> Poly {
         let mut out = Poly::zero(whole.shape());
         let Dim::Fixed(n) = v.shape.rows else {
@@ -519,7 +519,7 @@ impl Algebra<'_> {
         out
     }
 
-    /// `sum of E_i (E_i^T A E_i)`. A matrix whose size has only a name is rejected before.
+    /// `sum of E_i (E_i^T A E_i)`. A matrix of a named size is rejected earlier.
     fn diagonal_of(&self, a: &Poly) -> Poly {
         let mut out = Poly::zero(Shape::vector(a.shape.rows));
         let Dim::Fixed(n) = a.shape.rows else {
@@ -536,8 +536,8 @@ impl Algebra<'_> {
         out
     }
 
-    /// One letter for each function and argument; the argument's leading sign comes out of odd and
-    /// even functions.
+    /// One letter per function and argument. The leading sign of the argument is factored out of odd and even
+    /// functions.
     fn call(&self, function: Function, a: Poly, meaning: &Expr) -> Poly {
         let minus = a.terms.values().next().is_some_and(|c| c.is_negative());
         let parity = function.parity();

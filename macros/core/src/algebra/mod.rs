@@ -1,6 +1,6 @@
-//! Normal forms: exact decisions about noncommutative matrix expressions. An [`Algebra`] lowers
-//! expressions to polynomials in words of letters ([`Poly`]), where equal things are identical.
-//! No search; work is bounded, and running out of bounds is reported, never guessed.
+//! Normal forms: exact decisions about noncommutative matrix expressions. An [`Algebra`] lowers expressions to
+//! polynomials in words of letters ([`Poly`]), in which equal expressions are identical. There is no search, and the
+//! work is bounded; clebsch reports an exceeded bound and never guesses.
 
 pub(crate) mod assumed;
 mod bracket;
@@ -31,8 +31,8 @@ use crate::expr::{self, Expr, Hashed};
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 
-/// Work allowed for one model, in products of terms. A model of the gallery needs a few
-/// thousand; the bound keeps any input of 10 kB below two seconds.
+/// The work limit for one model, in products of terms. A model of the gallery needs a few thousand; the limit keeps
+/// any input of 10 kB below two seconds.
 const WORK_LIMIT: u64 = 1_000_000;
 
 /// The work limit for this model: an expanded chain has a larger one.
@@ -40,7 +40,7 @@ fn work_limit() -> u64 {
     WORK_LIMIT.saturating_mul(crate::work::times())
 }
 
-/// Nodes evaluated at exact points for one model; beyond it only normal forms decide.
+/// The limit on nodes evaluated at exact points for one model. Beyond it, only normal forms decide.
 const EVALUATION_LIMIT: u64 = 300_000;
 
 /// The largest number of terms in a normal form; a larger normal form also exceeds the work limit.
@@ -54,40 +54,40 @@ fn term_limit() -> usize {
     TERM_LIMIT.saturating_mul(usize::try_from(crate::work::times()).unwrap_or(1))
 }
 
-/// Longest word kept.
+/// The length of the longest word.
 const WORD_LIMIT: usize = 64;
 
-/// Why a normal form was given up.
+/// Why a normal form was not computed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Excess {
-    /// So many terms.
+    /// The number of terms.
     Terms(usize),
-    /// A word of so many factors.
+    /// A word with this number of factors.
     Word(usize),
-    /// A coefficient or an exponent that exact fractions do not hold.
+    /// A coefficient or an exponent that overflows exact fractions.
     Coefficient,
-    /// So many nodes to be evaluated at points.
+    /// The number of nodes to be evaluated at points.
     Evaluated(u64),
-    /// A normal form that has another value than the expression at a random point.
+    /// A normal form whose value at a random point differs from that of the expression.
     Contradiction,
 }
 
-/// The normal-form engine of one model: its symbols, the opaque quantities met so far (inverses
-/// of sums, roots of sums, ...) and the work spent.
+/// The normal-form engine of one model: its symbols, the opaque quantities so far (inverses of sums, roots of sums,
+/// ...) and the work spent.
 pub struct Algebra<'a> {
     symbols: &'a Symbols,
     matrices: RefCell<Vec<Opaque>>,
     numbers: RefCell<Vec<Opaque>>,
     /// The keys of the opaque values of functionals.
     opened: RefCell<Vec<functional::Opened>>,
-    /// Their normal forms, in blocks or not. Looked up, never iterated.
+    /// Their normal forms, with and without blocks. Looked up, never iterated.
     given: RefCell<HashMap<(Expr, bool), Poly>>,
-    /// Normal forms, not in blocks and in blocks. Looked up, never iterated.
+    /// Normal forms, without blocks and with blocks. Looked up, never iterated.
     lowered: [RefCell<Hashed<kept::Lowered>>; 2],
     work: Cell<u64>,
     evaluated: Cell<u64>,
     excess: Cell<Option<Excess>>,
-    /// Whether rigid motions are written by their rotations and translations.
+    /// Whether rigid motions are expressed by their rotations and translations.
     blocks: Cell<bool>,
 }
 
@@ -96,8 +96,8 @@ pub struct Algebra<'a> {
 pub enum Decision {
     /// Both sides have the same normal form.
     NormalForm,
-    /// The normal forms differ in identities of three dimensions, which hold at random points in
-    /// exact arithmetic modulo a prime of 61 bits.
+    /// The normal forms differ, but both sides agree at random points in exact arithmetic modulo a prime of 61 bits,
+    /// as identities of three dimensions do.
     ExactEvaluation,
 }
 
@@ -105,18 +105,18 @@ pub enum Decision {
 struct Opaque {
     key: Poly,
     meaning: Expr,
-    /// How it depends on the key.
+    /// Its relation to the key.
     sense: Sense,
 }
 
-/// How an opaque quantity depends on its key.
+/// The relation of an opaque quantity to its key.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Sense {
     /// The key itself.
     Value,
     /// The diagonal of a matrix, or the matrix with that diagonal.
     Diagonal,
-    /// None of it: the value of a functional, by its number.
+    /// No relation: the value of a functional, by its number.
     Given(u32),
 }
 
@@ -145,7 +145,7 @@ impl<'a> Algebra<'a> {
         other
     }
 
-    /// Books the work that another engine has spent since it was made by [`Algebra::over`].
+    /// Adds the work of another engine since [`Algebra::over`] created it.
     pub(crate) fn charge(&self, other: &Algebra) {
         self.work.set(other.work.get());
         self.evaluated.set(other.evaluated.get());
@@ -157,18 +157,18 @@ impl<'a> Algebra<'a> {
         self.symbols
     }
 
-    /// Products of terms taken so far.
+    /// The products of terms computed so far.
     pub(crate) fn spent(&self) -> u64 {
         self.work.get()
     }
 
-    /// Whether an expression was too large to normalise; every answer since is void.
+    /// Whether an expression was too large to normalize; all later answers are void.
     pub fn exhausted(&self) -> bool {
         self.work.get() > work_limit() || crate::work::exhausted()
     }
 
-    /// How it is known that the expression vanishes identically, if it does. Nothing when it does
-    /// not, or when the work ran out.
+    /// How the expression is proved to vanish identically. None if it does not vanish, or if the work limit was
+    /// reached.
     pub fn zero(&self, e: &Expr) -> Option<Decision> {
         if self.exhausted() {
             return None;
@@ -192,7 +192,7 @@ impl<'a> Algebra<'a> {
             .then_some(Decision::ExactEvaluation)
     }
 
-    /// `NormalForm`, unless exact evaluation at one random point says that the normal form is wrong.
+    /// `NormalForm`, unless exact evaluation at a random point contradicts the normal form.
     fn unless_contradicted(&self, e: &Expr) -> Option<Decision> {
         if exact::differs_from_zero(self.symbols, e) {
             self.contradicted();
@@ -201,7 +201,7 @@ impl<'a> Algebra<'a> {
         Some(Decision::NormalForm)
     }
 
-    /// Ends the derivation: a normal form is wrong, so nothing that follows from one can be trusted.
+    /// Ends the derivation: a normal form is wrong, so no conclusion from normal forms can be trusted.
     pub(crate) fn contradicted(&self) {
         self.note(Excess::Contradiction);
         self.work.set(u64::MAX);
@@ -221,13 +221,13 @@ impl<'a> Algebra<'a> {
         self.zero(e).is_some()
     }
 
-    /// Whether two expressions of one shape agree at exact random points: cheaper than
-    /// [`Algebra::equal`] when, as a rule, they do not.
+    /// Whether two expressions of equal shape agree at exact random points. This is cheaper than [`Algebra::equal`]
+    /// if most pairs differ.
     pub fn agree(&self, a: &Expr, b: &Expr) -> bool {
         self.vanishes_at_points(&crate::expr::sub(a.clone(), b.clone()))
     }
 
-    /// Whether two expressions of one shape are the same.
+    /// Whether two expressions of equal shape are identically equal.
     pub fn equal(&self, a: &Expr, b: &Expr) -> bool {
         self.is_zero(&crate::expr::sub(a.clone(), b.clone()))
     }
@@ -238,7 +238,7 @@ impl<'a> Algebra<'a> {
         !self.exhausted()
     }
 
-    /// Gives up on the present model.
+    /// Marks the work limit of this model as exceeded.
     fn exhaust(&self) {
         self.note(Excess::Coefficient);
         self.work.set(u64::MAX);
@@ -248,7 +248,7 @@ impl<'a> Algebra<'a> {
         self.excess.set(self.excess.get().or(Some(excess)));
     }
 
-    /// The limit that was exceeded, with the number that was found; nothing if everything was decided.
+    /// The limit that was exceeded, with the number found. None if everything was decided.
     pub(crate) fn excess(&self) -> Option<String> {
         if let Some(text) = crate::work::excess() {
             return Some(text);
@@ -298,8 +298,8 @@ impl<'a> Algebra<'a> {
             return i as u32;
         }
         let mut meaning = meaning();
-        // Letters that cancel in the key must not come back with the meaning: `V V^T` of a rotation has a value even if
-        // no velocity is known.
+        // Letters that cancel in the key must not reappear through its expression: `V V^T` of a rotation is defined
+        // even if no velocity is known.
         if sense == Sense::Value {
             let shorter = self.raise(&key);
             let (left, all) = (expr::letters(&shorter), expr::letters(&meaning));

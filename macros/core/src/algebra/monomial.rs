@@ -1,14 +1,14 @@
-//! Commuting parts of a term: rational powers of scalar atoms (numbers, traces, brackets
-//! `u^T A v`, determinants, opaque functions), kept sorted.
+//! Commuting parts of a term: rational powers of scalar atoms (numbers, traces, brackets `u^T A v`, determinants,
+//! opaque functions), sorted.
 
 use super::factor::{Source, Word};
 use super::rational::Rational;
 use crate::expr::{Constant, Function, Letter};
 
-/// A number that the normal form does not open further.
+/// A scalar that the normal form does not expand further.
 #[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Atom {
-    /// A number that exact arithmetic does not follow.
+    /// A constant that exact arithmetic does not represent.
     Constant(Constant),
     /// A scalar letter.
     Letter(Letter),
@@ -16,21 +16,21 @@ pub enum Atom {
     Dimension(u16),
     /// The trace of a word, canonical under rotation and transposition.
     Trace(Word),
-    /// A row times matrices times a column, canonical under transposition and hat rules.
+    /// A row times matrices times a column, canonical under transposition and the rules for hats.
     Bracket(Word),
     /// The determinant of a letter.
     Det(Source),
     /// The determinant of an opaque matrix.
     OpaqueDet(u32),
-    /// A sum under a power.
+    /// The base of a power of a sum.
     Base(u32),
-    /// A function of an interned number.
+    /// A function of an interned scalar.
     Call(Function, u32),
     /// A value of a functional, or an entry of its derivative.
     Given(u32),
 }
 
-/// A product of powers of atoms, sorted by atom, no zero exponents.
+/// A product of powers of atoms, sorted by atom, without zero exponents.
 pub type Monomial = Vec<(Atom, Rational)>;
 
 /// Product of two monomials; `None` on overflow of an exponent.
@@ -65,7 +65,7 @@ pub fn times(a: &Monomial, b: &Monomial) -> Option<Monomial> {
     Some(out)
 }
 
-/// Every exponent multiplied by `q`; `None` on overflow.
+/// The monomial with every exponent multiplied by `q`; `None` on overflow.
 pub fn power(a: &Monomial, q: Rational) -> Option<Monomial> {
     let mut out = Vec::with_capacity(a.len());
     for (atom, e) in a {

@@ -1,5 +1,5 @@
-//! Polynomials in words: finite sums of rational coefficient x monomial x word, sorted, without
-//! zero terms. Two expressions are equal (as far as the rules reach) iff these are identical.
+//! Polynomials in words: finite sums of rational coefficient x monomial x word, sorted, without zero terms. As far as
+//! the rules reach, two expressions are equal iff their polynomials are identical.
 
 use super::factor::Word;
 use super::monomial::Monomial;
@@ -7,12 +7,12 @@ use super::rational::Rational;
 use crate::expr::shape::Shape;
 use std::collections::BTreeMap;
 
-/// The monomial and the word of one term. For a number the word is empty.
+/// The monomial and the word of one term. The word of a scalar is empty.
 #[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug, Default)]
 pub struct Term {
     /// Commuting part.
     pub monomial: Monomial,
-    /// Matrix part; empty means the identity (or, for a number, nothing).
+    /// Matrix part; the empty word is the identity, or 1 in a scalar.
     pub word: Word,
 }
 
@@ -51,7 +51,7 @@ impl Poly {
         Poly::term(shape, value, Term::default())
     }
 
-    /// Whether it is without terms.
+    /// Whether it has no terms.
     pub fn is_zero(&self) -> bool {
         self.terms.is_empty()
     }
@@ -82,7 +82,7 @@ impl Poly {
         }
     }
 
-    /// The same with every coefficient multiplied by `q`; `None` on overflow.
+    /// The polynomial with every coefficient multiplied by `q`; `None` on overflow.
     pub fn scaled(&self, q: Rational) -> Option<Poly> {
         let mut out = Poly::zero(self.shape);
         for (t, c) in &self.terms {

@@ -1,5 +1,5 @@
-//! The field of the integers modulo the prime 2^61 - 1, in which identities are decided.
-//! Takes and gives representatives below the prime.
+//! The integers modulo the prime 2^61 - 1, the field in which identities are decided. Takes and gives representatives
+//! below the prime.
 
 use super::rational::Rational;
 
@@ -38,7 +38,7 @@ pub(crate) fn inverse(a: u64) -> Option<u64> {
     (a != 0).then(|| power(a, PRIME - 2))
 }
 
-/// The square root with the convention that a root of a square is found, if there is one.
+/// A square root, if there is one. The root of a square is always the same of the two.
 pub(super) fn root(a: u64) -> Option<u64> {
     // The prime is 3 modulo 4.
     let r = power(a, PRIME.div_ceil(4));
@@ -61,9 +61,9 @@ pub(super) fn of_rational(q: Rational) -> Option<u64> {
     }
 }
 
-/// The fraction of small numbers that this is, numerator and denominator up to `largest`.
+/// The fraction with numerator and denominator up to `largest` that equals this number.
 pub(crate) fn rational(x: u64, largest: u64) -> Option<(i64, i64)> {
-    // Euclid's algorithm on the prime and x, stopped where the remainder is small.
+    // Euclid's algorithm on the prime and x, stopped at a small remainder.
     let (mut a, mut b) = (i128::from(PRIME), i128::from(x));
     let (mut s, mut t) = (0i128, 1i128);
     while b > i128::from(largest) {

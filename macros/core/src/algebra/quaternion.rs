@@ -1,6 +1,6 @@
-//! Words with quaternions: the left multiplication by a vector moves to the front through elements of SU(2), two of
-//! them multiply out, the imaginary part of a conjugate is a rotated one. Products beyond these rules are left to
-//! exact evaluation.
+//! Words with quaternions. The left multiplication by a vector moves to the front through elements of SU(2), two such
+//! multiplications are multiplied out, and the imaginary part of a conjugate is a rotated imaginary part. Exact
+//! evaluation decides products beyond these rules.
 
 use super::Algebra;
 use super::factor::{Factor, Source, Word};
@@ -20,7 +20,7 @@ pub(super) fn rotation_of(at: Letter, inverted: bool) -> Factor {
 }
 
 impl Algebra<'_> {
-    /// The letter of SU(2) behind a factor, and whether it is inverted.
+    /// The letter of SU(2) in a factor, and whether it is inverted.
     fn unit_quaternion(&self, f: &Factor) -> Option<(Letter, bool)> {
         match f {
             Factor::Letter {
@@ -117,8 +117,8 @@ impl Algebra<'_> {
         Some([&word[..i], &pair, &word[i + 2..]].concat())
     }
 
-    /// `pure(u) pure(v) = -(u.v) + pure(u x v)`: the first such pair multiplied out, as words with coefficients and
-    /// numbers. `None` if there is no such pair.
+    /// `pure(u) pure(v) = -(u.v) + pure(u x v)`: expands the first such pair into words with coefficients and
+    /// scalars. `None` if the word contains no such pair.
     pub(super) fn pure_product(&self, word: &[Factor]) -> Option<Vec<(Rational, Monomial, Word)>> {
         let i = word
             .windows(2)

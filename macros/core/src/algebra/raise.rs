@@ -1,5 +1,5 @@
-//! From normal forms back to expressions, for what must be shown or emitted in reduced form:
-//! left-over terms of a failed check, and equations whose short form only the algebra finds.
+//! From normal forms back to expressions. They are shown or emitted as remainders of a failed check, and as equations
+//! whose short form only the algebra finds.
 
 use super::Algebra;
 use super::factor::{Factor, Source, Word};
@@ -36,8 +36,8 @@ impl Algebra<'_> {
         expr::sum(terms.collect::<Vec<_>>(), a.shape)
     }
 
-    /// The first inverse in a word that occurs together with its determinant: the two are an adjugate, which has a
-    /// value where the determinant vanishes. Gives the rest of the monomial.
+    /// The first inverse in a word whose determinant also occurs: together they form an adjugate, which is defined
+    /// even if the determinant vanishes. Gives the rest of the monomial.
     fn adjugate_in(&self, t: &Term) -> (Monomial, Option<(usize, Expr)>) {
         for (i, f) in t.word.iter().enumerate() {
             let Factor::Letter {
@@ -82,7 +82,7 @@ impl Algebra<'_> {
     }
 
     fn raise_word(&self, word: &Word) -> Expr {
-        // hat(u) w reads as u x w when w is a vector.
+        // hat(u) w is written u x w if w is a vector.
         let is_hat = |f: &Factor| match f {
             Factor::Hat(v) => !matches!(v.as_slice(), [Factor::Axial { .. }]),
             _ => false,
@@ -94,7 +94,7 @@ impl Algebra<'_> {
             && self.shape_of(last).cols == Dim::Fixed(1)
         {
             let tail = &word[k + 1..];
-            // u x G vee(S) reads as -G S G^T u.
+            // u x G vee(S) is written -G S G^T u.
             if let Some((
                 Factor::Axial {
                     source,

@@ -50,7 +50,7 @@ impl Rational {
         }
     }
 
-    /// Numerator, carrying the sign.
+    /// The numerator, with the sign.
     pub fn numerator(self) -> i128 {
         self.num
     }
@@ -101,7 +101,7 @@ impl Rational {
         )
     }
 
-    /// The opposite number.
+    /// The negative.
     pub fn negated(self) -> Rational {
         Rational {
             num: -self.num,
@@ -140,7 +140,7 @@ impl Ord for Rational {
             other.num.checked_mul(self.den),
         ) {
             (Some(a), Some(b)) => a.cmp(&b),
-            // Beyond the exact range, any fixed order will do: it only sorts terms.
+            // Beyond the exact range any fixed order suffices, because it only sorts terms.
             _ => (self.num, self.den).cmp(&(other.num, other.den)),
         }
     }

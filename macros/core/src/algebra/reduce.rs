@@ -1,5 +1,5 @@
-//! Reduction of words: cancellation of inverses, extraction of numbers (`u^T A v`), hats and axial
-//! vectors of words. Words come out canonical; numbers move into the monomial.
+//! Reduction of words: cancellation of inverses, extraction of scalars (`u^T A v`), hats and axial vectors of words.
+//! The resulting words are canonical, and scalars move to the monomial.
 
 use super::factor::{Factor, Word};
 use super::monomial::{self, Atom, Monomial};
@@ -19,7 +19,7 @@ impl Algebra<'_> {
                 out.push(f);
             }
         }
-        // Constant factors shrink to shorter ones, which may free others to cancel.
+        // Products of constant factors may become shorter, which may allow further cancellation.
         let shorter = out.windows(2).enumerate().find_map(|(i, pair)| {
             let [a, b] = pair else { return None };
             let new = self.constant_pair(a, b)??;
@@ -143,7 +143,7 @@ impl Algebra<'_> {
         (!value.terms.keys().all(same)).then_some(value)
     }
 
-    /// A shortest sub-word that is a number: from a row to a column.
+    /// A shortest subword that is a scalar: it starts with a row and ends with a column.
     fn number_inside(&self, word: &[Factor]) -> Option<(usize, usize)> {
         let mut start = None;
         for (i, f) in word.iter().enumerate() {
@@ -160,7 +160,7 @@ impl Algebra<'_> {
         None
     }
 
-    /// Two hats with nothing but orthogonal letters between them.
+    /// Two hats with only orthogonal letters between them.
     pub(super) fn facing_hats(&self, word: &[Factor]) -> Option<(usize, usize)> {
         let mut last = None;
         for (i, f) in word.iter().enumerate() {
@@ -208,7 +208,7 @@ impl Algebra<'_> {
         out
     }
 
-    /// The skew matrix of a vector word: orthogonal letters move out, products open.
+    /// The skew matrix of a vector word: orthogonal letters move out, products are expanded.
     pub(super) fn hat_word(&self, word: &[Factor]) -> Poly {
         let shape = Shape::square(Dim::Fixed(3));
         let mut out = Poly::zero(shape);

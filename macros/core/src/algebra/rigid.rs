@@ -1,6 +1,6 @@
-//! Rigid motions in blocks: `G = P R P^T + P x e^T + e e^T` with the inclusion `P` of space, the
-//! last unit vector `e`, the rotation `R` and the translation `x`. In this form products of rigid
-//! motions reduce by the rules of the space itself; it decides, and is never shown.
+//! Rigid motions in blocks: `G = P R P^T + P x e^T + e e^T` with the inclusion `P` of space, the last unit vector
+//! `e`, the rotation `R` and the translation `x`. In this form, products of rigid motions reduce by the rules of the
+//! space itself. This form is used for decisions and never shown.
 
 use super::Algebra;
 use super::factor::{Factor, Source};
@@ -13,7 +13,7 @@ use crate::expr::{Expr, Letter, last_axis, within};
 
 const TWO: Dim = Dim::Fixed(2);
 
-/// The inclusion of space in homogeneous coordinates of so many rows, or its transpose.
+/// The inclusion of space in homogeneous coordinates with `rows` rows, or its transpose.
 pub(crate) fn inclusion_of_space(rows: Dim, transposed: bool) -> Factor {
     Factor::Inclusion {
         shape: Shape {
@@ -111,7 +111,7 @@ impl Algebra<'_> {
         }
     }
 
-    /// Whether the letter is to be written in blocks.
+    /// Whether the letter is expressed in blocks.
     pub(super) fn in_blocks(&self, at: Letter) -> bool {
         self.blocks.get() && self.symbols.get(at.symbol).structure == Structure::RigidMotion
     }
@@ -141,7 +141,7 @@ impl Algebra<'_> {
         out
     }
 
-    /// The normal form with rigid motions in blocks, if there are any.
+    /// The normal form with rigid motions in blocks. None if there are no rigid motions.
     pub fn lower_in_blocks(&self, e: &Expr) -> Option<Poly> {
         let rigid = |l: &Letter| self.symbols.get(l.symbol).structure == Structure::RigidMotion;
         if !crate::expr::letters(e).iter().any(rigid) {
@@ -153,8 +153,8 @@ impl Algebra<'_> {
         Some(normal)
     }
 
-    /// The smallest expression that the normal forms give. A form that has another value at a random
-    /// point ends the derivation.
+    /// The smallest expression from the normal forms. If a form has another value at a random point, the derivation
+    /// ends.
     pub fn shortest(&self, e: &Expr) -> Expr {
         let whole = self.raise(&self.lower(e));
         let blocks = self.lower_in_blocks(e).map(|p| self.raise(&p));
@@ -254,7 +254,7 @@ impl Algebra<'_> {
     }
 }
 
-/// The unit vector seen through an inclusion.
+/// The unit vector, projected by an inclusion.
 fn taken(shape: Shape, at: u8, axis: u8, transposed: bool) -> Option<Vec<Factor>> {
     let Dim::Fixed(n) = shape.cols else {
         return None;

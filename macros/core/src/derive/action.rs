@@ -1,5 +1,5 @@
-//! The action of one step: the Lagrangian with its purely nodal terms (potentials) distributed
-//! over the two adjacent edges by the model's node rule.
+//! The action of one step: the Lagrangian, with its purely nodal terms (potentials) distributed over the two adjacent
+//! edges by the model's node rule.
 
 use crate::algebra::Rational;
 use crate::check::spec::Spec;
@@ -11,21 +11,21 @@ use crate::syntax::ast::NodeRule;
 /// The action of the step from node k to node k+1 and its parts.
 #[derive(Clone, Debug)]
 pub struct Action {
-    /// The whole action of the step, nodal terms distributed.
+    /// The whole action of the step, with nodal terms distributed.
     pub total: Expr,
     /// Terms that involve a velocity or both ends of the edge.
     pub edge: Expr,
-    /// Purely nodal terms at node k, before they are distributed.
+    /// Purely nodal terms at node k, before distribution.
     pub nodal: Expr,
-    /// The same, distributed over the two ends of the edge.
+    /// The nodal terms, distributed over the two ends of the edge.
     pub distributed: Expr,
 }
 
-/// Splits and distributes.
+/// Splits the Lagrangian and distributes its nodal terms.
 pub fn action(spec: &Spec) -> Action {
     let symbols = &spec.symbols;
     let (edge, nodal) = match &spec.reduction {
-        // Where a term lives was decided on the term as it was stated.
+        // The terms were assigned to edge and node in the form of the statement.
         Some(r) => (r.edge.clone(), r.nodal.clone()),
         None => split(symbols, &spec.lagrangian),
     };
@@ -53,7 +53,7 @@ pub fn action(spec: &Spec) -> Action {
     }
 }
 
-/// The terms of the edge and those at one node, moved to node k; constants are dropped.
+/// The terms of the edge, and the terms at one node, moved to node k. Constants are dropped.
 pub fn split(symbols: &Symbols, lagrangian: &Expr) -> (Expr, Expr) {
     let (mut edge, mut nodal) = (Vec::new(), Vec::new());
     for term in summands(symbols, lagrangian) {
@@ -67,9 +67,9 @@ pub fn split(symbols: &Symbols, lagrangian: &Expr) -> (Expr, Expr) {
     (sum(edge), sum(nodal))
 }
 
-/// Where a term lives.
+/// The edge or node of a term.
 enum Place {
-    /// Only constants: it varies with nothing.
+    /// Constants only: no variation changes it.
     Constant,
     /// At one node, at this time level.
     Node(i8),
@@ -93,9 +93,9 @@ fn place(symbols: &Symbols, term: &Expr) -> Place {
     level.map_or(Place::Constant, Place::Node)
 }
 
-/// The summands of a number, with common factors and divisors of a sum multiplied in. A difference in time under a
-/// factor or over a divisor stays one term, as in `x*(next(y) - y)`: if it were split, the part that is known at
-/// one node alone would move to another edge, with half of the momentum.
+/// The summands of a scalar, with common factors and divisors of a sum multiplied in. A difference in time under a
+/// factor or over a divisor stays one term, as in `x*(next(y) - y)`: if it were split, the nodal part would move to
+/// another edge, with half of the momentum.
 pub fn summands(symbols: &Symbols, e: &Expr) -> Vec<Expr> {
     match e.node() {
         Node::Sum(terms) => terms.iter().flat_map(|t| summands(symbols, t)).collect(),
@@ -108,7 +108,7 @@ pub fn summands(symbols: &Symbols, e: &Expr) -> Vec<Expr> {
             terms.map(|t| expr::quotient(t, b.clone())).collect()
         }
         Node::Product(factors) if factors.iter().all(|f| f.shape().is_scalar()) => {
-            // A product of several sums stays one term: only a common factor is multiplied in.
+            // A product of several sums stays one term; only a common factor is multiplied in.
             let mut sums = factors
                 .iter()
                 .enumerate()
@@ -140,7 +140,7 @@ fn moves(symbols: &Symbols, e: &Expr) -> bool {
     !matches!(place(symbols, e), Place::Constant)
 }
 
-/// Terms with the constant ones added to the first that lives on the edge. In `q^2*(3 - tr(Ω))` both belong to one
+/// The terms, with constant terms added to the first term of the edge. In `q^2*(3 - tr(Ω))`, both terms belong to one
 /// kinetic energy: if they were split, `3*q^2` would be a term at one node, and half of it would move to another
 /// edge.
 fn with_constants(symbols: &Symbols, terms: Vec<Expr>) -> Vec<Expr> {
@@ -162,7 +162,7 @@ fn with_constants(symbols: &Symbols, terms: Vec<Expr>) -> Vec<Expr> {
     moving
 }
 
-/// Terms with each that is another one a step later, the other way, added to that one: `F(next(X)) - F(X)`.
+/// Adds each term and its negative one step later to one term: `F(next(X)) - F(X)`.
 fn joined(symbols: &Symbols, terms: Vec<Expr>) -> Vec<Expr> {
     let mut out: Vec<Expr> = Vec::new();
     let mut left: Vec<Option<Expr>> = terms.into_iter().map(Some).collect();
@@ -174,7 +174,7 @@ fn joined(symbols: &Symbols, terms: Vec<Expr>) -> Vec<Expr> {
             out.push(term);
             continue;
         };
-        // If a term is a difference, one summand is evaluated at each end of the step.
+        // The two summands of a difference are evaluated at the two ends of the step.
         let (at, by) = match level {
             0 => (Shift::NEXT.time, Shift::NEXT.time),
             _ => (Shift::HERE.time, -Shift::NEXT.time),

@@ -1,6 +1,6 @@
-//! How advected quantities follow from the configuration alone: by their definition, or by the
-//! constraint read with the group element in place of its velocity, from a constant reference
-//! value. Recomputing them so keeps roundoff from accumulating.
+//! How the configuration determines the advected quantities: by their definition, or by their constraint with the
+//! group element in place of its velocity, applied to a constant reference value. Recomputing the quantities in this
+//! way prevents rounding errors from accumulating.
 
 use super::Letters;
 use super::variation::at;
@@ -14,19 +14,18 @@ use crate::expr::{self, Expr, Letter, Shift};
 pub enum AdvectionRule {
     /// Its definition: group elements and parameters.
     Defined(Expr),
-    /// The action on a constant reference value, which the quantity's own letter denotes.
+    /// The action on a constant reference value; the quantity's own letter denotes the reference value.
     Carried {
-        /// The value at a node: elements act on the reference.
+        /// The value at a node, with elements acting on the reference value.
         value: Expr,
-        /// The reference from the value at node 0: inverse elements act on it.
+        /// The reference value, with inverse elements acting on the value at node 0.
         reference: Expr,
     },
-    /// Neither: the constraint itself must advance it.
+    /// Neither: the constraint itself advances the quantity.
     Advanced,
 }
 
-/// Transports of all advected quantities; a definition that contradicts its constraint is an
-/// error.
+/// The rules of all advected quantities. A definition that contradicts its constraint is an error.
 pub fn transports(
     spec: &Spec,
     letters: &Letters,
@@ -92,8 +91,8 @@ fn check_definition(
     errors.push(d);
 }
 
-/// Reads the constraint as a group action and checks that it is one: acting by `Λ` and then by
-/// `Ω` is acting by `next(Λ)`.
+/// Reads the constraint as a group action and checks that it is one: acting by `Λ` and then by `Ω` equals acting by
+/// `next(Λ)`.
 fn carried(spec: &Spec, letters: &Letters, algebra: &Algebra, a: &Advected) -> AdvectionRule {
     let s = &letters.symbols;
     let others = expr::letters(&a.update).iter().any(|l| {

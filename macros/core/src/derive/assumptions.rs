@@ -1,5 +1,5 @@
-//! The equations among the assumptions of a model, as far as proofs may use them. Takes a checked
-//! model; gives expressions that vanish for every admitted choice of the parameters.
+//! The equations among a model's assumptions that proofs may use. Takes a checked model; gives expressions that
+//! vanish for every admitted choice of parameters.
 
 use crate::algebra::assumed;
 use crate::check::spec::Spec;
@@ -7,7 +7,7 @@ use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
 use crate::syntax::ast::Comparison;
 
-/// Left sides minus right sides. Equations that exact points cannot satisfy are left out: a result without an
+/// Left sides minus right sides. Equations that exact points cannot satisfy are omitted; a result without an
 /// assumption also holds with it.
 pub(crate) fn equations(spec: &Spec, symbols: &Symbols) -> Vec<Expr> {
     let mut out: Vec<Expr> = Vec::new();

@@ -1,7 +1,7 @@
-//! Axial vectors of a velocity as letters of their own. When both ends of an edge are turned alike, the velocity
-//! and its axis turn too: the change of `vee(O)` is a cross product of three numbers, whereas the change of the
-//! whole matrix has eighteen. Takes a number and how everything changes; gives the same covector written by cross
-//! products.
+//! Axial vectors of a velocity as letters of their own. If both ends of an edge are rotated together, the velocity
+//! and its axis rotate too: the change of `vee(O)` is a cross product with three components, whereas the change of
+//! the whole matrix has eighteen terms. Takes a scalar and the changes of all letters; gives the same covector in
+//! cross products.
 
 use super::variation::at;
 use crate::algebra::Algebra;
@@ -12,12 +12,12 @@ use crate::expr::{self, Expr, Letter, Shift};
 
 const VECTOR: Shape = Shape::vector(Dim::Fixed(3));
 
-/// How everything on an edge changes when its ends are turned alike, with letters for the axial
-/// vectors of one velocity.
+/// The changes of all letters on an edge if its ends are rotated together, with letters for the axial vectors of one
+/// velocity.
 pub(super) struct Axial {
     symbols: Symbols,
     velocity: Letter,
-    /// The turn, a vector.
+    /// The rotation, a vector.
     turn: Letter,
     /// Axial vectors of the velocity, and the letters that replace them.
     parts: Vec<(Expr, Letter)>,
@@ -25,7 +25,7 @@ pub(super) struct Axial {
 }
 
 impl Axial {
-    /// `along` is how everything changes with the variation `xi` of the configuration. `None` for groups whose
+    /// `along` gives the changes of all letters for the variation `xi` of the configuration. `None` for groups whose
     /// velocities have no axial vector.
     pub(super) fn of(
         symbols: &Symbols,
@@ -50,7 +50,7 @@ impl Axial {
         };
         let turn = fresh("t");
         let parts: Vec<(Expr, Letter)> = parts.into_iter().map(|a| (a, fresh("a"))).collect();
-        // The turn as a vector, wherever the variation is its matrix.
+        // The rotation as a vector, wherever the variation occurs as its matrix.
         let here = |l: Letter| expr::here(&symbols, l.symbol);
         let as_vector = match c.group.coordinates() {
             Some(_) => here(turn),
@@ -87,8 +87,8 @@ impl Axial {
         })
     }
 
-    /// The derivative of a number along the turn, as a covector. `None` if the velocity occurs in it other than by its
-    /// axial vectors.
+    /// The derivative of a scalar along the rotation, as a covector. `None` if the scalar contains the velocity other
+    /// than through its axial vectors.
     pub(super) fn covector(&self, e: &Expr) -> Option<Expr> {
         let s = &self.symbols;
         let written = self.written(e);

@@ -1,6 +1,6 @@
-//! The discrete Euler-Lagrange balance at node k: what the two adjacent edges contribute to the
-//! variation of the action, split by source (the velocity, quantities at the node), each as an
-//! element of the dual of the Lie algebra.
+//! The discrete Euler-Lagrange balance at node k: the contributions of the two adjacent edges to the variation of the
+//! action, split by source (the velocity, and quantities at the node), each as an element of the dual of the Lie
+//! algebra.
 
 use super::Letters;
 use super::action::Action;
@@ -13,35 +13,35 @@ use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 
-/// The balance of one configuration. Every part is a covector of the Lie algebra in the form of
-/// [`crate::groups`]: a vector for SO(3) and SU(2), a skew matrix for SO(n), a matrix for GL(n), an angular
-/// and a linear vector on top of each other for SE(3).
+/// The balance of one configuration. Every part is a covector of the Lie algebra in the form of [`crate::groups`]: a
+/// vector for SO(3) and SU(2), a skew matrix for SO(n), a matrix for GL(n), an angular vector stacked on a linear one
+/// for SE(3).
 #[derive(Clone, Debug)]
 pub struct Balance {
     /// Gradient of the action of the outgoing edge with respect to its velocity.
     pub gradient: Expr,
-    /// The velocity's part of the outgoing edge: `R`, with a plus sign in the node momentum.
+    /// The contribution of the velocity to the outgoing edge: `R`, with a plus sign in the node momentum.
     pub edge_out: Expr,
     /// The contribution of quantities at node k to the outgoing edge: the node momentum is `edge_out + node_out`.
     pub node_out: Expr,
-    /// The velocity's part of the incoming edge, written at the outgoing edge of node k-1 shifted
-    /// to start at k: the transported `R`.
+    /// The contribution of the velocity to the incoming edge, written on the outgoing edge of node k-1 shifted to
+    /// start at k: the transported `R`.
     pub edge_in: Expr,
     /// The contribution of quantities at the end of the edge, written on the edge that starts at k (so that they are
     /// evaluated at k+1): the momentum at k+1 is `edge_in + node_in`.
     pub node_in: Expr,
-    /// The node momentum by the outgoing edge: `edge_out + node_out`, in its shortest form.
+    /// The node momentum on the outgoing edge: `edge_out + node_out`, in its shortest form.
     pub outgoing: Expr,
     /// The node momentum at the end of the edge: `edge_in + node_in`, in its shortest form.
     pub incoming: Expr,
     /// On the spatial side: the increment of the momentum in the step, if it is free of velocities (zero if the
-    /// momentum is conserved). Adding it keeps rounding out of conserved quantities.
+    /// momentum is conserved). Adding the increment protects conserved quantities from rounding errors.
     pub increment: Option<Expr>,
     /// For each advected quantity: gradient of the outgoing edge at its start and at its end.
     pub advected_gradients: Vec<(Expr, Expr)>,
-    /// The variation of the action as a number linear in `ξ`: outgoing edge of node k.
+    /// The variation of the action of the outgoing edge of node k, a scalar linear in `ξ`.
     pub variation_out: Expr,
-    /// The same for the incoming edge of node k.
+    /// The variation of the action of the incoming edge of node k.
     pub variation_in: Expr,
 }
 
@@ -79,7 +79,7 @@ fn balance(
     };
     let edge_out = dual(expr::neg(pairing(letters, &gradient, &v.outgoing.1)));
     let edge_in = dual(pairing(letters, &gradient, &velocity_next));
-    // Quantities at a node: short forms come from the algebra.
+    // Quantities at a node: the algebra gives short forms.
     let nodes_of = |l: &Expr, shift: Shift| {
         let mut terms = Vec::new();
         for (letter, change) in v.advected.iter().chain([&v.element]) {
@@ -163,15 +163,15 @@ fn balance(
     }
 }
 
-/// Rounding of a momentum that is linear in the velocity: a rounded matrix, divided by the step.
+/// The order of rounding of a momentum that is linear in the velocity: a rounded matrix, divided by the step size.
 const LINEAR: f64 = -1.0;
 
-/// Largest momentum of which two forms are compared.
+/// The largest momentum of which two forms are compared.
 const LARGEST: u32 = 2_000;
 
-/// The short form of a momentum, or the derived form if that rounds less for small steps: powers of `vee(Ω)` stay
-/// products of small numbers in it. The short form is kept if it rounds no more than a momentum that is linear in
-/// the velocity, unless the derived form does not round at all for small steps.
+/// The short form of a momentum, or the derived form if its rounding error is smaller for small steps: powers of
+/// `vee(Ω)` stay products of small numbers in it. The short form is used if its rounding error is at most that of a
+/// momentum linear in the velocity, unless the derived form has none at all for small steps.
 fn rounded_least(spec: &Spec, algebra: &Algebra, short: Expr, derived: &dyn Fn() -> Expr) -> Expr {
     let symbols = algebra.symbols();
     if short.size() > LARGEST || !expr::contains_role(symbols, &short, Role::Velocity) {
@@ -194,7 +194,7 @@ fn rounded_least(spec: &Spec, algebra: &Algebra, short: Expr, derived: &dyn Fn()
     }
 }
 
-/// Everything at the end of the edge written by its start and the velocities.
+/// Expresses quantities at the end of the edge by its start and the velocities.
 fn forward(spec: &Spec, s: &Symbols, e: &Expr) -> Expr {
     let groups = spec.configurations.iter().map(|c| (c.element, &c.update));
     let advected = spec.advected.iter().map(|a| (a.quantity, &a.update));
@@ -218,7 +218,7 @@ fn increment(
     let difference = expr::sub(incoming.clone(), outgoing.clone());
     let axial = difference.shape() == Shape::vector(Dim::Fixed(3));
     let reduced = if axial && c.group.only_turns() {
-        // Axial vectors cancel as skew matrices.
+        // Axial vectors cancel in the form of skew matrices.
         expr::vee(algebra.raise(&algebra.lower(&expr::hat(difference))))
     } else {
         algebra.raise(&algebra.lower(&difference))
@@ -239,9 +239,9 @@ pub fn pairing(letters: &Letters, a: &Expr, b: &Expr) -> Expr {
     }
 }
 
-/// The expression without terms that contribute nothing, such as the axial vector of `S S^-1`.
+/// The expression without terms that vanish, such as the axial vector of `S S^-1`.
 fn without_zeros(algebra: &Algebra, mut e: Expr) -> Expr {
-    // A larger residual is left as it is: the search costs the square of its size.
+    // A larger residual is unchanged: the cost of the search is quadratic in its size.
     while e.size() < 1_000 {
         let idle = expr::changes(algebra.symbols(), &e)
             .into_iter()
@@ -255,18 +255,18 @@ fn without_zeros(algebra: &Algebra, mut e: Expr) -> Expr {
     e
 }
 
-/// Whether the letters are some of those, and not all.
+/// Whether the letters of `a` are a proper subset of the letters of `b`.
 fn has_fewer_letters(a: &Expr, b: &Expr) -> bool {
     let (some, all) = (expr::letters(a), expr::letters(b));
     some.len() < all.len() && some.iter().all(|l| all.contains(l))
 }
 
-/// The reduced form of the algebra if it is smaller than the expression itself, or free of a letter
-/// that cancels: `V V^T` of a rotation, where no velocity is known. Not where places far from the
-/// origin would round more in it.
+/// The reduced form of the algebra, if it is smaller than the expression or free of a letter that cancels: `V V^T` of
+/// a rotation, if no velocity is known. The expression is unchanged if the reduced form has larger rounding errors
+/// for positions far from the origin.
 pub fn shorter(algebra: &Algebra, e: Expr) -> Expr {
     if let (Some(rows), false) = (expr::rows_in_parts(&e), e.is_zero()) {
-        // The angular and the linear part, each by itself.
+        // The angular and the linear part separately.
         let [angular, linear] = rows.map(|(at, count)| {
             let part = expr::rows_of(algebra.symbols(), &e, at, count);
             cancellation::least(algebra, algebra.shortest(&part), &part)

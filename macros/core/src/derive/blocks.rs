@@ -17,11 +17,11 @@ use crate::expr::{self, Expr, Shift};
 /// Configurations whose velocities are solved together.
 #[derive(Clone, Debug)]
 pub struct Block {
-    /// Which ones, in the order of the model.
+    /// Its configurations, in the order of the model.
     pub members: Vec<usize>,
-    /// How: a left factor, Davenport's eigenvalue problem, a linear balance or Newton.
+    /// The method: a left factor, Davenport's eigenvalue problem, a linear balance or Newton.
     pub method: Method,
-    /// Why so, in one clause.
+    /// The reason for the method, in one clause.
     pub reason: String,
     /// The constraints whose multipliers are solved with it.
     pub holds: Vec<usize>,
@@ -113,14 +113,13 @@ pub fn blocks(
         .collect()
 }
 
-/// How velocities are found with multipliers.
+/// How velocities are solved together with multipliers.
 pub(super) const HELD: &str = "velocities and multipliers together, so that the constraints hold at the end of the step: Newton on the derived residuals";
 
 /// Why Newton's method solves a linear system.
 const ONE_SYSTEM: &str = "one linear system, which the first correction of Newton's method solves";
 
-/// Whether the balances of these configurations are linear in their velocities, all taken together:
-/// on GL(n) and of fields.
+/// Whether the balances of these configurations are linear in all their velocities together; on GL(n) and for fields.
 fn linear_together(
     spec: &Spec,
     letters: &Letters,
@@ -185,7 +184,7 @@ fn block(spec: &Spec, letters: &Letters, riccati: &[StepEquation], members: Vec<
     }
 }
 
-/// The text before the description of how a linear balance is solved.
+/// The text before the description of the solution of a linear balance.
 const LINEAR: &str = "the balance is linear: ";
 
 /// How a linear balance is solved.
@@ -199,7 +198,7 @@ fn linear(form: &TwoSidedLinear) -> String {
     format!("{LINEAR}{what}")
 }
 
-/// The methods of all blocks in one sentence, equal ones together.
+/// The methods of all blocks in one sentence, with equal ones combined.
 pub fn reasons(letters: &Letters, spec: &Spec, blocks: &[Block]) -> String {
     if let [only] = blocks {
         return only.reason.clone();
@@ -225,8 +224,8 @@ pub fn reasons(letters: &Letters, spec: &Spec, blocks: &[Block]) -> String {
 }
 
 impl Derivation {
-    /// A block seen as a model of its own, with what belongs to the others known: its configurations, their equations
-    /// and how those are solved. Everything else is copied from the whole model.
+    /// A block as a model of its own, with the other configurations known: its configurations, their equations and
+    /// the method of their solution. All else is copied from the whole model.
     pub fn of_block(&self, b: &Block) -> Derivation {
         fn part<T: Clone>(list: &[T], members: &[usize]) -> Vec<T> {
             let kept = members.iter().filter_map(|i| list.get(*i));

@@ -1,7 +1,6 @@
-//! The Lie-Poisson bracket of the reduced space, from the action that the constraints state:
-//! momenta among themselves by the commutator, `{a, ⟨μ, ξ⟩}` by how `a` moves when the
-//! configuration moves along `ξ`. Takes the variations; gives rows to print and the matrix of the
-//! bracket at any point.
+//! The Lie-Poisson bracket of the reduced space, from the action in the constraints. The bracket of momenta is the
+//! commutator, and `{a, ⟨μ, ξ⟩}` is the change of `a` if the configuration moves along `ξ`. Takes the variations;
+//! gives rows to print and the matrix of the bracket at any point.
 
 use super::Letters;
 use super::action::Action;
@@ -24,55 +23,54 @@ pub struct Row {
     pub value: Expr,
 }
 
-/// How one quantity at a node moves along one configuration.
+/// The change of one quantity at a node along one configuration.
 #[derive(Clone, Debug)]
 pub struct Motion {
-    /// Which configuration.
+    /// The configuration.
     pub configuration: usize,
     /// The change of the quantity, linear in the `ξ` of that configuration.
     pub change: Expr,
-    /// The same in the frame in which [`Coordinates`] are read.
+    /// The change in the frame to which [`Coordinates`] refer.
     local: Expr,
 }
 
-/// A quantity of the bracket that is not a momentum, and how it moves.
+/// A quantity of the bracket that is not a momentum, and its changes.
 #[derive(Clone, Debug)]
 pub struct Moved {
     /// The quantity.
     pub quantity: SymbolId,
-    /// Its motions, configurations that leave it alone left out.
+    /// Its changes, without configurations that do not change it.
     pub motions: Vec<Motion>,
 }
 
-/// The bracket, in the sign with which a body momentum of SO(3) has `{μ_i, μ_j} = -ε_ijk μ_k` and
-/// a spatial one `{m_i, m_j} = ε_ijk m_k`; `{a, μ_j} = E_j·a` is the motion of `a` along `E_j`.
+/// The bracket, in the sign convention in which a body momentum of SO(3) has `{μ_i, μ_j} = -ε_ijk μ_k` and a spatial
+/// one `{m_i, m_j} = ε_ijk m_k`; `{a, μ_j} = E_j·a` is the change of `a` along `E_j`.
 #[derive(Clone, Debug)]
 pub struct Bracket {
     /// For each configuration: `⟨μ, [ξ, η]⟩` with its sign.
     pub momenta: Vec<Expr>,
     /// Advected quantities.
     pub advected: Vec<Moved>,
-    /// Group elements: with them it is the bracket of the phase space.
+    /// Group elements, with which it is the bracket of the phase space.
     pub elements: Vec<Moved>,
     /// The printed rows: momenta, then configurations that occur in the action, then advected quantities.
     pub rows: Vec<Row>,
-    /// Whether the action depends on configurations themselves: this is then the bracket on their phase space.
+    /// Whether the action depends on configurations themselves, so that this is the bracket of their phase space.
     pub holds_elements: bool,
 }
 
-/// Which space a matrix of the bracket is of.
+/// The space of a bracket matrix.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Space {
     /// Momenta and advected quantities.
     Reduced,
-    /// Momenta, group elements, and the advected quantities that are not defined by them.
+    /// Momenta, group elements, and the advected quantities without a definition in group elements.
     Phase,
 }
 
-/// The independent coordinates of one quantity, as entries (row, column). Vectors, numbers and
-/// general matrices: all entries, row by row. Symmetric: on and above the diagonal. Skew: see
-/// [`skew_entries`]. Elements of SO(n): the skew matrix `X^T dX`; quaternions
-/// and rigid motions: the element `X^-1 dX` of the Lie algebra.
+/// The independent coordinates of one quantity, as entries (row, column). Vectors, scalars and general matrices: all
+/// entries, row by row. Symmetric: on and above the diagonal. Skew: see [`skew_entries`]. Elements of SO(n): the skew
+/// matrix `X^T dX`; quaternions and rigid motions: the element `X^-1 dX` of the Lie algebra.
 pub type Coordinates = Vec<(usize, usize)>;
 
 pub use crate::groups::Element;
@@ -181,8 +179,8 @@ pub fn bracket(
     }
 }
 
-/// The entries that determine a skew matrix: for three dimensions the entries of the axial vector in order, (2,1),
-/// (0,2), (1,0); else (j, i) for `i < j`, row by row.
+/// The entries that determine a skew matrix. In three dimensions these are the entries of the axial vector in order,
+/// (2,1), (0,2), (1,0); otherwise (j, i) for `i < j`, row by row.
 pub fn skew_entries(n: usize) -> Coordinates {
     if n == 3 {
         return vec![(2, 1), (0, 2), (1, 0)];
@@ -199,7 +197,7 @@ pub fn coordinates(structure: Structure, rows: usize, cols: usize) -> Coordinate
         Structure::Symmetric => entries.filter(|(i, j)| i <= j).collect(),
         Structure::Diagonal => entries.filter(|(i, j)| i == j).collect(),
         Structure::Skew | Structure::Orthogonal => skew_entries(rows),
-        // X^-1 dX is the left multiplication by a vector, which its first column shows.
+        // X^-1 dX is the left multiplication by a vector, which is part of its first column.
         Structure::UnitQuaternion => vec![(1, 0), (2, 0), (3, 0)],
         Structure::RigidMotion => {
             let last = rows.saturating_sub(1);
@@ -209,17 +207,17 @@ pub fn coordinates(structure: Structure, rows: usize, cols: usize) -> Coordinate
     }
 }
 
-/// The kind of numbers that a matrix of the bracket is computed with.
+/// The numbers in which a bracket matrix is computed.
 pub(crate) trait Numbers {
     /// A number.
     type Number: Copy;
     /// Zero.
     fn zero(&self) -> Self::Number;
-    /// The opposite.
+    /// The negative.
     fn opposite(&self, x: Self::Number) -> Self::Number;
     /// The value of a dimension.
     fn dim(&self, d: Dim) -> usize;
-    /// `tr(g^T e)`, for a gradient row by row with so many columns.
+    /// `tr(g^T e)`, for a gradient stored by rows with `cols` columns.
     fn paired(&self, gradient: &[Self::Number], cols: usize, e: &Element) -> Self::Number;
     /// The entries of an expression, row by row, with basis elements in place of some letters.
     fn entries(&mut self, e: &Expr, with: &[(Letter, &Element)]) -> Option<Vec<Self::Number>>;
@@ -237,8 +235,8 @@ impl Bracket {
         }
     }
 
-    /// The matrix of the bracket, row by row: momenta in order of their configurations, then the
-    /// other quantities of the space.
+    /// The matrix of the bracket, row by row: momenta in the order of their configurations, then the other quantities
+    /// of the space.
     pub(crate) fn assemble<N: Numbers>(
         &self,
         spec: &Spec,
@@ -277,7 +275,7 @@ impl Bracket {
                 at(letters.variation[k], Shift::HERE),
                 at(letters.direction[k], Shift::HERE),
             );
-            // Linear in the second direction: its gradient has the values along the whole basis.
+            // Linear in the second direction, so its gradient has the values along the whole basis.
             let along = expr::gradient(s, &self.momenta[k], eta);
             let cols = numbers.dim(along.shape().cols);
             for (i, e) in own.iter().enumerate() {
@@ -310,7 +308,7 @@ impl Bracket {
     }
 }
 
-/// Plain numbers at a point that an assignment gives.
+/// Numbers at a point given by an assignment.
 struct Plain<'a> {
     symbols: &'a Symbols,
     values: Assignment,
@@ -364,13 +362,13 @@ impl Numbers for Plain<'_> {
 }
 
 impl Derivation {
-    /// The matrix of the bracket at a point: momenta first (by configuration, in the basis
-    /// of [`crate::groups::Record::basis`]), then the quantities of the space in order of declaration, in [`Coordinates`].
-    /// Values are needed for momenta (under their names in [`Letters::node_momentum`]) and for
-    /// the quantities, at level 0.
+    /// The matrix of the bracket at a point: momenta first (by configuration, in the basis of
+    /// [`crate::groups::Record::basis`]), then the quantities of the space in order of declaration, in
+    /// [`Coordinates`]. `values` must contain the momenta (under their names in [`Letters::node_momentum`]) and the
+    /// quantities, at level 0.
     ///
     /// # Errors
-    /// When a value is missing or a dimension has only a name.
+    /// If a value is missing or a dimension is named.
     pub fn bracket_matrix(&self, space: Space, values: &Assignment) -> Result<Matrix, EvalError> {
         if !self.spec.dimensions.is_empty() {
             return Err(EvalError::NamedDimension);

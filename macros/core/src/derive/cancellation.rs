@@ -1,6 +1,6 @@
-//! Estimates rounding far from the origin: `X - Y` of two positions keeps the digits of their distance. Its
-//! expanded square loses all digits that the two positions have in common. Takes expressions; gives the power of
-//! the distance from the origin to which their rounding is proportional.
+//! Estimates rounding errors far from the origin: `X - Y` of two positions preserves the digits of their distance.
+//! Its expanded square loses all digits that the two positions have in common. Takes expressions; gives the power of
+//! the distance from the origin to which their rounding error is proportional.
 
 use crate::algebra::Algebra;
 use crate::algebra::exact::{ATTEMPTS, Point};
@@ -9,19 +9,19 @@ use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Map, Node};
 
-/// Powers of the distance from the origin: one for the value, and one for its rounding in units of `EPSILON`. Exact
-/// values have a rounding of minus infinity.
+/// Powers of the distance from the origin: one for the value, and one for its rounding error in units of `EPSILON`.
+/// The power of an exact value is minus infinity.
 #[derive(Clone, Copy)]
 struct Order {
     size: f64,
     error: f64,
 }
 
-/// Largest part that is looked at for what cancels in it.
+/// The largest part that is searched for cancellation.
 const LARGEST: u32 = 400;
 
-/// The power of the distance from the origin to which the rounding of an expression is proportional. Positions are
-/// far from the origin and near to each other: values of fields, translations of rigid motions, and constants that
+/// The power of the distance from the origin to which the rounding error of an expression is proportional. Positions
+/// are far from the origin and near each other: values of fields, translations of rigid motions, and constants that
 /// are subtracted from these. Zero if no position occurs.
 pub(crate) fn error(algebra: &Algebra, e: &Expr) -> f64 {
     let symbols = algebra.symbols();
@@ -33,7 +33,7 @@ pub(crate) fn error(algebra: &Algebra, e: &Expr) -> f64 {
     Far { symbols, centres }.order(e).error.max(0.0)
 }
 
-/// The preferred of two equal expressions, unless the other rounds less far from the origin.
+/// The preferred of two equal expressions, unless the other has a smaller rounding error far from the origin.
 pub(super) fn nearer(algebra: &Algebra, preferred: Expr, other: Expr) -> Expr {
     match error(algebra, &other) < error(algebra, &preferred) {
         true => other,
@@ -41,8 +41,8 @@ pub(super) fn nearer(algebra: &Algebra, preferred: Expr, other: Expr) -> Expr {
     }
 }
 
-/// The reduced form of an expression, unless positions far from the origin round more in it. Otherwise the form that is
-/// reduced with differences of positions kept as they are, or the expression itself.
+/// The reduced form of an expression, unless its rounding error is larger far from the origin. Otherwise the form
+/// reduced with differences of positions unchanged, or the expression itself.
 pub(super) fn least(algebra: &Algebra, reduced: Expr, e: &Expr) -> Expr {
     let expanded = error(algebra, &reduced);
     if expanded == 0.0 {
@@ -64,7 +64,7 @@ fn between(algebra: &Algebra, e: &Expr) -> Option<Expr> {
     (!inner.exhausted()).then_some(whole)
 }
 
-/// Whether it is a value of a field or a rigid motion.
+/// Whether it is a field or a rigid motion.
 fn is_place(s: &Symbols, l: &Letter) -> bool {
     let symbol = s.get(l.symbol);
     let kinds = [Structure::General, Structure::RigidMotion];
@@ -137,7 +137,7 @@ impl Far<'_> {
                 size: 0.0,
                 error: self.order(a).error.max(0.0),
             },
-            // Nothing is known of it but that what it is made from is rounded.
+            // Only the rounding of its arguments is known.
             Node::Given(_) | Node::PullBack(..) => Order {
                 size: 0.0,
                 error: {
@@ -148,10 +148,10 @@ impl Far<'_> {
         }
     }
 
-    /// The power of the value; zero if the value stays the same when all positions are translated.
+    /// The power of the value; zero if the value is invariant under translation of all positions.
     fn size(&self, e: &Expr, largest: f64) -> f64 {
-        // A weighted sum stays the same if its positions move together, not if each position of a shape moves by the
-        // same amount.
+        // A weighted sum is invariant if its positions move together, but not if each position of a shape moves by
+        // the same amount.
         let weighted = match e.node() {
             Node::Sum(terms) => position_differences::are_weighted(self.symbols, e, terms),
             _ => false,
@@ -164,8 +164,7 @@ impl Far<'_> {
         is_place(self.symbols, l) || self.centres.contains(l)
     }
 
-    /// Whether the expression stays the same if all positions are translated. Positions of each shape are translated
-    /// separately.
+    /// Whether the expression is invariant under translations. Positions of each shape are translated separately.
     fn stays(&self, e: &Expr) -> bool {
         let letters = expr::letters(e);
         let far: Vec<Letter> = letters.into_iter().filter(|l| self.is_far(l)).collect();
@@ -186,7 +185,7 @@ impl Far<'_> {
         })
     }
 
-    /// Whether it is zero at random points, which cost less than a normal form: this is reliable enough, because only
+    /// Whether it is zero at random points, which cost less than a normal form. This is reliable enough, because only
     /// the choice between equal forms depends on it.
     fn vanishes(&self, e: &Expr) -> bool {
         let values = (0..ATTEMPTS).filter_map(|attempt| Point::new(self.symbols, attempt).value(e));
@@ -194,7 +193,7 @@ impl Far<'_> {
         two.peek().is_some() && two.all(|value| value.vanishes())
     }
 
-    /// A movement of a place, in a direction that no axis has.
+    /// A displacement of a position, in a direction different from every axis.
     fn shift(&self, l: &Letter) -> Expr {
         let symbol = self.symbols.get(l.symbol);
         let generic = |n: Dim| {
@@ -257,7 +256,7 @@ mod tests {
         derive_source(&text).unwrap_or_else(|e| panic!("{text}: {e:?}"))
     }
 
-    /// Powers of the distance from the origin that forces are rounded to.
+    /// For each force, the power of the distance from the origin to which its rounding error is proportional.
     fn roundings(d: &Derivation) -> Vec<f64> {
         let algebra = Algebra::new(&d.letters.symbols);
         let parts = d
@@ -291,7 +290,8 @@ mod tests {
             let found = roundings(&derived(&body));
             assert!(found.iter().all(|power| *power == 0.0), "{found:?} {body}");
         }
-        // With weights, along axes and by components: a product with a weight is itself rounded as the distance.
+        // With weights, along axes and by components: the rounding error of a product with a weight grows with the
+        // distance.
         for body in [
             format!(
                 "field x: Real; field X: Vec<2>; let w = X - x*E1; \
@@ -308,7 +308,7 @@ mod tests {
             let found = roundings(&derived(&body));
             assert!(found.iter().all(|power| *power <= 1.0), "{found:?} {body}");
         }
-        // A force about the origin is rounded as its distance.
+        // The rounding error of a force about the origin grows with the distance.
         let about = format!("field X: Vec<3>; lagrangian = {x} - h*k*dot(X, X)^2;");
         let found = roundings(&derived(&about));
         assert!(found.iter().any(|power| *power >= 3.0), "{found:?}");

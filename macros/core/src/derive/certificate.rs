@@ -1,7 +1,7 @@
-//! The certificate: a proof by normal form that the balance is a combination of the Clebsch
-//! relations, with the variations as coefficients, so that no multiplier is left; and that the
-//! named (momentum map) form is the balance. Its steps are small identities that a second prover
-//! can check on its own. A model whose certificate fails does not compile.
+//! The certificate: a proof by normal form that the balance is a combination of the Clebsch relations with the
+//! variations as coefficients, in which all multipliers cancel. It also proves that the named form (with momentum
+//! maps) is the balance. Its steps are small identities that a second prover can check. A model whose certificate
+//! fails does not compile.
 
 #[cfg(test)]
 mod tests;
@@ -40,7 +40,7 @@ pub struct Inputs<'a> {
     pub algebra: &'a Algebra<'a>,
 }
 
-/// One identity of the proof, between numbers.
+/// One identity of the proof, between scalars.
 #[derive(Clone, Debug)]
 pub struct Step {
     /// A description of the identity.
@@ -56,12 +56,12 @@ pub struct Step {
 /// A finished proof.
 #[derive(Clone, Debug)]
 pub struct Certificate {
-    /// The identities, each of them decided.
+    /// The identities, each with its decision.
     pub steps: Vec<Step>,
 }
 
 impl Certificate {
-    /// How many identities, and how they were proved.
+    /// The number of identities, and how they were proved.
     pub fn summary(&self) -> String {
         let exact = self
             .steps
@@ -119,7 +119,7 @@ pub fn certify(x: &Inputs) -> Result<Certificate, Errors> {
     Ok(Certificate { steps })
 }
 
-/// Replacements at the node before: the same for every step of the proof.
+/// Replacements at the previous node, which are the same for every step of the proof.
 struct Back {
     shell: Vec<(Letter, Expr)>,
     elements: Vec<(Letter, Expr)>,
@@ -129,8 +129,8 @@ fn name_of(x: &Inputs, l: Letter) -> String {
     x.letters.symbols.get(l.symbol).name.clone()
 }
 
-/// The variations preserve every constraint: on the outgoing edge as they are, on the incoming edge with node k
-/// written by node k-1. A constraint in which nothing varies is trivial.
+/// The variations preserve every constraint: directly on the outgoing edge; on the incoming edge, with node k
+/// expressed by node k-1. A constraint in which nothing varies is trivial.
 fn constraint_steps(x: &Inputs, i: usize, earlier: &Back, steps: &mut Vec<Step>) {
     let s = &x.letters.symbols;
     let v = &x.variations[i];
@@ -205,9 +205,9 @@ fn gradient_steps(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
     }
 }
 
-/// `Σ ⟨E_v, δv⟩ = δS`: the balance is a combination of the Clebsch relations. They are affine in
-/// the multipliers, so the sum falls into one block for the action and one for each multiplier,
-/// which must cancel by itself.
+/// `Σ ⟨E_v, δv⟩ = δS`: the balance is a combination of the Clebsch relations. The relations are affine in the
+/// multipliers, so the sum splits into one block for the action and one for each multiplier, and each block must
+/// cancel separately.
 fn combination(x: &Inputs, i: usize, back: &Back, steps: &mut Vec<Step>) {
     let s = &x.letters.symbols;
     // The relations follow from the constrained action: the sum of the action and these terms.
@@ -263,11 +263,11 @@ struct Met<'a> {
     relation: &'a Relation,
     /// The change of its variable.
     here: Option<Expr>,
-    /// That of the velocity of the incoming edge, which has its relation one level earlier.
+    /// The change of the velocity of the incoming edge, whose relation is one level earlier.
     incoming: Option<&'a Expr>,
 }
 
-/// The relations that the variation of one configuration meets.
+/// The relations whose variables the variation of one configuration changes.
 fn met<'a>(x: &Inputs<'a>, i: usize) -> Vec<Met<'a>> {
     let v = &x.variations[i];
     let changes: BTreeMap<Letter, Expr> = v
@@ -284,7 +284,7 @@ fn met<'a>(x: &Inputs<'a>, i: usize) -> Vec<Met<'a>> {
         .collect()
 }
 
-/// The relations paired with the variations, `part` of each gradient taken.
+/// The relations paired with the variations; `part` is applied to each gradient.
 fn combined(x: &Inputs, met: &[Met], part: &dyn Fn(&Expr) -> Expr) -> Expr {
     let s = &x.letters.symbols;
     let mut terms = Vec::new();
@@ -319,7 +319,7 @@ fn with_multiplier(x: &Inputs, e: &Expr, kept: Option<SymbolId>) -> Expr {
     expr::substitute(s, e, &nothing)
 }
 
-/// `a - b`, without the summands that are the same on both sides.
+/// `a - b`, without equal summands on both sides.
 fn difference(a: Expr, b: Expr) -> Expr {
     let shape = a.shape();
     let terms = |e: Expr| match e.node() {
@@ -353,7 +353,7 @@ fn named_form(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
     let mut at_node = v.advected.clone();
     at_node.push(v.element.clone());
     let name = &s.get(c.element).name;
-    // One block for each source, so that each stays small.
+    // One block per source, so that each block is small.
     let mut block = |what: &str, left: Expr, right: Expr| {
         if !left.is_zero() || !right.is_zero() {
             steps.push(Step {
@@ -384,7 +384,7 @@ fn named_form(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
         node(back(&b.node_in)),
         expr::directional(s, &before, &at_node),
     );
-    // The residual contains the node terms unchanged: the rest is the momentum map.
+    // The residual contains the node terms unchanged; the remainder is the momentum map.
     block(
         "emitted residual, outgoing edge,",
         node(difference(b.outgoing.clone(), b.node_out.clone())),

@@ -1,7 +1,6 @@
-//! The Clebsch relations: stationarity of the constrained action
-//! `ℓ + ½<P', Λ' - ΛΩ> + <V', a' - f(a, Ω)>` in every variable, multipliers kept, as the thesis
-//! writes them (2.57-2.62, 2.77, 2.144-2.148). The weight ½ belongs to SO(n), as in (2.75); for
-//! GL(n) it is 1, as in (3.25).
+//! The Clebsch relations: stationarity of the constrained action `ℓ + ½<P', Λ' - ΛΩ> + <V', a' - f(a, Ω)>` in every
+//! variable, including the multipliers' terms, as in the thesis (2.57-2.62, 2.77, 2.144-2.148). The weight ½ is for
+//! SO(n), as in (2.75); for GL(n) it is 1, as in (3.25).
 
 use super::Letters;
 use super::action::Action;
@@ -20,8 +19,8 @@ pub struct Relation {
     pub variable: Letter,
     /// The gradient of the Clebsch action with respect to it.
     pub gradient: Expr,
-    /// For a velocity of a group within the matrices: the relation holds up to `Θ Ω^-T` with `Θ`
-    /// normal to the Lie algebra (symmetric for SO(n)), the multiplier of the group itself.
+    /// For a velocity of a group of matrices: the relation holds up to `Θ Ω^-T` with `Θ` normal to the Lie algebra
+    /// (symmetric for SO(n)), which is the multiplier of the group constraint.
     pub up_to_group_multiplier: bool,
 }
 
@@ -56,7 +55,7 @@ pub fn relations(
         Shape::SCALAR,
     );
     let before = expr::shift_time(s, &edge, Shift::PREVIOUS.time);
-    // A gradient has the structure of its variable: symmetric for a symmetric one.
+    // A gradient has the structure of its variable: the gradient with respect to a symmetric variable is symmetric.
     let own = |e: &Expr, variable: Letter| {
         let g = expr::gradient(s, e, variable);
         expr::projected(s, s.get(variable.symbol).structure, &g)

@@ -62,7 +62,7 @@ pub fn continuous(
     let along = |e: &Expr| expr::substitute(s, e, &to_rates);
     let short = |e: Expr| shorter(algebra, expr::collect(s, &e));
     let lagrangian = expr::collect(s, &along(&limit.lagrangian));
-    // Every quantity moves along all velocities at once, as it varies along all variations.
+    // Every quantity changes along all velocities together, as it varies along all variations.
     let rates: Vec<Expr> = spec
         .advected
         .iter()
@@ -124,7 +124,7 @@ pub fn continuous(
     out
 }
 
-/// Axial vectors of outer products written as vector products, if no other axial vectors remain.
+/// Axial vectors of outer products as vector products, if no other axial vectors remain.
 fn without_axial_vectors(algebra: &Algebra, e: Expr) -> Expr {
     fn has(e: &Expr) -> bool {
         matches!(e.node(), Node::Vee(_)) || e.children().into_iter().any(has)
@@ -136,7 +136,7 @@ fn without_axial_vectors(algebra: &Algebra, e: Expr) -> Expr {
     if has(&open) { e } else { open }
 }
 
-/// `Σ ∂L/∂x ◇ x` over everything that moves with this configuration.
+/// `Σ ∂L/∂x ◇ x` over all quantities that move with this configuration.
 fn forces(
     letters: &Letters,
     c: &Configuration,

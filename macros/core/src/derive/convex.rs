@@ -1,7 +1,6 @@
-//! Fields whose discrete Lagrangian is convex in their velocities: the velocity of a step is then the minimiser of
-//! a strictly convex function, so that a root of its balance is the only one. Takes the terms of the edge and the
-//! fields that are solved together; gives the coefficients whose signs decide, or nothing if the terms are not of
-//! this kind.
+//! Fields whose discrete Lagrangian is convex in their velocities. The velocity of a step then minimizes a strictly
+//! convex function, so the root of its balance is unique. Takes the terms of the edge and the fields that are solved
+//! together; gives the coefficients whose signs decide, or None if the terms are not of this kind.
 
 use super::action::{Action, summands};
 use super::variation::at;
@@ -15,9 +14,9 @@ use crate::expr::{self, Expr, Function, Letter, Node, Shift};
 /// convex for `h`, it is concave for `-h`, and its root is unique in both cases.
 #[derive(Clone, Debug)]
 pub struct Convexity {
-    /// Must be positive: coefficients of the squares of the velocities, one for each field.
+    /// Coefficients that must be positive: one per field, of the square of its velocity.
     pub positive: Vec<Expr>,
-    /// Must not be negative: coefficients of other convex functions.
+    /// Coefficients that must not be negative: coefficients of other convex functions.
     pub not_negative: Vec<Expr>,
 }
 
@@ -28,10 +27,10 @@ impl Convexity {
     }
 }
 
-/// Why the fields have one root only, if they do. All configurations of the model are solved together:
-/// of a block, it is that block as a model of its own.
+/// The conditions under which the fields have a unique root, if there are such conditions. All configurations of the
+/// model are solved together; a block is passed as a model of its own.
 pub fn convexity(spec: &Spec, s: &Symbols, action: &Action) -> Option<Convexity> {
-    // With multipliers among the unknowns it is stationary, not least.
+    // With multipliers among the unknowns, the solution is a stationary point and not a minimum.
     if !spec.has_only_fields() || !spec.holds.is_empty() {
         return None;
     }
@@ -51,7 +50,7 @@ pub fn convexity(spec: &Spec, s: &Symbols, action: &Action) -> Option<Convexity>
     let mut squares: Vec<Option<Expr>> = vec![None; places.len()];
     let mut not_negative = Vec::new();
     for term in summands(s, &edge).iter().filter(|t| terms.moves(t)) {
-        // A term that contains both fields and velocities affects both, so that no convexity is claimed.
+        // A term that contains both fields and velocities affects both, so no convexity is reported.
         if places.iter().any(|x| expr::contains(term, *x)) {
             return None;
         }
@@ -80,7 +79,7 @@ pub fn convexity(spec: &Spec, s: &Symbols, action: &Action) -> Option<Convexity>
     known.then_some(found)
 }
 
-/// A number of the same sign, without what decides nothing: a positive factor, an even power of the step.
+/// A scalar of the same sign, without positive factors and even powers of the step size.
 fn of_its_sign(algebra: &Algebra, weight: Expr, step: Letter) -> Expr {
     let mut lowered = algebra.lower(&weight);
     if let [(term, coefficient)] = lowered.terms.iter().collect::<Vec<_>>().as_slice() {
@@ -97,7 +96,7 @@ fn of_its_sign(algebra: &Algebra, weight: Expr, step: Letter) -> Expr {
     algebra.raise(&lowered)
 }
 
-/// The velocities in which terms are looked at.
+/// The velocities as variables of the terms.
 struct Terms<'a> {
     s: &'a Symbols,
     algebra: &'a Algebra<'a>,
@@ -110,7 +109,7 @@ impl Terms<'_> {
         self.velocities.iter().any(|w| expr::contains(e, *w))
     }
 
-    /// Whether the expression is of first degree in the velocities, by its form.
+    /// Whether the form of the expression shows that it is affine in the velocities.
     fn is_affine(&self, e: &Expr) -> bool {
         if !self.moves(e) {
             return true;
@@ -134,7 +133,7 @@ impl Terms<'_> {
         }
     }
 
-    /// Factors a number into a weight free of the velocities and a part that contains them.
+    /// Factors a scalar into a weight free of the velocities and a part that contains them.
     fn weighted(&self, e: &Expr) -> Option<(Expr, Expr)> {
         Some(match e.node() {
             Node::Neg(a) => {
@@ -162,7 +161,7 @@ impl Terms<'_> {
         })
     }
 
-    /// The vector whose square a number is, as the sum of the squares of its entries.
+    /// The vector whose squared length is a scalar, as the sum of the squares of its entries.
     fn root(&self, e: &Expr) -> Option<Expr> {
         match e.node() {
             Node::Dot(a, b) if a == b => Some(a.clone()),
@@ -178,7 +177,7 @@ impl Terms<'_> {
         }
     }
 
-    /// The velocity whose squared length this number is.
+    /// The velocity whose squared length is this scalar.
     fn square_of(&self, e: &Expr) -> Option<usize> {
         let root = self.root(e)?;
         let letter = match root.node() {
@@ -192,7 +191,7 @@ impl Terms<'_> {
         self.velocities.iter().position(|w| *w == letter)
     }
 
-    /// Whether a number is convex in the velocities and nowhere negative.
+    /// Whether a scalar is convex in the velocities and nowhere negative.
     fn is_convex(&self, e: &Expr) -> bool {
         if self.root(e).is_some_and(|a| self.is_affine(&a)) {
             return true;
@@ -202,7 +201,7 @@ impl Terms<'_> {
             return positive == expr::integer(1) && self.is_convex(&core);
         }
         match e.node() {
-            // Increasing and convex where what is raised is not negative.
+            // Increasing and convex if the base is not negative.
             Node::Power(a, q) if *q >= Rational::ONE => {
                 self.is_convex(a)
                     || (q.as_integer().is_some_and(|n| n % 2 == 0) && self.is_affine(a))

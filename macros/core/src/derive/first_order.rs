@@ -1,5 +1,5 @@
-//! Lagrangians of first order, linear in all velocities, such as point vortices and guiding centres. Takes a limit
-//! without kinetic energy; says whether its equations of motion determine the velocities all the same.
+//! Lagrangians of first order, which are linear in all velocities, as for point vortices and guiding centres. Takes a
+//! limit without kinetic energy; decides whether its equations of motion still determine the velocities.
 
 use super::action::summands;
 use super::kinetic;
@@ -11,11 +11,11 @@ use crate::check::spec::Spec;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
 
-/// Largest expression that is differentiated.
+/// The size of the largest expression that is differentiated.
 const LARGEST: u32 = 20_000;
 
 /// Whether the Lagrangian is linear in the velocities of fields, `θ(q)·v - V(q)`, and the two-form `dθ` is regular
-/// for general parameters. No term may be of second order in the increments alone, such as a kinetic term without
+/// for general parameters. No term may be of second order in the increments only, such as a kinetic term without
 /// `/h`.
 pub(super) fn is_first_order(
     spec: &Spec,
@@ -41,7 +41,7 @@ pub(super) fn is_first_order(
             .any(|term| is_of_second_order(spec, letters, term, equations))
 }
 
-/// The gradients of `dθ(ξ, ·)` by each velocity, in the letters of variation.
+/// The gradients of `dθ(ξ, ·)` with respect to each velocity, in the letters of variation.
 fn two_form(spec: &Spec, letters: &Letters, linear: &Expr) -> Vec<Expr> {
     let s = &letters.symbols;
     let here = |id| at(id, Shift::HERE);
@@ -63,7 +63,8 @@ fn two_form(spec: &Spec, letters: &Letters, linear: &Expr) -> Vec<Expr> {
         .collect()
 }
 
-/// Whether a term and its derivative by the increments vanish where nothing moves, and the term does not.
+/// Whether a term and its derivative with respect to the increments vanish at zero velocity, although the term does
+/// not.
 fn is_of_second_order(spec: &Spec, letters: &Letters, term: &Expr, equations: &[Expr]) -> bool {
     let s = &letters.symbols;
     let term = expr::substitute(s, term, &spec.end_of_edge());

@@ -1,5 +1,5 @@
-//! Models with functionals, made by hand: a parameter of a Lagrangian is replaced by a functional, and every result
-//! is compared with the model in which the functional is written out.
+//! Models with functionals, built for tests: a functional replaces a parameter of a Lagrangian, and every result is
+//! compared with the model in which the functional is written out.
 
 use super::warnings::Topic;
 use super::{Derivation, derive};
@@ -141,7 +141,7 @@ fn functionals_of_functionals_keep_the_chain_rule() {
         expr::shift_time(&s, &own.lagrangian, -1),
     );
     let residual = residuals(&derived(own), &values);
-    // The derivative of the action of two steps as the node between them moves: difference quotients.
+    // The derivative of the action of two steps with respect to the node between them, by difference quotients.
     for (i, residual) in residual.into_iter().enumerate() {
         let moved = |by: f64| {
             let mut place = [0.25, 0.0, 0.0625];
@@ -168,7 +168,7 @@ fn a_functional_between_nodes_is_solved_by_second_derivatives() {
     });
     let values = values(&sample);
     same(&residuals(&own, &values), &residuals(&open, &values));
-    // Whatever the functional is, the balance is not linear in the velocity.
+    // For any functional, the balance is not linear in the velocity.
     assert_eq!(method(&own), "Newton");
     let tokens = emit::emit(&own, true).to_string().replace(' ', "");
     assert!(tokens.contains("g.pull_back_1("), "{tokens}");
@@ -184,7 +184,7 @@ fn an_argument_with_the_step_is_not_claimed_even() {
     });
     assert!(!own.reversible);
     assert!(own.limit.is_err());
-    // Nor is it called of first order.
+    // There is no warning that the step is of first order either.
     let first = |w: &&super::warnings::Warning| matches!(w.topic, Topic::FirstOrder);
     assert_eq!(own.warnings.iter().filter(first).count(), 0);
 }

@@ -1,7 +1,7 @@
-//! `hold` constraints: the action receives `h <λ, g>` at the start of the edge. The multiplier is an unknown of
-//! that step, and its equation is the constraint at the end of the edge. The solvers treat the multiplier as one
-//! more velocity, of an additive group. Takes the model; gives the reactions, what is solved with them, and which
-//! invariants they leave.
+//! `hold` constraints: `h <λ, g>` at the start of the edge is added to the action. The multiplier is an unknown of
+//! that step, and its equation is the constraint at the end of the edge. The solvers treat the multiplier as the
+//! velocity of an additional additive configuration. Takes the model; gives the constraint forces, the equations of
+//! the multipliers, and the invariants that the constraint forces preserve.
 
 mod solved;
 
@@ -28,7 +28,7 @@ pub struct Held {
     pub element: SymbolId,
     /// A free variation: the multiplier on arrival.
     pub variation: SymbolId,
-    /// A second one.
+    /// A second free variation.
     pub direction: SymbolId,
     /// Letters that every configuration needs.
     others: [SymbolId; 3],
@@ -66,13 +66,13 @@ fn here(symbol: SymbolId) -> Letter {
     at(symbol, Shift::HERE)
 }
 
-/// `<λ, g>` with this letter for the multiplier.
+/// `<λ, g>` with `multiplier` for `λ`.
 fn work(letters: &Letters, hold: &Hold, multiplier: SymbolId) -> Expr {
     let multiplier = expr::here(&letters.symbols, multiplier);
     pairing(letters, &multiplier, &hold.value)
 }
 
-/// The action of a step with the work of the reactions where the edge starts.
+/// The action of a step, with the work of the constraint forces at the start of the edge.
 pub(super) fn with_reactions(spec: &Spec, letters: &Letters, free: &Action) -> Action {
     if spec.holds.is_empty() {
         return free.clone();
@@ -87,7 +87,7 @@ pub(super) fn with_reactions(spec: &Spec, letters: &Letters, free: &Action) -> A
     action
 }
 
-/// How the quantities of a node move with the configurations together, each along its variation.
+/// The changes of the quantities at a node if all configurations move, each along its variation.
 pub(crate) fn node_changes(variations: &[Variation], letters: &Letters) -> Vec<(Letter, Expr)> {
     let mut all: Vec<(Letter, Expr)> = Vec::new();
     let each = variations
@@ -112,16 +112,16 @@ pub(crate) fn rate(d: &Derivation, hold: &Hold) -> Expr {
     expr::directional(s, &hold.value, &changes)
 }
 
-/// `<μ, dg>`, with the variation of the multiplier for `μ`: its derivatives along the velocities are
-/// the reactions, those along `μ` the rate of change of the constraint.
+/// `<μ, dg>`, with the variation of the multiplier for `μ`. Its derivatives along the velocities are the constraint
+/// forces, and its derivatives along `μ` are the rate of change of the constraint.
 pub(crate) fn rate_paired(d: &Derivation, which: usize) -> Expr {
     let letters = &d.letters;
     let mu = expr::here(&letters.symbols, letters.held[which].variation);
     pairing(letters, &mu, &rate(d, &d.spec.holds[which]))
 }
 
-/// The reaction of one constraint on configuration `i`, a covector in the frame of its side, for this
-/// letter as the multiplier.
+/// The force of one constraint on configuration `i`, a covector in the frame of its side, for the given letter of the
+/// multiplier.
 pub(crate) fn reaction(
     spec: &Spec,
     letters: &Letters,
@@ -137,14 +137,14 @@ pub(crate) fn reaction(
     spec.configurations[i].group.of_gradient(s, y)
 }
 
-/// The reactions of all constraints on configuration `i` per unit time, as [`reaction`] says.
+/// The forces of all constraints on configuration `i` per unit time, in the form of [`reaction`].
 pub(crate) fn reactions(d: &Derivation, i: usize) -> Vec<Expr> {
     let all = d.spec.holds.iter();
     let all = all.map(|hold| reaction(&d.spec, &d.letters, &d.variations, i, hold));
     all.filter(|e| !e.is_zero()).collect()
 }
 
-/// The value of a constraint at the end of the edge, by its start and the velocities.
+/// The value of a constraint at the end of the edge, expressed by its start and the velocities.
 fn at_the_end(s: &Symbols, spec: &Spec, hold: &Hold) -> Expr {
     let next = expr::shift_time(s, &hold.value, Shift::NEXT.time);
     expr::substitute(s, &next, &spec.end_of_edge())
@@ -191,7 +191,7 @@ fn equation(value: Expr) -> Balance {
     }
 }
 
-/// The error for a constraint that follows from the constraints before it, whatever the configuration is.
+/// The error for a constraint that follows from the previous constraints for every configuration.
 pub(super) fn dependent(d: &Derivation, assumed: &[Expr]) -> Option<Diagnostic> {
     let count = d.spec.holds.len();
     if count == 0 {
@@ -207,10 +207,11 @@ pub(super) fn dependent(d: &Derivation, assumed: &[Expr]) -> Option<Diagnostic> 
         let all: Vec<usize> = (0..count).collect();
         let whole = d.with_multipliers(&all);
         let paired: Vec<Expr> = all.iter().map(|i| rate_paired(d, *i)).collect();
-        // Where they hold: vectors of one length may be equal in fewer ways than they have components.
+        // Evaluated where the constraints hold: two vectors of equal length may be equal under fewer conditions than
+        // they have components.
         let form = expr::sum(paired, Shape::SCALAR);
         let form = expr::substitute(&d.letters.symbols, &form, solved.list());
-        // The form on velocities and multipliers has twice the rank of the derivatives.
+        // The rank of the form on velocities and multipliers is twice the rank of the derivatives.
         let rank = super::kinetic::rank(&whole.spec, &whole.letters, &form, assumed);
         let wanted: usize = all.iter().map(|j| number(*j)).sum();
         rank.map(|(rank, _)| (rank / 2, wanted))
@@ -278,8 +279,8 @@ impl Derivation {
     }
 }
 
-/// The constraint at the end of the edge with the letters of spatial velocities for those seen from
-/// the body.
+/// The constraint at the end of the edge, with the letters of spatial velocities for the velocities in the body
+/// frame.
 fn seen_from_body(spec: &Spec, s: &Symbols, hold: &Hold) -> Expr {
     let (mut ends, mut velocities) = (Vec::new(), Vec::new());
     for c in &spec.configurations {
@@ -300,8 +301,8 @@ fn seen_from_body(spec: &Spec, s: &Symbols, hold: &Hold) -> Expr {
     expr::substitute(s, &next, &ends)
 }
 
-/// The size of the terms of a constraint, and of what rounding of the configuration changes in units of it:
-/// a logarithm near zero is as uncertain as its argument.
+/// The size of the terms of a constraint, and the effect of the rounding of the configuration in units of rounding: a
+/// logarithm near zero is as uncertain as its argument.
 pub(crate) fn scale(s: &Symbols, hold: &Hold) -> Expr {
     let mut terms = vec![expr::magnitude_by_differences(s, &hold.value)];
     if hold.value.shape().is_scalar() {
@@ -356,7 +357,7 @@ pub(super) fn kept(
         })
         .collect();
     let solved = Solved::of(spec, letters, algebra);
-    // A reaction may be written by advected quantities where a momentum is written by the configuration.
+    // A constraint force may contain advected quantities where a momentum contains the configuration.
     let defined = |a: &Advected| Some((here(a.quantity), a.definition.clone()?));
     let definitions: Vec<(Letter, Expr)> = spec.advected.iter().filter_map(defined).collect();
     let vanishes = |change: &Expr| {

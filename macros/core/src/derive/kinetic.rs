@@ -1,6 +1,6 @@
-//! The kinetic energy of a step: the part of its action in 1/h, to second order in velocities
-//! `Ω = exp(s ξ)` at the identity. Takes the action; gives the quadratic form in `ξ`, whether or not
-//! the whole action has a limit of small steps, and its rank for general parameters.
+//! The kinetic energy of a step: the part of its action proportional to 1/h, to second order in velocities `Ω = exp(s
+//! ξ)` at the identity. Takes the action; gives the quadratic form in `ξ` and its rank for general parameters, even
+//! if the whole action has no limit of small steps.
 
 use super::Letters;
 use super::action::Action;
@@ -16,7 +16,7 @@ use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Letter, Shift};
 
-/// The quadratic form of the kinetic energy and how many velocities it sees.
+/// The quadratic form of the kinetic energy, and the number of velocities on which it depends.
 #[derive(Clone, Debug)]
 pub struct Kinetic {
     /// The kinetic energy in the letters of [`Letters::variation`].
@@ -24,31 +24,32 @@ pub struct Kinetic {
     /// The rank of the form at a point in general position of parameters and configurations, and the number of
     /// velocities; `None` if the form is too large to evaluate.
     pub rank: Option<(usize, usize)>,
-    /// Whether the Lagrangian is linear in all velocities and determines them: such a model does not need a kinetic
+    /// Whether the Lagrangian is linear in all velocities and determines them, so that the model needs no kinetic
     /// energy.
     pub first_order: bool,
 }
 
 impl Kinetic {
-    /// The rank and the number of velocities, where the form is singular for all parameters.
+    /// The rank and the number of velocities, if the form is singular for all parameters.
     pub fn degenerate(&self) -> Option<(usize, usize)> {
         self.rank.filter(|(rank, n)| rank < n)
     }
 }
 
-/// Largest expression that is differentiated a second time.
+/// The size of the largest expression that is differentiated twice.
 const LARGEST: u32 = 20_000;
 
-/// Most nodes that are evaluated for the rank.
+/// The largest number of nodes that are evaluated for the rank.
 const EVALUATED: u64 = 100_000;
 
-/// Most velocities whose form is taken for a matrix: its elimination costs the cube of them.
+/// The largest number of velocities for which the matrix of the form is computed; its elimination costs the cube of
+/// this number.
 const VELOCITIES: usize = 256;
 
-/// Points in general position that are tried: the rank is the largest found.
+/// The number of points in general position that are tried. The rank is the largest one found.
 const POINTS: u64 = 3;
 
-/// The kinetic energy, if the step size occurs outside functions and roots only.
+/// The kinetic energy, if the step size occurs only outside functions and roots.
 pub fn kinetic(
     spec: &Spec,
     letters: &Letters,
@@ -71,10 +72,10 @@ pub fn kinetic(
 }
 
 /// The kinetic energy of an action without a limit: half the coefficient of `1/h` in the second derivative of the
-/// action along the velocities, at rest.
+/// action along the velocities, at zero velocity.
 fn expanded(spec: &Spec, letters: &Letters, action: &Action, algebra: &Algebra) -> Option<Expr> {
     let s = &letters.symbols;
-    // Uses the work that is left; the derivation itself is not charged for it.
+    // Uses the remaining work; the derivation itself is not charged for it.
     let algebra = algebra.over(s);
     let (mut identity, mut first, mut second) = (Vec::new(), Vec::new(), Vec::new());
     for (c, xi) in spec.configurations.iter().zip(&letters.variation) {
@@ -99,7 +100,7 @@ fn expanded(spec: &Spec, letters: &Letters, action: &Action, algebra: &Algebra) 
     for (term, coefficient) in &twice.terms {
         let mut term = term.clone();
         let Some(i) = term.monomial.iter().position(|(a, _)| *a == h) else {
-            // Inside a root or a function, as in `sqrt(h^2 - x)`: the order is not visible.
+            // The step size occurs inside a root or a function, as in `sqrt(h^2 - x)`, so the order is unknown.
             let value = algebra.raise(&Poly::term(Shape::SCALAR, *coefficient, term));
             if expr::contains(&value, at(spec.step, Shift::HERE)) {
                 return None;
@@ -116,9 +117,9 @@ fn expanded(spec: &Spec, letters: &Letters, action: &Action, algebra: &Algebra) 
     (!algebra.exhausted() && !inside).then(|| expr::scale(Rational::HALF, form))
 }
 
-/// Whether a symmetric 3 x 3 matrix enters the kinetic energy as the second moments of a body that
-/// turns: as `-½ tr(J X²)` with the angular velocity `X = hat(ω)` of one configuration, which is
-/// `½ ω·Iω` with `I = tr(J) Id - J`.
+/// Whether a symmetric 3 x 3 matrix is the second moments of a rotating body in the kinetic energy. It then occurs as
+/// `-½ tr(J X²)` with the angular velocity `X = hat(ω)` of one configuration, which equals `½ ω·Iω` with `I = tr(J)
+/// Id - J`.
 pub fn is_second_moment(spec: &Spec, letters: &Letters, energy: &Expr, symbol: SymbolId) -> bool {
     let s = &letters.symbols;
     let three = Dim::Fixed(3);
@@ -134,7 +135,7 @@ pub fn is_second_moment(spec: &Spec, letters: &Letters, energy: &Expr, symbol: S
     let mut turns = spec.configurations.iter().zip(&letters.variation);
     turns.any(|(c, xi)| {
         let xi = expr::here(s, *xi);
-        // For a group that turns space, the letters of variation are matrices, or begin with the axis.
+        // For a group that rotates space, the letters of variation are matrices, or begin with the axis.
         let element = expr::here(s, c.element);
         let turn = match (c.group.turn(s, &element), c.group.coordinates()) {
             (None, _) => return false,
@@ -165,8 +166,7 @@ pub(crate) fn basis(
     out
 }
 
-/// The gradients of the form, one for each configuration: columns of its matrix cost one
-/// evaluation each.
+/// The gradients of the form, one per configuration. A column of the matrix then costs one evaluation.
 pub(crate) fn gradients(letters: &Letters, form: &Expr) -> Vec<Expr> {
     let list = letters.variation.iter();
     list.map(|xi| expr::gradient(&letters.symbols, form, at(*xi, Shift::HERE)))
@@ -279,7 +279,7 @@ mod tests {
         assert_eq!(rank(5, "dot(d*a, d*a)"), Some((5, 25)));
         assert_eq!(rank(5, "tr((d - d^T)^T*(d - d^T))"), Some((10, 25)));
         assert_eq!(rank(16, "tr(d^T*d)"), Some((256, 256)));
-        // A thousand velocities: the cube of them is more than a model is worth.
+        // With a thousand velocities, their cube exceeds the limit.
         assert_eq!(rank(32, "tr(d^T*d)"), None);
     }
 
@@ -295,7 +295,7 @@ mod tests {
         let field = "param J, K: Sym<3>; advected Γ: Vec<3>; constraint next(Γ) = Ω^T*Γ; \
                      lagrangian = -tr(J*Ω)/h - h*dot(Γ, K*Γ);";
         assert_eq!(of(field), ["J"]);
-        // Another multiple, the inertia itself, and what is squared.
+        // Another multiple, the inertia itself, and a squared term.
         assert!(of("param J: Sym<3>; lagrangian = -2*tr(J*Ω)/h;").is_empty());
         assert!(of("param I: Sym<3>; lagrangian = -tr((tr(I)/2*Id - I)*Ω)/h;").is_empty());
         assert!(of("param J: Sym<3>; lagrangian = -tr(J*J*Ω)/h;").is_empty());

@@ -1,5 +1,5 @@
 //! Lie algebras and their duals for a configuration: its letter of variation as an element of the Lie algebra, and
-//! its momentum as the other end of an edge sees it. The part that depends on the group is in [`crate::groups`].
+//! its momentum transformed to the other end of an edge. The parts that depend on the group are in [`crate::groups`].
 
 use crate::check::spec::Configuration;
 use crate::expr::symbol::{SymbolId, Symbols};
@@ -11,8 +11,8 @@ pub fn element(symbols: &Symbols, group: Group, letter: SymbolId) -> Expr {
     group.element(expr::here(symbols, letter))
 }
 
-/// The momentum at the end of an edge as the start of the edge sees it: spatial momenta are the same at both ends,
-/// body momenta are transformed by the velocity.
+/// The momentum at the end of an edge, transformed to its start: spatial momenta are unchanged, body momenta are
+/// transformed by the velocity.
 pub fn seen_from_start(symbols: &Symbols, c: &Configuration, covector: Expr) -> Expr {
     if c.side.is_body() {
         let velocity = expr::here(symbols, c.velocity);

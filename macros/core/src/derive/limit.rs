@@ -1,6 +1,6 @@
-//! The limit of small steps: the Lagrangian per unit time whose discretisation the action of a
-//! step is, found by expanding `Ω = exp(h ξ)`; from it the physical energy. It catches wrong
-//! signs and factors, and gives runs their energy.
+//! The limit of small steps: the Lagrangian per unit time that the action of a step discretizes, from the expansion
+//! of `Ω = exp(h ξ)`, and the physical energy derived from it. The limit reveals wrong signs and factors, and gives
+//! runs their energy.
 
 use super::Letters;
 use super::action::{Action, summands};
@@ -14,8 +14,7 @@ use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 use std::collections::BTreeMap;
 
-/// The continuous Lagrangian in the body velocities `ξ` (letters of
-/// [`Letters::variation`]), at most quadratic in them.
+/// The continuous Lagrangian in the velocities `ξ` (letters of [`Letters::variation`]), at most quadratic in them.
 #[derive(Clone, Debug)]
 pub struct Limit {
     /// The whole Lagrangian per unit time.
@@ -28,12 +27,12 @@ pub struct Limit {
     pub kinetic: Expr,
 }
 
-/// Largest first derivative that is differentiated again.
+/// The size of the largest first derivative that is differentiated again.
 const LARGEST: u32 = 20_000;
 
 const TOO_LARGE: &str = "the Lagrangian is too large to expand";
 
-/// Highest derivative that is looked at for terms beyond the quadratic ones.
+/// The highest derivative that is examined for terms beyond the quadratic ones.
 const HIGHEST: i64 = 8;
 
 /// The reason if the Lagrangian is not quadratic in the velocity: its energy is then not known as a function of the
@@ -43,10 +42,10 @@ pub const NOT_QUADRATIC: &str = "the Lagrangian is not quadratic in the velocity
 /// The reason if the action does not shrink in proportion to the step size.
 pub const STANDING: &str = "the action of a step does not shrink in proportion to the step";
 
-/// The reason if a clock occurs in the Lagrangian: then neither a limit nor an energy is sought.
+/// The reason if a clock occurs in the Lagrangian: neither a limit nor an energy is sought.
 pub const DRIVEN: &str = "the Lagrangian depends on time";
 
-/// Why no limit is found where the step does not come out of a function.
+/// The reason if the step size cannot be extracted from a function.
 pub(crate) const INSIDE: &str = "the step stands inside a function or root";
 
 /// The limit, or why it does not exist.
@@ -110,7 +109,7 @@ pub fn limit(
         Poly::zero(Shape::SCALAR),
         Poly::zero(Shape::SCALAR),
     ];
-    // Terms that do not shrink with the step must cancel among themselves, each order by itself.
+    // Terms that do not vanish with the step size must cancel among themselves, separately for each order.
     let mut standing: BTreeMap<Rational, Vec<Expr>> = BTreeMap::new();
     for (term, coefficient) in &poly.terms {
         let (order, rest) = order_in(&term.monomial, &h);
@@ -131,7 +130,7 @@ pub fn limit(
         if order > Rational::ONE || algebra.is_zero(&value) {
             continue;
         }
-        // A constant of order one, such as the reference level of a potential, stays; constants of lower order are
+        // A constant of order one, such as the reference level of a potential, remains; constants of lower order are
         // dropped.
         if order < Rational::ONE {
             if constant || is_carried_constant(spec, letters, variations, algebra, &value) {
@@ -175,8 +174,8 @@ pub fn limit(
     })
 }
 
-/// The part that is proportional to the step size at zero velocity. It is kept as stated if the expanded form would
-/// round more far from the origin.
+/// The part that is proportional to the step size at zero velocity. It is kept as stated if the expanded form has
+/// larger rounding errors far from the origin.
 fn as_stated(s: &Symbols, spec: &Spec, still: &Expr, expanded: Expr, algebra: &Algebra) -> Expr {
     let step = at(spec.step, Shift::HERE);
     let stated = expr::collect(s, &of_order(algebra, still, step, Rational::ONE));
@@ -206,8 +205,9 @@ pub(crate) fn of_order(algebra: &Algebra, e: &Expr, step: Letter, order: Rationa
     expr::substitute(algebra.symbols(), &sum, &[(step, expr::integer(1))])
 }
 
-/// Rejects an action if a term over a high power of the step size contributes to the limit by its third or a higher
-/// derivative along `exp(h ξ)`. Examples are `(b/h^3)*dot(d, d)^2` and `-h*m*c^2*sqrt(1 - dot(d, d)/(c*h)^2)`.
+/// Rejects an action if a term with a high power of the step size in its divisor contributes to the limit by its
+/// third or a higher derivative along `exp(h ξ)`. Examples are `(b/h^3)*dot(d, d)^2` and `-h*m*c^2*sqrt(1 - dot(d,
+/// d)/(c*h)^2)`.
 fn no_higher_powers(
     s: &Symbols,
     action: &Expr,
@@ -229,7 +229,7 @@ fn no_higher_powers(
             word: Vec::new(),
         };
         let functions = algebra.raise(&Poly::term(Shape::SCALAR, Rational::ONE, functions));
-        // The series of a function of the velocity and the step has any power of both.
+        // The series of a function of the velocity and the step size contains all powers of both.
         mixed |=
             expr::contains(&functions, *step) && expr::contains_role(s, &functions, Role::Velocity);
         lowest = lowest.min(order);
@@ -277,8 +277,8 @@ fn no_higher_powers(
     Ok(())
 }
 
-/// Whether the group leaves a function of advected quantities alone (such as the trace of an
-/// advected inertia): it is a constant of every motion and varies with nothing.
+/// Whether the group preserves a function of advected quantities, such as the trace of an advected inertia. The
+/// function is then constant for every motion and does not vary.
 fn is_carried_constant(
     spec: &Spec,
     letters: &Letters,
@@ -307,7 +307,7 @@ fn order_in(monomial: &Monomial, h: &Atom) -> (Rational, Monomial) {
     }
 }
 
-/// How many velocities a term holds: found by scaling them.
+/// The number of velocities in a term, found by scaling them.
 fn degree(letters: &Letters, monomial: &Monomial, algebra: &Algebra) -> usize {
     let s = &letters.symbols;
     let term = Term {

@@ -1,6 +1,6 @@
-//! From a checked model to its derivation: the action of one step, constraint-preserving
-//! variations, the discrete Euler-Lagrange balance, Clebsch relations, momentum maps, the
-//! certificate, what must be solved each step, invariants, time reversal, the continuous limit.
+//! From a checked model to its derivation: the action of one step, constraint-preserving variations, the discrete
+//! Euler-Lagrange balance, Clebsch relations, momentum maps, the certificate, the equations that each step solves,
+//! invariants, time reversal, the continuous limit.
 
 pub mod action;
 pub mod advection_rule;
@@ -57,7 +57,7 @@ pub struct Letters {
     pub symbols: Symbols,
     /// For each configuration: a free element of its Lie algebra, the variation `ξ`.
     pub variation: Vec<SymbolId>,
-    /// For each configuration: a second one, the direction of a tangent `η`.
+    /// For each configuration: a second free element, the direction of a tangent `η`.
     pub direction: Vec<SymbolId>,
     /// For each configuration: its velocity `ζ` in continuous time, an element of the Lie algebra
     /// (for SO(3) its axial vector).
@@ -93,13 +93,13 @@ pub struct Derivation {
     pub variations: Vec<variation::Variation>,
     /// The balance of every configuration.
     pub balances: Vec<balance::Balance>,
-    /// Stationarity of the Clebsch action, as the thesis prints it.
+    /// Stationarity of the Clebsch action, in the form of the thesis.
     pub relations: Vec<clebsch::Relation>,
     /// The proof that the balance is a combination of the Clebsch relations.
     pub certificate: certificate::Certificate,
     /// Momentum maps and the named form of the balance.
     pub momenta: Vec<momentum::Momentum>,
-    /// How the momentum of every configuration goes from one node to the next.
+    /// How the momentum of every configuration is updated from one node to the next.
     pub carries: Vec<momentum_update::MomentumUpdate>,
     /// The equations that each step solves.
     pub solve: select_solver::Solve,
@@ -107,11 +107,11 @@ pub struct Derivation {
     pub transports: Vec<advection_rule::AdvectionRule>,
     /// Whether the one-step action is symmetric under time reversal.
     pub reversible: bool,
-    /// The same: in general, under the assumptions, or the remainder that breaks the symmetry.
+    /// Time-reversal symmetry: in general, under the assumptions, or the remainder that breaks the symmetry.
     pub reversal: reversal::Reversal,
     /// The Lagrangian in the limit of small steps, or why the limit does not exist.
     pub limit: Result<limit::Limit, String>,
-    /// The equations of motion of that limit, where there is one.
+    /// The equations of motion of that limit, if it exists.
     pub continuous: Option<continuous::Continuous>,
     /// The kinetic energy. It is known even for some actions without a limit.
     pub kinetic: Option<kinetic::Kinetic>,
@@ -119,7 +119,7 @@ pub struct Derivation {
     pub bracket: bracket::Bracket,
     /// Conserved quantities.
     pub invariants: Vec<invariants::Invariant>,
-    /// How many there are, and the Lax form.
+    /// The number of Casimirs, the Lax form and the discrete energy.
     pub integrability: invariants::Integrability,
     /// Warnings about statements that are valid but probably not intended.
     pub warnings: Vec<warnings::Warning>,
@@ -200,7 +200,7 @@ fn letters(spec: &Spec) -> Letters {
         };
         multiplier.push(symbols.add(&name, s.shape, dual, Role::Multiplier));
         let name = symbols.fresh_name(&format!("d{}", s.name));
-        // The position in a word must be visible, and skew letters would be written as hats.
+        // The position in a word must remain visible, and skew letters would be written as hats.
         let marker = match dual {
             Structure::Skew => Structure::General,
             other => other,
@@ -242,8 +242,8 @@ fn letters(spec: &Spec) -> Letters {
 }
 
 impl Derivation {
-    /// How a step is solved, in one sentence for the documentation of what is emitted; that none is,
-    /// where no parameters are taken.
+    /// How a step is solved, in one sentence for the documentation of emitted code. If no parameters are admissible,
+    /// the sentence says that no step is solved.
     pub fn how_solved(&self) -> String {
         let reason = &self.solve.reason;
         let degenerate = self.kinetic.as_ref().and_then(kinetic::Kinetic::degenerate);
@@ -269,7 +269,7 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
     }
 }
 
-/// The position of most of a Lagrangian: one term, if it is more than half of it, or all of them.
+/// The position of the largest part of a Lagrangian: one term if it is more than half of it, otherwise all terms.
 fn place_of_most(spec: &Spec) -> Place {
     let largest = spec.terms.iter().max_by_key(|(e, _)| e.size());
     let half = spec.lagrangian.size() / 2;
@@ -288,7 +288,7 @@ fn too_large(place: Place, excess: Option<String>) -> Diagnostic {
         .help("take fewer bodies or terms, lower powers of sums and less nested products, or make parts parameters")
 }
 
-/// All results, in the order in which each needs those before it.
+/// All results, in the order of their dependencies.
 fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
     let stated = spec.clone();
     let spec = reduction::reduce(spec)?;
@@ -302,7 +302,7 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
     // Quantities that the constraints do not affect are derived without constraint forces.
     let free = action::action(&spec);
     let action = holds::with_reactions(&spec, &letters, &free);
-    // The constraints first: a wrong-sided action makes everything below meaningless.
+    // The constraints first: if an action is on the wrong side, all later results are meaningless.
     let variations = variation::variations(&spec, &letters, &algebra);
     bounded(&algebra)?;
     let variations = variations?;
@@ -353,7 +353,7 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
         .as_ref()
         .ok()
         .map(|l| continuous::continuous(&spec, &letters, &variations, l, &algebra));
-    // Everything until here must be decided; the search for invariants may be cut short.
+    // All results so far must be decided; the search for invariants may be incomplete.
     if work::cut_short() {
         return Err(too_large(whole, work::excess()).into());
     }

@@ -17,17 +17,17 @@ pub struct Momentum {
     /// with the coordinates. It is evaluated at the start of the edge on the body side, and at its end on the spatial
     /// side.
     pub edge: Expr,
-    /// The same, reduced.
+    /// The edge momentum, reduced.
     pub reduced: Expr,
     /// The contribution of the edge at its start: `M` (body) or `Ad*_ω M = ω^T M ω^-T` (spatial).
     pub start: Expr,
     /// The contribution of the edge at its end: `Ad*_Ω M` (body) or `M` (spatial).
     pub end: Expr,
-    /// The momentum map of the configuration and its multiplier: `skew(Λ^T P)` on the body side
-    /// (the right one), `skew(P Λ^T)` on the spatial side (the left one); without `skew` for GL(n).
+    /// The momentum map of the configuration and its multiplier: `skew(Λ^T P)` on the body side (the right one),
+    /// `skew(P Λ^T)` on the spatial side (the left one); without `skew` for GL(n).
     pub cotangent: Expr,
-    /// For each advected quantity the momentum map of it and its multiplier, `V ◇ a`, as a matrix;
-    /// zero where this configuration does not move it.
+    /// For each advected quantity, the momentum map of the quantity and its multiplier, `V ◇ a`, as a matrix; zero if
+    /// this configuration does not move it.
     pub diamonds: Vec<Expr>,
 }
 
@@ -58,7 +58,7 @@ fn momentum(
     let w = expr::here(s, c.velocity);
     let raw = expr::collect(s, &b.gradient);
     let raw = c.group.pulled_back(s, Side::Spatial, w.clone(), raw);
-    // As a matrix, or by coordinates where the Lie algebra has them.
+    // As a matrix, or in coordinates if the Lie algebra has them.
     let matrix = |y: Expr| c.group.as_algebra(s, y);
     let edge = matrix(raw.clone());
     let carry = |y: Expr| {
@@ -91,7 +91,7 @@ fn momentum(
         if c.group.coordinates().is_some() {
             return shorter(algebra, y);
         }
-        // For a vector the map is a vector too, and reads best as one.
+        // For a vector, the map is a vector too and reads best in that form.
         if multiplier.shape().is_vector() && c.group.is_of_space() {
             return expr::hat(shorter(algebra, c.group.covector(s, y)));
         }

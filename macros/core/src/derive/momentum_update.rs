@@ -1,6 +1,6 @@
 //! The update of the momentum from one node to the next: the impulse of the step is added to it. The momentum is
-//! never recomputed from the velocity, which would lose conserved quantities to the rounding of `1/h`. Takes the
-//! action and its variations; gives the increment, in the form that rounds least.
+//! never recomputed from the velocity, because the rounding errors of `1/h` would affect conserved quantities. Takes
+//! the action and its variations; gives the increment, in the form with the smallest rounding error.
 
 use super::Letters;
 use super::action::Action;
@@ -21,15 +21,15 @@ pub enum MomentumUpdate {
     /// In this frame: `m' = m + added`. Exact if the action is invariant when both ends of the edge move together in
     /// this frame.
     Kept(Expr),
-    /// By the edge: `m' = Ad*(m + leave) + arrive`, with the impulses at its start and at its end. Exact if the action
-    /// is invariant in the other frame.
+    /// Along the edge: `m' = Ad*(m + leave) + arrive`, with the impulses at its start and at its end. Exact if the
+    /// action is invariant in the other frame.
     Through {
         /// The impulse at the start of the edge.
         leave: Expr,
         /// The impulse at its end.
         arrive: Expr,
-        /// For a rigid motion seen from its body: whether the linear momentum is parallel to the displacement, as for a
-        /// body about its centre of mass. The moment of the displacement is then zero; if computed, it would be the
+        /// For a rigid motion in its body frame: whether the linear momentum is parallel to the displacement, as for
+        /// a body about its centre of mass. The moment of the displacement is then zero; if computed, it would be the
         /// rounding error of two long vectors.
         straight: bool,
     },
@@ -49,7 +49,7 @@ impl MomentumUpdate {
     }
 }
 
-/// Most terms of a Lagrangian that are looked at in groups.
+/// The largest number of terms of a Lagrangian that are examined in groups.
 const MOST_TERMS: usize = 32;
 
 /// The results of the derivation so far.
@@ -60,7 +60,7 @@ pub struct Inputs<'a> {
     pub letters: &'a Letters,
     /// The action of one step.
     pub action: &'a Action,
-    /// How everything varies.
+    /// The changes of all quantities along the variations.
     pub variations: &'a [Variation],
     /// The balances.
     pub balances: &'a [Balance],
@@ -109,7 +109,7 @@ impl Work<'_> {
         let through = self.rounded_least(i, c, through);
         let kept = MomentumUpdate::Kept(self.added(i, c));
         if self.algebra.exhausted() {
-            // A model at the limit of the engine: the plain difference is as right, if less exact.
+            // For a model at the work limit, the plain difference is correct but less accurate.
             return if c.side.is_body() {
                 through
             } else {
@@ -130,8 +130,8 @@ impl Work<'_> {
         }
     }
 
-    /// The impulses at the ends of the edge, in the form that rounds least: divisions by the step size may cancel in
-    /// it.
+    /// The impulses at the ends of the edge, in the form with the smallest rounding error: divisions by the step size
+    /// may cancel in it.
     fn rounded_least(&self, i: usize, c: &Configuration, carry: MomentumUpdate) -> MomentumUpdate {
         let MomentumUpdate::Through {
             leave,
@@ -163,7 +163,7 @@ impl Work<'_> {
         }
     }
 
-    /// Whether the linear momentum that a velocity brings is along the way, in body axes.
+    /// Whether the linear momentum due to the velocity is parallel to the displacement, in body axes.
     fn is_straight(&self, c: &Configuration, b: &Balance) -> bool {
         let s = self.symbols;
         let Some(rigid) = c.group.rigid().filter(|_| c.side.is_body()) else {
@@ -215,7 +215,7 @@ impl Work<'_> {
         self.rounding().best(all)
     }
 
-    /// How everything on the edge changes when its two ends move together.
+    /// The changes of all quantities on the edge if its two ends move together.
     fn alike(&self, i: usize) -> Vec<(Letter, Expr)> {
         let (s, v) = (self.symbols, &self.inputs.variations[i]);
         let next = |(l, e): &(Letter, Expr)| (at(l.symbol, Shift::NEXT), expr::shift_time(s, e, 1));
@@ -228,7 +228,7 @@ impl Work<'_> {
         all
     }
 
-    /// The derivative of a number along a variation, with everything written by the start of the
+    /// Whether the derivative of a scalar along a variation vanishes, with everything expressed by the start of the
     /// edge.
     fn vanishes(&self, e: &Expr, along: &[(Letter, Expr)]) -> bool {
         let s = self.symbols;
@@ -240,7 +240,7 @@ impl Work<'_> {
         if self.algebra.is_zero(&forward) {
             return true;
         }
-        // Known by its definition, a quantity has properties that its letter does not tell.
+        // The definition of a quantity shows properties that its letter does not.
         let advected = self.inputs.spec.advected.iter();
         let defined: Vec<(Letter, Expr)> = advected
             .zip(self.inputs.transports)
@@ -257,7 +257,7 @@ impl Work<'_> {
                 .is_zero(&expr::substitute(s, &forward, &defined))
     }
 
-    /// The terms of a number that change along a variation.
+    /// The terms of a scalar that change along a variation.
     fn felt(&self, e: &Expr, along: &[(Letter, Expr)]) -> Vec<Expr> {
         if e.is_zero() || self.vanishes(e, along) {
             return Vec::new();
@@ -289,7 +289,7 @@ impl Work<'_> {
         }
     }
 
-    /// Terms of the same velocities may change by nothing together.
+    /// Removes groups of terms in the same velocities whose changes cancel.
     fn without_groups(&self, mut terms: Vec<Expr>, along: &[(Letter, Expr)]) -> Vec<Expr> {
         if terms.len() > MOST_TERMS {
             return terms;
@@ -313,7 +313,7 @@ impl Work<'_> {
         terms
     }
 
-    /// The derivative of a number along a variation as a covector.
+    /// The derivative of a scalar along a variation as a covector.
     fn covector(&self, i: usize, c: &Configuration, e: &Expr, along: &[(Letter, Expr)]) -> Expr {
         let xi = at(self.inputs.letters.variation[i], Shift::HERE);
         let change = expr::directional(self.symbols, e, along);

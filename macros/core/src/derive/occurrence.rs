@@ -1,4 +1,4 @@
-//! Finds a velocity in a term of a normal form. Takes the term; says whether it is free of the velocity, linear in
+//! Finds a velocity in a term of a normal form. Takes the term; decides whether it is free of the velocity, linear in
 //! it, or neither.
 
 use super::variation::at;
@@ -7,18 +7,18 @@ use crate::expr::shape::Shape;
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Shift};
 
-/// How often a velocity occurs in a term, and where.
+/// The occurrence of a velocity in a term.
 pub(super) enum Occurrence {
     /// Nowhere.
     Free,
     /// Once, as a factor of the word.
     Once {
-        /// Which one.
+        /// The index of the factor.
         place: usize,
-        /// Whether transposed.
+        /// Whether the velocity is transposed.
         transposed: bool,
     },
-    /// Several times, inverted, or inside a number or a map.
+    /// Several times, inverted, or inside a scalar or a map.
     Otherwise,
 }
 
@@ -30,7 +30,7 @@ pub(super) fn occurrence(algebra: &Algebra, term: &Term, velocity: SymbolId) -> 
     let w = at(velocity, Shift::HERE);
     let is_velocity =
         |f: &Factor| matches!(f, Factor::Letter { source: Source::Letter(l), .. } if *l == w);
-    // Also inside expressions that a letter replaces: an inverse, a value of a functional.
+    // Also inside expressions that a letter replaces: an inverse, or a value of a functional.
     let holds = |f: &Factor| match f {
         Factor::Letter {
             source: Source::Opaque(i),

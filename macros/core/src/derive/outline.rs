@@ -1,5 +1,5 @@
-//! The beginning of a derivation: how everything varies, and the equations. Takes a checked model; gives the data
-//! from which the forces of neighbours and of ends are derived, without proofs and consequences.
+//! The beginning of a derivation: the variations and the equations. Takes a checked model; gives the data from which
+//! the forces of neighbours and of end conditions are derived, without proofs and consequences.
 
 use super::advection_rule::{self, AdvectionRule};
 use super::balance::{self, Balance};
@@ -50,8 +50,8 @@ pub fn outline(spec: Spec) -> Result<Outline, Errors> {
 }
 
 impl Outline {
-    /// The expression with advected quantities replaced by their definitions, at both ends of the edge; quantities
-    /// without a definition stay.
+    /// The expression with advected quantities replaced by their definitions, at both ends of the edge. Quantities
+    /// without a definition are unchanged.
     pub fn defined(&self, e: &Expr) -> Expr {
         let s = &self.letters.symbols;
         let mut list: Vec<(Letter, Expr)> = Vec::new();

@@ -1,6 +1,6 @@
-//! Velocities by parts of three dimensions: a unit quaternion as a number and a vector, a rigid motion as a
-//! rotation and a vector. The equations of each step are then written in vectors. Takes the model and expressions
-//! of its derivation; gives the same in the parts.
+//! Velocities in three-dimensional parts: a unit quaternion as a scalar and a vector, a rigid motion as a rotation
+//! and a vector. The equations of each step are then vector equations. Takes the model and expressions of its
+//! derivation; gives these expressions in the parts.
 
 use super::Letters;
 use crate::algebra::Rational;
@@ -29,9 +29,9 @@ pub struct Parts {
     pub symbols: Symbols,
     /// The parts, one configuration after the other.
     pub velocities: Vec<Velocity>,
-    /// The vector of three coordinates along which tangents are taken.
+    /// The vector of three coordinates along which tangents are computed.
     pub direction: SymbolId,
-    /// The velocities as the model writes them.
+    /// The velocities in the model.
     whole: Vec<Letter>,
 }
 
@@ -92,9 +92,8 @@ impl Parts {
         all
     }
 
-    /// How the parts move when the velocity is moved along the direction, from the right (the side
-    /// of the body) or from the left: one list a block of three coordinates, in the order of the
-    /// coordinates of the group.
+    /// The changes of the parts if the velocity moves along the direction, from the right (the side of the body) or
+    /// from the left: one list per block of three coordinates, in the order of the coordinates of the group.
     pub fn changes(&self, side: Side) -> Vec<Vec<(Letter, Expr)>> {
         let letter = |id: SymbolId| expr::here(&self.symbols, id);
         let along = letter(self.direction);
@@ -117,7 +116,7 @@ impl Parts {
                         all.push(vec![(at(rot), turned(rot))]);
                         all.push(vec![(at(pos), shift)]);
                     }
-                    // The translation is turned along.
+                    // The translation rotates too.
                     false => {
                         let carried = expr::mul(expr::hat(along.clone()), letter(pos));
                         all.push(vec![(at(rot), turned(rot)), (at(pos), carried)]);
@@ -129,7 +128,7 @@ impl Parts {
         all
     }
 
-    /// An expression in the parts; `None` where a velocity of another group than SO(3) stays whole.
+    /// An expression in the parts; `None` if a velocity of a group other than SO(3) remains whole.
     pub fn write(&self, e: &Expr) -> Option<Expr> {
         let written = self.straight(&expr::collect(&self.symbols, &self.lowered(e)));
         let whole = self.whole.iter().zip(&self.velocities);
@@ -250,8 +249,7 @@ impl Parts {
         })
     }
 
-    /// `R (a x R^T b)` as `R a x b`, for a rotation among the velocities: nothing is turned forth
-    /// and back.
+    /// `R (a x R^T b)` as `R a x b` for a rotation among the velocities, without rotating back and forth.
     fn straight(&self, e: &Expr) -> Expr {
         let e = expr::rebuild(&self.symbols, e, &mut |x| self.straight(x));
         let Node::Product(factors) = e.node() else {
@@ -269,7 +267,7 @@ impl Parts {
         }
     }
 
-    /// Whether this is a rotation among the velocities, or the inverse of one.
+    /// Whether this is a rotation among the velocities, or its inverse.
     fn is_turn(&self, e: &Expr) -> bool {
         let e = match e.node() {
             Node::Transpose(a) => a,
@@ -317,7 +315,7 @@ mod tests {
         );
         let across = expr::cross(u.clone(), v);
         assert!(algebra.equal(&product.1, &expr::add(flat.clone(), across.clone())));
-        // The other order, and the product with the conjugate, are others.
+        // The product in the other order, and the product with the conjugate, are different.
         assert!(!algebra.equal(&product.1, &expr::sub(flat, across)));
         assert!(!algebra.equal(&product.0, &expr::add(expr::mul(a.clone(), b), dot)));
         // Rodrigues: Id + 2 a hat(u) + 2 hat(u)^2.

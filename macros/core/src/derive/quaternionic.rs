@@ -1,6 +1,6 @@
-//! The equation of a step on SU(2) that comes down to one for a number: with the velocity `w + v` the balance reads
-//! `w A v + v x A v + β v = h N / 2`, `A` symmetric. Takes the balance; gives `A`, `β` and the part of the node
-//! momentum that does not belong to the edge, or why the balance is not of this form.
+//! The equation of a step on SU(2) that reduces to a scalar equation: with the velocity `w + v`, the balance is `w A
+//! v + v x A v + β v = h N / 2`, `A` symmetric. Takes the balance; gives `A`, `β` and the part of the node momentum
+//! that does not belong to the edge, or the reason why the balance is not of this form.
 
 use super::Letters;
 use super::balance::{Balance, shorter};
@@ -17,16 +17,16 @@ use crate::expr::{self, Expr, Shift};
 /// The parts of such an equation.
 #[derive(Clone, Debug)]
 pub struct Quaternionic {
-    /// The fields that it shares with a Moser-Veselov equation: the factor is `A`.
+    /// The fields shared with a Moser-Veselov equation; the factor is `A`.
     pub edge: MoserVeselov,
-    /// `β`, made of parameters.
+    /// `β`, which depends on parameters only.
     pub real: Expr,
 }
 
-/// `A`, `β` and the rest of the node momentum.
+/// `A`, `β` and the remainder of the node momentum.
 ///
-/// Both are read off derivatives of the balance, that by `w` and that by `v` at zero; then it is
-/// proved that the balance is what they make, for any numbers `w` and `v`.
+/// Two derivatives of the balance give both: with respect to `w`, and with respect to `v` at zero. It is then proved
+/// that the balance has this form for all numbers `w` and `v`.
 pub(super) fn form(
     spec: &Spec,
     letters: &Letters,
@@ -36,7 +36,7 @@ pub(super) fn form(
 ) -> Result<(Expr, Expr, Expr), String> {
     let refused = "the momentum is not that of a quadratic form and a multiple of the real part";
     let name = &letters.symbols.get(spec.configurations[i].velocity).name;
-    // Read as the balance of a model of one.
+    // As the balance of a model with a single configuration.
     let own = Spec {
         configurations: vec![spec.configurations[i].clone()],
         ..spec.clone()
@@ -46,7 +46,7 @@ pub(super) fn form(
         let is_own = algebra.equal(&b.node_out, &rest);
         (a, real, if is_own { b.node_out.clone() } else { rest })
     });
-    // Forces at the node may contain the quaternion itself, which the parts of the velocity do not split.
+    // Forces at the node may contain the quaternion itself, which is not split into parts.
     let without_node = || {
         let (a, real, rest) = read(&own, letters, &b.edge_out, algebra)?;
         let known = !expr::contains_role(s, &b.node_out, Role::Velocity);
@@ -73,7 +73,7 @@ fn read(
     let inner = algebra.over(s);
     let (w, v) = (expr::here(s, re), expr::here(s, im));
     let [re, im] = [re, im].map(|id| at(id, Shift::HERE));
-    // Nor may they contain the velocities of other configurations.
+    // They must not contain velocities of other configurations either.
     let free = |e: &Expr| {
         !expr::contains(e, re)
             && !expr::contains(e, im)

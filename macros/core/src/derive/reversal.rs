@@ -1,5 +1,5 @@
-//! Time reversal: whether the action of one step changes sign when its ends change places and
-//! the step changes sign. Established here before any composition to higher order is offered.
+//! Time reversal: whether the action of one step changes sign if its ends are exchanged and the step size changes
+//! sign. Composition to higher order requires this symmetry.
 
 #[cfg(test)]
 mod tests;
@@ -14,11 +14,11 @@ use crate::expr::{self, Expr, Letter, Shift};
 /// Whether the action of a step is symmetric under time reversal.
 #[derive(Clone, Debug)]
 pub enum Reversal {
-    /// It is, whatever the parameters.
+    /// Symmetric for all parameters.
     Symmetric,
-    /// It is for the parameters that the assumptions admit.
+    /// Symmetric for the parameters that the assumptions admit.
     Assumed,
-    /// The remainder of `ℓ(q0, q1, h) + ℓ(q1, q0, -h)`; none if it is too large to show.
+    /// The remainder of `ℓ(q0, q1, h) + ℓ(q1, q0, -h)`; None if it is too large to show.
     Broken(Option<Expr>),
 }
 
@@ -29,10 +29,10 @@ impl Reversal {
     }
 }
 
-/// Largest left-over that is shown.
+/// The size of the largest remainder that is shown.
 const LARGEST: u32 = 40;
 
-/// `ℓ(q0, q1, h) + ℓ(q1, q0, -h)`, written by the velocities and the quantities at the start of the edge.
+/// `ℓ(q0, q1, h) + ℓ(q1, q0, -h)`, expressed by the velocities and the quantities at the start of the edge.
 pub(crate) fn sum(spec: &Spec, action: &Action) -> Expr {
     let s = &spec.symbols;
     let mut swap: Vec<(Letter, Expr)> = vec![(
@@ -54,7 +54,7 @@ pub(crate) fn sum(spec: &Spec, action: &Action) -> Expr {
     expr::substitute(s, &sum, &forward)
 }
 
-/// The same expression with every advected quantity replaced by its definition: an advected point has 1 as its last
+/// The expression with every advected quantity replaced by its definition: an advected point has 1 as its last
 /// component, and an advected frame is orthogonal. The shapes of their letters do not show this.
 pub(crate) fn by_configuration(spec: &Spec, e: &Expr) -> Expr {
     let defined = spec.advected.iter().filter_map(|a| {
@@ -64,8 +64,8 @@ pub(crate) fn by_configuration(spec: &Spec, e: &Expr) -> Expr {
     expr::substitute(&spec.symbols, e, &defined.collect::<Vec<_>>())
 }
 
-/// How far a clock in the action is ahead after a step of `h` and one of `-h`; for the first clock that does not
-/// return.
+/// The remaining advance of a clock in the action after a step of `h` and one of `-h`, for the first clock that does
+/// not return.
 pub(crate) fn clock_left(spec: &Spec, action: &Action, algebra: &Algebra) -> Option<Expr> {
     let s = &spec.symbols;
     let clocks = spec.clocks();
@@ -102,7 +102,7 @@ pub(crate) fn clock_left(spec: &Spec, action: &Action, algebra: &Algebra) -> Opt
     left.next()
 }
 
-/// Whether `ℓ(q0, q1, h) = -ℓ(q1, q0, -h)` up to constants, `assumed` being what vanishes.
+/// Whether `ℓ(q0, q1, h) = -ℓ(q1, q0, -h)` up to constants, given that the expressions `assumed` vanish.
 pub fn reversal(spec: &Spec, action: &Action, assumed: &[Expr], algebra: &Algebra) -> Reversal {
     let s = &spec.symbols;
     if let Some(rest) = clock_left(spec, action, algebra) {
@@ -121,8 +121,8 @@ pub fn reversal(spec: &Spec, action: &Action, assumed: &[Expr], algebra: &Algebr
     if constant(&rest) {
         return Reversal::Symmetric;
     }
-    // A sum that is constant has the value that it has at rest in the identity, which identities
-    // beyond the normal form may prove: that a rotation keeps its axis, for one.
+    // If the sum is constant, it has its value at zero velocity and the identity. Identities beyond the normal form
+    // may prove this, such as that a rotation preserves its axis.
     let whole = by_configuration(spec, &rest);
     let still = spec
         .configurations

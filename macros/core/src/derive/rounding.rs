@@ -1,6 +1,6 @@
-//! Estimates the rounding of an expression when the step size is small. Velocities are then near the identity, and
-//! `(Ω - 1) a / h` keeps sixteen digits, of which `Ω a / h - a / h` loses some. Takes expressions; gives the order
-//! of their values in the step size, and the order of their rounding.
+//! Estimates the rounding error of an expression for small step sizes. Velocities are then near the identity, and `(Ω
+//! - 1) a / h` has sixteen correct digits, whereas `Ω a / h - a / h` loses some. Takes expressions; gives the order
+//! of their values in the step size, and the order of their rounding errors.
 
 use super::cancellation;
 use crate::algebra::Algebra;
@@ -10,13 +10,13 @@ use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Map, Node, Shift};
 use crate::schedule;
 
-/// Powers of the step size: `size` for the value, `error` for its rounding, in units of `EPSILON`. For exact values
-/// the power is infinite.
+/// Powers of the step size: `size` for the value, `error` for its rounding error in units of `EPSILON`. For exact
+/// values the power is infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Order {
-    /// The value is of this power of the step.
+    /// The power of the step size to which the value is proportional.
     pub size: f64,
-    /// Its rounding is `EPSILON` times this power of the step.
+    /// The rounding error is `EPSILON` times this power of the step size.
     pub error: f64,
 }
 
@@ -26,15 +26,15 @@ pub struct Rounding<'a> {
     pub spec: &'a Spec,
     /// Letters of the expressions.
     pub symbols: &'a Symbols,
-    /// Decides which expressions vanish at rest.
+    /// Decides which expressions vanish at zero velocity.
     pub algebra: &'a Algebra<'a>,
 }
 
-/// Letters for velocities less the identity: small terms are small when they are written in these.
+/// Letters for velocities minus the identity, in which small terms are small.
 pub struct Displacements {
     /// The letters of the model, and the letters of the displacements.
     pub symbols: Symbols,
-    /// One for each configuration whose velocity is a matrix that keeps its own coordinates.
+    /// One letter per configuration whose velocity is a matrix in its own coordinates.
     letters: Vec<Option<SymbolId>>,
 }
 
@@ -56,7 +56,7 @@ impl Displacements {
         Displacements { symbols, letters }
     }
 
-    /// The normal form of an expression in displacements, written by velocities again.
+    /// The normal form of an expression in displacements, with velocities substituted back.
     pub fn normal_form(&self, spec: &Spec, algebra: &Algebra, e: &Expr) -> Expr {
         let s = &self.symbols;
         let (mut there, mut back) = (Vec::new(), Vec::new());
@@ -80,8 +80,8 @@ impl Displacements {
 }
 
 impl Rounding<'_> {
-    /// The form that rounds least at small steps, of those least far from the origin, and of those
-    /// the shortest.
+    /// The form with the smallest rounding error for small steps; among equals, the one with the smallest rounding
+    /// error far from the origin, then the shortest.
     pub fn best(&self, forms: Vec<Expr>) -> Expr {
         let mut best: Option<((f64, f64), Expr)> = None;
         for form in forms {
@@ -97,12 +97,12 @@ impl Rounding<'_> {
         best.map_or_else(|| expr::integer(0), |(_, form)| form)
     }
 
-    /// The power of the step that the rounding of an expression is of.
+    /// The power of the step size to which the rounding error of an expression is proportional.
     pub fn error(&self, e: &Expr) -> f64 {
         self.order(e).error
     }
 
-    /// Whether it vanishes where nothing moves: for velocities at the identity.
+    /// Whether it vanishes at zero velocity, that is, for velocities at the identity.
     fn rests_at_zero(&self, e: &Expr) -> bool {
         let velocities = self.spec.configurations.iter().map(|c| {
             let letter = Letter {
@@ -117,7 +117,7 @@ impl Rounding<'_> {
             .is_zero(&expr::substitute(self.symbols, &forward, &rest))
     }
 
-    /// Whether it is the increment of a field, a small number of its own.
+    /// Whether it is the increment of a field, which is a small number of its own.
     fn is_increment(&self, l: &Letter) -> bool {
         let fields = self.spec.configurations.iter();
         fields
@@ -131,7 +131,8 @@ impl Rounding<'_> {
             .any(|l| self.symbols.get(l.symbol).role == Role::Velocity || l.shift.time != 0)
     }
 
-    /// The order `inside`, with one more power of the step size in the value if the expression vanishes at rest.
+    /// The order `inside`, with one more power of the step size in the value if the expression vanishes at zero
+    /// velocity.
     fn cancelling(&self, e: &Expr, inside: Order) -> Order {
         let gains = self.moves(e) && self.rests_at_zero(e);
         Order {
@@ -162,9 +163,9 @@ impl Rounding<'_> {
                 let size = f64::from(u8::from(is_small));
                 Order { size, error: size }
             }
-            // Emitted with all digits of the difference.
+            // Emitted without loss of digits.
             Node::Sum(_) if schedule::is_difference(self.symbols, e) => small,
-            // Entries off the diagonal have digits of their own.
+            // Off-diagonal entries have digits of their own.
             Node::Vee(a) if schedule::at_rest(self.symbols, a).is_some() => small,
             Node::Sum(terms) => {
                 let all = terms.iter().map(|t| self.order(t));
@@ -184,7 +185,7 @@ impl Rounding<'_> {
             Node::Power(a, q) => power(self.order(a), q.value()),
             Node::Neg(a) | Node::Transpose(a) | Node::Hat(a) => self.order(a),
             Node::Trace(a) | Node::Vee(a) | Node::Part(_, a) => self.cancelling(e, self.order(a)),
-            // Kept as numbers of their own, small ones with all digits.
+            // Stored as numbers of their own, so small values have all digits.
             Node::Map(Map::Imaginary | Map::Translation, a)
                 if matches!(a.node(), Node::Letter(_)) && self.moves(a) =>
             {
@@ -195,7 +196,7 @@ impl Rounding<'_> {
                 size: 0.0,
                 error: self.order(a).error.min(0.0),
             },
-            // Nothing is known of it but that what it is made from is rounded.
+            // Only the rounding of its arguments is known.
             Node::Given(_) | Node::PullBack(..) => Order {
                 size: 0.0,
                 error: {

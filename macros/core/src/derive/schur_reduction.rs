@@ -1,7 +1,7 @@
 //! Schur reduction: unknowns that occur linearly in their own equations are eliminated in closed form before the
-//! others are sought. These are translations of rigid motions, if the balance of linear momentum is linear in them.
+//! others are solved. These are translations of rigid motions, if the balance of linear momentum is linear in them.
 //! Its matrix must be a product of invertible factors that contain rotations and constants. Newton's method then
-//! finds rotations alone, with the whole derivative of the remaining equations. Takes velocities by parts and their
+//! finds rotations only, with the whole derivative of the remaining equations. Takes velocities in parts and their
 //! equations; gives the solution and the remaining equations.
 
 use super::parts::{Parts, Velocity};
@@ -13,7 +13,7 @@ use crate::expr::{self, Expr, Letter, Shift, Undone};
 
 const THREE: Dim = Dim::Fixed(3);
 
-/// The unknowns that are eliminated, and how.
+/// The unknowns that are eliminated, and their solution.
 #[derive(Clone, Debug)]
 pub struct SchurReduction {
     /// The letters of the parts, and those below.
@@ -29,11 +29,11 @@ pub struct SchurReduction {
 /// A translation that is solved for.
 #[derive(Clone, Debug)]
 pub struct Place {
-    /// The velocity it belongs to.
+    /// The velocity to which it belongs.
     pub velocity: usize,
-    /// The number of its equation, in blocks of three.
+    /// The index of its equation, in blocks of three.
     pub block: usize,
-    /// The letter of the momentum of the node in it.
+    /// The letter of the node momentum in it.
     pub momentum: SymbolId,
     /// The intermediate values from which it is computed, in order; the translation itself is the last.
     pub steps: Vec<(SymbolId, Expr)>,
@@ -73,7 +73,7 @@ fn at(symbol: SymbolId) -> Letter {
 }
 
 impl SchurReduction {
-    /// The reduction of equations by parts, if the velocities are rotations and rigid motions.
+    /// The reduction of equations in parts, if the velocities are rotations and rigid motions.
     pub fn of(parts: &Parts, list: &[Expr]) -> Option<SchurReduction> {
         let mut symbols = parts.symbols.clone();
         let vector = Shape::vector(THREE);
@@ -94,7 +94,7 @@ impl SchurReduction {
             if let Some(x) = position {
                 let name = parts.symbols.get(x).name.clone();
                 let momentum = add(&format!("{name}_momentum"));
-                // As many as a matrix may have factors, besides itself.
+                // One letter per factor of a matrix, apart from the translation itself.
                 let before: Vec<SymbolId> = (1..5).map(|i| add(&format!("{name}_{i}"))).collect();
                 motions.push((velocity, block + 1, x, momentum, before));
             }
@@ -119,7 +119,7 @@ impl SchurReduction {
                 continue;
             };
             let matrix = expr::factored(&symbols, &matrix);
-            // Not those either that are solved for already.
+            // Translations that are already eliminated do not count as known either.
             let known = |x: SymbolId| !expr::contains(&matrix, at(x));
             let met = |p: &Place| {
                 let own = p
@@ -179,21 +179,21 @@ impl SchurReduction {
         self.turns.iter().any(|t| at(*t) == l) || steps.any(|(id, _)| at(*id) == l)
     }
 
-    /// The numbers of the equations that are left.
+    /// The indices of the remaining equations.
     pub fn left(&self, count: usize) -> Vec<usize> {
         (0..count)
             .filter(|i| self.places.iter().all(|p| p.block != *i))
             .collect()
     }
 
-    /// An expression written by what was found on the way to the translations.
+    /// An expression in the intermediate values of the translations.
     pub fn written(&self, e: &Expr) -> Expr {
         let all = self.places.iter();
         all.fold(e.clone(), |e, p| p.by_steps(&self.symbols, &e))
     }
 
-    /// The whole derivative of the equations that are left, from the blocks of the tangent row by row. `along` has the
-    /// blocks for translations that move by themselves.
+    /// The whole derivative of the remaining equations, from the blocks of the tangent row by row. `along` has the
+    /// blocks for independent changes of the translations.
     pub fn tangent(&self, blocks: &[Expr], along: &[Expr], side: Side) -> Vec<Expr> {
         let s = &self.symbols;
         let count = blocks.len().isqrt();

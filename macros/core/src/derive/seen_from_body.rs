@@ -1,7 +1,7 @@
-//! The equations of a step of spatial statements with every velocity seen from the body: the same action varied
-//! from the right. Terms that grow with the distance from the origin then cancel in the formulas instead of in the
-//! numbers. A body that is constant in its own frame is constant in these equations. Takes the model; gives the
-//! momenta of the outgoing edges, where that makes them simpler.
+//! The equations of a step stated in space, with every velocity in the body frame: the same action varied from the
+//! right. Terms that grow with the distance from the origin then cancel in the formulas instead of numerically. A
+//! tensor that is constant in the body is constant in these equations. Takes the model; gives the momenta of the
+//! outgoing edges, if this form is simpler.
 
 use super::Letters;
 use super::balance::{self, Balance};
@@ -12,8 +12,7 @@ use crate::check::spec::{Configuration, Side, Spec};
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
 
-/// Node momenta by the outgoing edge, with everything at its end written by its start and the
-/// velocities.
+/// Node momenta on the outgoing edge, with the end of the edge expressed by its start and the velocities.
 pub fn outgoing(spec: &Spec, letters: &Letters, balances: &[Balance]) -> Vec<Expr> {
     let (s, forward) = (&letters.symbols, spec.end_of_edge());
     let list = balances.iter();
@@ -21,9 +20,9 @@ pub fn outgoing(spec: &Spec, letters: &Letters, balances: &[Balance]) -> Vec<Exp
         .collect()
 }
 
-/// The same of a model with spatial velocities as body covectors of `W = Λ⁻¹ V Λ`, written with the letters of the
-/// `V`. `stated` is the model before its reduction to advected quantities of the other side. `None` without an
-/// advantage: only rotations are stated in space, and the equations need more at a node than as stated.
+/// The outgoing momenta of a model with spatial velocities, as body covectors of `W = Λ⁻¹ V Λ` in the letters of `V`.
+/// `stated` is the model before its reduction to advected quantities of the other side. `None` without an advantage:
+/// if only rotations are stated in space, and the equations need more quantities at a node than as stated.
 pub fn seen_from_body(
     stated: &Spec,
     spec: &Spec,

@@ -20,60 +20,60 @@ use crate::expr::{self, Expr, Letter, Node, Shift};
 /// The Riccati form of one balance.
 #[derive(Clone, Debug)]
 pub enum StepEquation {
-    /// `Ω C^T - C Ω^T = h N` with `C` made of parameters and node quantities.
+    /// `Ω C^T - C Ω^T = h N`, where `C` depends on parameters and node quantities.
     Exact(MoserVeselov),
-    /// The same with a `C` that contains other velocities.
+    /// The same equation, where `C` contains other velocities.
     Coupled(MoserVeselov),
-    /// None, but the equation of SU(2) applies instead.
+    /// No such form, but the equation of SU(2) applies.
     Quaternionic(Quaternionic),
-    /// None, but a balance that is linear in the velocity; GL(n) and fields.
+    /// No such form, but a balance that is linear in the velocity; on GL(n) and for fields.
     Linear(TwoSidedLinear),
-    /// None, with the reason.
+    /// No such form, with the reason.
     None(String),
 }
 
 /// The parts of a Moser-Veselov equation.
 #[derive(Clone, Debug)]
 pub struct MoserVeselov {
-    /// The left factor `C`, an n x n matrix (for the free body the Poinsot matrix).
+    /// The left factor `C`, an n x n matrix. For the free body, it is the Poinsot matrix.
     pub factor: Expr,
     /// Whether `C` equals its transpose.
     pub symmetric: bool,
-    /// The part of the node momentum that does not depend on the velocity, as a covector: the
-    /// edge momentum is `N = μ - rest`.
+    /// The part of the node momentum that does not depend on the velocity, as a covector. The edge momentum is `N = μ
+    /// - rest`.
     pub rest: Expr,
-    /// `C` as the body sees it, if it is constant there: it contains parameters, and advected quantities whose letters
+    /// `C` in the body frame, if it is constant there: it contains parameters, and advected quantities whose letters
     /// denote their constant values at the identity.
     pub in_body: Option<Expr>,
     /// The momentum received at the end of the edge, evaluated at the node there, on the side of the configuration.
     /// Present only if the node does nothing else: the next edge can then be computed there.
     pub arrive: Option<Expr>,
-    /// For a configuration in space: the impulse at a node on both sides of it, seen from the body there. It is written
-    /// by the element and by advected quantities with their constant values at the identity. `None` if the body does
-    /// not see it more simply.
+    /// For a configuration in space: the impulse at a node on both sides of it, in the body frame. It is expressed by
+    /// the element and by advected quantities with their constant values at the identity. `None` if it is not simpler
+    /// in the body frame.
     pub torque: Option<Expr>,
 }
 
 /// How the step is solved.
 #[derive(Clone, Debug)]
 pub enum Method {
-    /// Explicitly, with the constants of the trajectory found once: `C` is constant and the edge
-    /// momentum is the node momentum, so that `κ` is conserved.
+    /// Explicitly, with constants of the trajectory that are computed once: `C` is constant and the edge momentum is
+    /// the node momentum, so that `κ` is conserved.
     FreeMoserVeselov,
-    /// Explicitly, one quartic a step, with the momentum of the next edge made at its first node.
+    /// Explicitly, with one quartic per step; the momentum of the next edge is computed at its first node.
     ForcedMoserVeselov,
-    /// Explicitly, one scalar equation a step, in the same way: SU(2).
+    /// Explicitly, with one scalar equation per step, in the same way: SU(2).
     UnitQuaternions,
-    /// By a solver of left factors: `C` is constant, in the frame of the
-    /// velocity or, where [`Solve::turned`] has it, in the other one.
+    /// By a solver for left factors: `C` is constant, in the frame of the velocity or, if [`Solve::turned`] is
+    /// present, in the other one.
     LeftFactor,
-    /// By Davenport's eigenvalue problem, which takes any `C` known at the node; SO(3).
+    /// By Davenport's eigenvalue problem, for any `C` known at the node; SO(3).
     Davenport,
-    /// Explicitly, by small linear systems: the balance is linear in the velocity; GL(n) and fields.
+    /// Explicitly, by small linear systems: the balance is linear in the velocity; on GL(n) and for fields.
     Linear,
-    /// Newton on the group, residual and tangent derived.
+    /// By Newton's method on the group, with derived residual and tangent.
     Newton,
-    /// Each of several blocks by a method of its own; see [`Solve::blocks`].
+    /// Several blocks, each with a method of its own; see [`Solve::blocks`].
     Blocks,
 }
 
@@ -84,25 +84,24 @@ pub struct Solve {
     pub riccati: Vec<StepEquation>,
     /// The method of the emitted stepper.
     pub method: Method,
-    /// Why this method, in one sentence.
+    /// The reason for this method, in one sentence.
     pub reason: String,
-    /// `C` seen from the other frame, where it is constant along the motion: made of parameters and
-    /// of advected quantities by their reference values.
+    /// `C` in the other frame, if it is constant along the motion: it depends on parameters and on the reference
+    /// values of advected quantities.
     pub turned: Option<Expr>,
-    /// The momenta that Newton's method solves for, where spatial velocities are seen from the body
-    /// for it.
+    /// The momenta for which Newton's method solves, if spatial velocities are transformed to the body frame.
     pub seen_from_body: Option<Vec<Expr>>,
     /// The blocks, if the model is not solved as a whole: none or several.
     pub blocks: Vec<Block>,
-    /// Configurations whose velocities are part of one linear system, with others or with their own
-    /// components, that Newton's method solves.
+    /// Configurations whose velocities are part of one linear system, with others or with their own components, that
+    /// Newton's method solves.
     pub one_system: Vec<usize>,
 }
 
 impl Solve {
-    /// Whether the stepper takes symmetric factors `C` only that are second moments of a body, and
-    /// tests them where it is given them: the Moser-Veselov equation of others does not determine
-    /// the velocity. A model whose kinetic energy is degenerate then takes no parameters at all.
+    /// Whether the stepper accepts only symmetric factors `C` that are second moments of a body, and tests given
+    /// factors for this. The Moser-Veselov equation with another factor does not determine the velocity. A model
+    /// whose kinetic energy is degenerate then accepts no parameters.
     pub fn needs_second_moments(&self) -> bool {
         let symmetric = |r: &StepEquation| matches!(r, StepEquation::Exact(mv) if mv.symmetric);
         match self.method {
@@ -116,8 +115,7 @@ impl Solve {
         }
     }
 
-    /// Whether the velocity that is found for a configuration is the one seen from the body,
-    /// though it is stated in space.
+    /// Whether the solver finds the velocity of a configuration in the body frame, although it is stated in space.
     pub fn finds_body_velocity(&self, i: usize) -> bool {
         let by_newton = match self.method {
             Method::Newton => true,
@@ -131,7 +129,7 @@ impl Solve {
     }
 }
 
-/// Recognises; `stated` is the model before its reduction.
+/// Selects the solver; `stated` is the model before its reduction.
 pub fn select_solver(
     stated: &Spec,
     spec: &Spec,
@@ -165,7 +163,7 @@ pub fn select_solver(
     let three = |i: usize| is_of_space(&spec.configurations[i]);
     let turned = match riccati.as_slice() {
         _ if !spec.holds.is_empty() => None,
-        // Symmetric factors in three dimensions have steppers of their own.
+        // Symmetric factors in three dimensions have their own steppers.
         [StepEquation::Exact(mv)] if three(0) && mv.symmetric && keeps_edge(mv) => None,
         [StepEquation::Exact(mv)]
             if !is_constant(letters, mv) && balances[0].increment.is_some() =>
@@ -257,8 +255,8 @@ pub(super) fn is_of_space(c: &Configuration) -> bool {
     c.group.is_of_space()
 }
 
-/// The factor of a spatial velocity seen from the body, `Λ^T C Λ`, if it is constant there: then
-/// `Λ^T ω Λ` solves the equation of the body.
+/// The factor of a spatial velocity in the body frame, `Λ^T C Λ`, if it is constant there. Then `Λ^T ω Λ` solves the
+/// equation of the body.
 fn turned(
     spec: &Spec,
     letters: &Letters,
@@ -288,7 +286,7 @@ fn turned(
     constant.then_some(seen)
 }
 
-/// Whether `C` contains parameters only: it is then validated once.
+/// Whether `C` contains parameters only, so that it is validated once.
 pub(super) fn is_constant(letters: &Letters, mv: &MoserVeselov) -> bool {
     let s = &letters.symbols;
     let letters = expr::letters(&mv.factor);
@@ -297,7 +295,7 @@ pub(super) fn is_constant(letters: &Letters, mv: &MoserVeselov) -> bool {
         .all(|l| s.get(l.symbol).role == Role::Parameter)
 }
 
-/// How `C` is constant.
+/// In which sense `C` is constant.
 fn constancy(letters: &Letters, mv: &MoserVeselov) -> &'static str {
     match is_constant(letters, mv) {
         true => "constant",
@@ -305,13 +303,13 @@ fn constancy(letters: &Letters, mv: &MoserVeselov) -> &'static str {
     }
 }
 
-/// Whether the motion is free: nothing but the velocity moves the momentum.
+/// Whether the motion is free: only the velocity contributes to the momentum.
 fn is_free(mv: &MoserVeselov) -> bool {
     let arrive = mv.arrive.as_ref();
     mv.in_body.is_some() && mv.rest.is_zero() && arrive.is_some_and(Expr::is_zero)
 }
 
-/// Whether the momentum of the next edge can be made at the end of a step and kept.
+/// Whether the momentum of the next edge can be computed at the end of a step and stored.
 pub fn keeps_edge(mv: &MoserVeselov) -> bool {
     mv.in_body.is_some() && mv.arrive.is_some()
 }
@@ -322,7 +320,7 @@ fn frame(s: &Symbols, c: &Configuration) -> Expr {
     c.group.turn(s, &element).unwrap_or(element)
 }
 
-/// The impulse at a node on both sides of it, seen from the body; see [`MoserVeselov::torque`].
+/// The impulse at a node on both sides of it, in the body frame; see [`MoserVeselov::torque`].
 fn torque(
     spec: &Spec,
     letters: &Letters,
@@ -353,7 +351,7 @@ fn occurrences(e: &Expr) -> u32 {
     u32::from(matches!(e.node(), Node::Letter(_))).saturating_add(inside(e.children()))
 }
 
-/// A vector seen from the body: the rotation passes through sums and vector products.
+/// A vector in the body frame: the rotation passes through sums and vector products.
 fn from_body(s: &Symbols, algebra: &Algebra, element: &Expr, e: &Expr) -> Expr {
     let of = |x: &Expr| from_body(s, algebra, element, x);
     match e.node() {
@@ -379,7 +377,7 @@ fn turned_back(s: &Symbols, algebra: &Algebra, element: &Expr, e: &Expr) -> Expr
     shorter(algebra, expr::mul(back, e.clone()))
 }
 
-/// Advected quantities by the action on their reference values, which their letters denote.
+/// Advected quantities, expressed by the action on their reference values, which their letters denote.
 fn carried(spec: &Spec, transports: &[AdvectionRule]) -> Vec<(Letter, Expr)> {
     let list = spec.advected.iter().zip(transports);
     list.filter_map(|(a, t)| match t {
@@ -503,7 +501,7 @@ fn riccati(
     let transposed = expr::mul(step, algebra.raise(&factor));
     let factor = shorter(algebra, expr::transpose(s, transposed));
     let rest = algebra.raise(&rest);
-    // The node's own part, where that is all of it: it reads as the user would write it.
+    // The node's own part, if it is the whole: it has the form that the user would write.
     let own = match n {
         Dim::Fixed(3) => expr::hat(b.node_out.clone()),
         _ => b.node_out.clone(),
@@ -528,7 +526,7 @@ fn riccati(
     StepEquation::Exact(mv)
 }
 
-/// The equation with what acts at the nodes.
+/// The equation with the forces at the nodes.
 #[allow(clippy::too_many_arguments)]
 fn with_node(
     spec: &Spec,
@@ -554,7 +552,7 @@ fn with_node(
     }
 }
 
-/// Splits `Ω X - X^T Ω^T + rest`: returns `X` and the rest, or nothing if the velocity occurs anywhere else.
+/// Splits `Ω X - X^T Ω^T + rest`: returns `X` and the rest, or None if the velocity occurs anywhere else.
 fn split(algebra: &Algebra, poly: &Poly, velocity: SymbolId, s: &Symbols) -> Option<(Poly, Poly)> {
     let (mut x, mut rest) = (Poly::zero(poly.shape), Poly::zero(poly.shape));
     let mut mirrored = Poly::zero(poly.shape);

@@ -1,7 +1,7 @@
-//! The explicit form of a balance on GL(n) where the change of the configuration meets constant factors:
-//! seen from space `m = L ΔQ R Q^T + rest` with `Q' = Q + ΔQ`, as for a kinetic energy with a constant
-//! metric and constant second moments of mass. Both factors are then inverted once, and no velocity is formed.
-//! Takes a derivation; gives the factors, the rest and what the edge adds.
+//! The explicit form of a balance on GL(n) in which constant factors multiply the change of the configuration: in
+//! space, `m = L ΔQ R Q^T + rest` with `Q' = Q + ΔQ`. An example is a kinetic energy with a constant metric and
+//! constant second moments of mass. Both factors are inverted once, and no velocity is computed. Takes a derivation;
+//! gives the factors, the rest and the force of the edge.
 
 use super::Derivation;
 use super::advection_rule::AdvectionRule;
@@ -13,24 +13,25 @@ use crate::algebra::Algebra;
 use crate::expr::symbol::{Role, SymbolId};
 use crate::expr::{self, Expr, Letter, Node, Shift};
 
-/// `h (m - rest) = left ΔQ right Q^T` with the momentum `m` of the node in space, and `m' = m - rest + added`.
+/// `h (m - rest) = left ΔQ right Q^T` with the spatial momentum `m` of the node, and `m' = m - rest + added`.
 #[derive(Clone, Debug)]
 pub struct SpatialIncrementForm {
-    /// The factor to the left of the change, of parameters.
+    /// The factor to the left of the change; it depends on parameters.
     pub left: Expr,
-    /// The factor to its right, of parameters.
+    /// The factor to its right; it depends on parameters.
     pub right: Expr,
-    /// The node momentum at rest, in space.
+    /// The node momentum at zero velocity, in space.
     pub rest: Expr,
-    /// The increment of the spatial momentum on the edge: `left ΔQ right ΔQ^T/h`, symmetric behind the metric however
-    /// the change was rounded, and the impulses. The letter of a direction of this configuration denotes its change.
+    /// The increment of the spatial momentum on the edge: the impulses and `left ΔQ right ΔQ^T/h`, which after the
+    /// metric is symmetric for any rounding of the change. The letter of a direction of this configuration denotes
+    /// its change.
     pub added: Expr,
-    /// The quantity that the letter of a variation denotes in `rest` and `added`, seen from space: `Q^-T A Q^T` of a
-    /// quantity `A` that is stated in the body.
+    /// The quantity that the letter of a variation denotes in `rest` and `added`, in the frame of space: `Q^-T A Q^T`
+    /// for a quantity `A` that is stated in the body.
     pub seen: Option<Expr>,
 }
 
-/// The form of configuration `i`, where it has one; `form` is that in its velocity.
+/// The form of configuration `i`, if it has one; `form` is the form in its velocity.
 pub fn displaced(d: &Derivation, i: usize) -> Option<SpatialIncrementForm> {
     let c = &d.spec.configurations[i];
     let StepEquation::Linear(form) = &d.solve.riccati[i] else {
@@ -54,7 +55,7 @@ pub fn displaced(d: &Derivation, i: usize) -> Option<SpatialIncrementForm> {
     (!algebra.exhausted()).then_some(found)
 }
 
-/// Whether anything but its own momentum asks for a velocity.
+/// Whether a velocity is needed for anything but its own momentum.
 fn velocity_is_asked(d: &Derivation, i: usize) -> bool {
     let velocity = at(d.spec.configurations[i].velocity, Shift::HERE);
     let carries = d.carries.iter().enumerate().filter(|(j, _)| *j != i);
@@ -69,7 +70,7 @@ struct Space<'a> {
     d: &'a Derivation,
     i: usize,
     algebra: &'a Algebra<'a>,
-    /// The only quantity of a model that is stated in the body, seen from space.
+    /// The only quantity of the model that is stated in the body, in the frame of space.
     seen: Option<Expr>,
 }
 
@@ -143,7 +144,8 @@ impl Space<'_> {
         (all && short.shape() == e.shape()).then_some(short)
     }
 
-    /// The part of a covector at rest, and its moving part, both seen from space and without inverse configurations.
+    /// The part of a covector at zero velocity, and the remaining part, both in the frame of space and without
+    /// inverse configurations.
     fn in_space(&self, e: &Expr, time: i8) -> Option<(Option<Expr>, Option<Expr>)> {
         let (d, s) = (self.d, &self.d.letters.symbols);
         let c = &d.spec.configurations[self.i];
@@ -171,7 +173,8 @@ impl Space<'_> {
         (!divides(s, &still) && !divides(s, &moving)).then(|| (some(still), some(moving)))
     }
 
-    /// A covector of the side in space, everything written in configurations, or by what is seen there; proved.
+    /// A covector of the side in the frame of space, expressed by configurations or by quantities in that frame;
+    /// proved.
     fn turned(&self, e: &Expr, time: i8) -> Option<Expr> {
         let Some(seen) = &self.seen else {
             return Some(
@@ -221,7 +224,7 @@ impl Space<'_> {
         expr::rebuild(s, e, &mut |part| self.determinants(part, quantity))
     }
 
-    /// A covector of the side as it is in space.
+    /// A covector of the side, transformed to space.
     fn told_in_space(&self, e: Expr, time: i8) -> Expr {
         let s = &self.d.letters.symbols;
         let c = &self.d.spec.configurations[self.i];
@@ -234,7 +237,7 @@ impl Space<'_> {
         }
     }
 
-    /// The only quantity of a model that is stated in the body, by its definition and seen from space.
+    /// The only quantity of a model that is stated in the body, by its definition and in the frame of space.
     fn only_quantity(&self) -> Option<Expr> {
         let d = self.d;
         let c = &d.spec.configurations[self.i];
@@ -268,7 +271,7 @@ impl Space<'_> {
     }
 }
 
-/// Whether an expression contains the inverse of what moves.
+/// Whether an expression contains the inverse of a configuration.
 fn divides(s: &expr::symbol::Symbols, e: &Expr) -> bool {
     let moves = |e: &Expr| expr::contains_role(s, e, Role::Element);
     matches!(e.node(), Node::Inverse(a) if moves(a))

@@ -1,6 +1,6 @@
-//! Linear expressions as matrices: what is linear in a vector `η` is written `M η`. Newton's tangent is found so in
-//! closed form, where a basis of directions would cost its columns one by one. Takes an expression and the letter;
-//! gives the matrix, or nothing if no rule applies.
+//! Linear expressions as matrices: an expression that is linear in a vector `η` becomes `M η`. This gives Newton's
+//! tangent in closed form; a basis of directions would cost one evaluation per column. Takes an expression and the
+//! letter; gives the matrix, or None if no rule applies.
 
 use crate::algebra::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
@@ -36,7 +36,7 @@ impl Direction<'_> {
             cols: THREE,
         };
         if !self.occurs(e) {
-            // Linear without the letter: nothing.
+            // Linear and free of the letter, so it is zero.
             return Some(expr::zero(shape));
         }
         Some(match e.node() {
@@ -89,7 +89,7 @@ impl Direction<'_> {
         Some(expr::product(word))
     }
 
-    /// The matrix of `X v` where the matrix `X` is linear in `η`.
+    /// The matrix of `X v`, where the matrix `X` is linear in `η`.
     fn applied(&self, x: &Expr, v: Expr) -> Option<Expr> {
         if !v.shape().is_vector() {
             return None;
@@ -122,7 +122,7 @@ impl Direction<'_> {
         })
     }
 
-    /// The matrix of the axial vector of `X - X^T`, twice `vee(X)`, where `X` is linear in `η`.
+    /// The matrix of the axial vector of `X - X^T`, that is `2 vee(X)`, where `X` is linear in `η`.
     fn axial(&self, x: &Expr) -> Option<Expr> {
         Some(match x.node() {
             Node::Hat(u) => expr::scale(Rational::integer(2), self.matrix(u)?),
@@ -161,8 +161,8 @@ impl Direction<'_> {
         })
     }
 
-    /// That of `A hat(u) B`: `(tr(C) - C^T) B^T u` with `C = A B` where `B` is a rotation, and
-    /// `(tr(C) - C) A u` where `A` is one. Where both are, nothing is turned that need not be.
+    /// The matrix for `A hat(u) B`: `(tr(C) - C^T) B^T u` with `C = A B` if `B` is a rotation, and `(tr(C) - C) A u`
+    /// if `A` is one. If both are, the form with fewer rotations is used.
     fn axial_between(&self, a: &[Expr], linear: &Expr, b: &[Expr]) -> Option<Expr> {
         let Node::Hat(u) = linear.node() else {
             let Node::Sum(terms) = linear.node() else {
@@ -198,7 +198,7 @@ impl Direction<'_> {
         Some(expr::product([core, turned, self.matrix(u)?]))
     }
 
-    /// Whether the inverse of this is its transpose and its determinant 1.
+    /// Whether its inverse is its transpose and its determinant is 1.
     fn is_rotation(&self, e: &Expr) -> bool {
         match e.node() {
             Node::Letter(at) => self.symbols.get(at.symbol).structure == Structure::Orthogonal,
@@ -207,7 +207,7 @@ impl Direction<'_> {
         }
     }
 
-    /// The vector `g` of a number `g . η`.
+    /// The vector `g` of a scalar `g . η`.
     fn gradient(&self, e: &Expr) -> Option<Expr> {
         if !self.occurs(e) {
             return Some(expr::zero(Shape::vector(THREE)));

@@ -1,7 +1,7 @@
-//! The explicit form of a balance: the momentum of a node is linear in the velocity of the edge that
-//! leaves it. On GL(n) `μ = L (Ω - Id) R + rest` with factors known at the node, though gradients along
-//! the group are quadratic; of a field `p = L ΔX R + rest`. Small linear systems then give the velocity.
-//! Takes a balance; gives the factors and the rest.
+//! The explicit form of a balance whose node momentum is linear in the velocity of the outgoing edge. On GL(n) this
+//! is `μ = L (Ω - Id) R + rest` with factors known at the node, although gradients along the group are quadratic; for
+//! a field, `p = L ΔX R + rest`. Small linear systems then give the velocity. Takes a balance; gives the factors and
+//! the rest.
 
 use super::Letters;
 use super::balance::{Balance, shorter};
@@ -19,15 +19,15 @@ use crate::expr::{self, Expr, Letter, Shift};
 /// quantities at the node.
 #[derive(Clone, Debug)]
 pub struct TwoSidedLinear {
-    /// The factor to the left of the velocity, the step in it.
+    /// The factor to the left of the velocity, including the step size.
     pub left: Expr,
     /// The factor to its right.
     pub right: Expr,
-    /// The node momentum at rest.
+    /// The node momentum at zero velocity.
     pub rest: Expr,
 }
 
-/// Most components of a vector whose factor is made column by column.
+/// The largest number of components of a vector whose factor is computed column by column.
 const LARGEST: u32 = 8;
 
 /// The form of the balance of configuration `i`, or why it does not exist.
@@ -62,7 +62,7 @@ pub fn form(
     let word = expr::product([left.clone(), still.clone(), right.clone()]);
     let at_rest = expr::add(word, rest);
     let at_rest = shorter(algebra, at_rest);
-    // As it was derived, where the expanded one would round more far from the origin.
+    // The derived form, if the expanded form has larger rounding errors far from the origin.
     let still_there = [(at(velocity, Shift::HERE), still.clone())];
     let derived = expr::substitute(s, &outgoing, &still_there);
     let found = TwoSidedLinear {
@@ -81,7 +81,7 @@ pub fn form(
     }
 }
 
-/// A factor; of a field, whose factors may be multiples of the identity, by the multiple.
+/// A factor; for a field, a multiple of the identity may be given as a number.
 fn factor(algebra: &Algebra, p: &Poly, number: bool) -> Expr {
     if !number || p.shape.is_scalar() || p.terms.keys().any(|t| !t.word.is_empty()) {
         return shorter(algebra, algebra.raise(p));
@@ -94,7 +94,7 @@ fn factor(algebra: &Algebra, p: &Poly, number: bool) -> Expr {
     }
 }
 
-/// The parts of a number that is linear in the velocity, a number.
+/// The parts of a scalar that is linear in a scalar velocity.
 fn split_number(algebra: &Algebra, poly: &Poly, velocity: SymbolId) -> Option<(Poly, Poly, Poly)> {
     let own = Atom::Letter(at(velocity, Shift::HERE));
     let (mut left, mut rest) = (Poly::zero(Shape::SCALAR), Poly::zero(Shape::SCALAR));
@@ -120,7 +120,7 @@ fn split_number(algebra: &Algebra, poly: &Poly, velocity: SymbolId) -> Option<(P
     (!left.is_zero()).then_some((left, one, rest))
 }
 
-/// The parts of a vector that is linear in the velocity, a vector, with the factor column by column.
+/// The parts of a vector that is linear in a vector velocity, with the factor computed column by column.
 fn by_columns(
     letters: &Letters,
     outgoing: &Expr,
@@ -147,15 +147,15 @@ fn by_columns(
     Some((left, expr::integer(1), shorter(algebra, rest)))
 }
 
-/// A term `coefficient monomial left Ω right` by its factors.
+/// A term `coefficient monomial left Ω right`, split into its factors.
 struct Linear {
     left: Term,
     right: Vec<Factor>,
     coefficient: Rational,
 }
 
-/// The factors around the velocity, and the terms without it: all terms with the velocity have one factor in
-/// common, on one side or the other.
+/// The factors of the velocity, and the terms without it. All terms with the velocity must share a factor on one
+/// side.
 fn split(algebra: &Algebra, poly: &Poly, velocity: SymbolId) -> Option<(Poly, Poly, Poly)> {
     let mut rest = Poly::zero(poly.shape);
     let mut linear: Vec<Linear> = Vec::new();

@@ -1,6 +1,6 @@
-//! Constraint-preserving variations at node k: the configuration moves by a free element of its
-//! Lie algebra, the two adjacent velocities absorb the motion, and every advected quantity
-//! follows. That it can is exactly "advected by a group action of the right side".
+//! Constraint-preserving variations at node k: the configuration moves by a free element of its Lie algebra, the two
+//! adjacent velocities absorb the motion, and every advected quantity follows. A quantity can follow exactly if a
+//! group action of the right side advects it.
 
 use super::Letters;
 use super::lie;
@@ -11,7 +11,7 @@ use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 
-/// How everything moves when one configuration varies at node k.
+/// The changes of all quantities if one configuration varies at node k.
 #[derive(Clone, Debug)]
 pub struct Variation {
     /// The group element at node k: `Λ ξ` (body) or `ξ Λ` (spatial).
@@ -25,14 +25,14 @@ pub struct Variation {
 }
 
 impl Variation {
-    /// Changes of what the outgoing edge sees: its velocity and everything at node k.
+    /// Changes of the quantities on the outgoing edge: its velocity and all quantities at node k.
     pub fn on_outgoing(&self) -> Vec<(Letter, Expr)> {
         let mut all = vec![self.element.clone(), self.outgoing.clone()];
         all.extend(self.advected.iter().cloned());
         all
     }
 
-    /// Changes of what the incoming edge sees.
+    /// Changes of the quantities on the incoming edge.
     pub fn on_incoming(&self) -> Vec<(Letter, Expr)> {
         let mut all = vec![self.element.clone(), self.incoming.clone()];
         all.extend(self.advected.iter().cloned());
@@ -82,7 +82,7 @@ fn of_configuration(c: &Configuration, letters: &Letters, i: usize) -> Variation
     let xi = lie::element(s, c.group, letters.variation[i]);
     let out = expr::here(s, c.velocity);
     let back = expr::letter(s, c.velocity, Shift::PREVIOUS);
-    // The velocity that leaves moves on its other side.
+    // The outgoing velocity changes on the opposite side.
     let other = c.side.opposite();
     let d_out = expr::neg(c.group.moved(other, out, xi.clone()));
     let (dg, d_in) = (
@@ -97,7 +97,7 @@ fn of_configuration(c: &Configuration, letters: &Letters, i: usize) -> Variation
     }
 }
 
-/// Replacements at the node before: the same for every quantity.
+/// Replacements at the previous node, which are the same for every quantity.
 struct Back {
     shell: Vec<(Letter, Expr)>,
     elements: Vec<(Letter, Expr)>,
@@ -125,7 +125,7 @@ fn of_advected(
     let read = sandwich(algebra, &algebra.lower(&own), marker);
     let in_blocks = || sandwich(algebra, &algebra.lower_in_blocks(&own)?, marker);
     let Some((left, right)) = read.or_else(in_blocks) else {
-        // A quantity that nothing moves does not vary, whatever its factors are.
+        // A quantity that no configuration moves does not vary, for any factors.
         if is_left_alone(s, a, &own) {
             return Ok((here, expr::zero(shape)));
         }
@@ -162,8 +162,8 @@ fn of_advected(
     )))
 }
 
-/// Whether a quantity changes in proportion to itself, and no motion enters its constraint: `own` is the derivative
-/// of its update by it.
+/// Whether a quantity changes in proportion to itself, with no configuration in its constraint. `own` is the
+/// derivative of its update with respect to it.
 fn is_left_alone(s: &Symbols, a: &Advected, own: &Expr) -> bool {
     let role = |l: &Letter| s.get(l.symbol).role;
     let is_given = |l: &Letter| matches!(role(l), Role::Parameter | Role::Step);
@@ -186,7 +186,7 @@ fn is_moved(spec: &Spec, a: &Advected) -> bool {
     })
 }
 
-/// Replacements that put advected quantities at node k back to node k-1.
+/// Replacements that express advected quantities at node k by node k-1.
 pub(super) fn on_shell(spec: &Spec, letters: &Letters) -> Vec<(Letter, Expr)> {
     let s = &letters.symbols;
     let back = |e: &Expr| expr::shift_time(s, e, Shift::PREVIOUS.time);
@@ -197,7 +197,7 @@ pub(super) fn on_shell(spec: &Spec, letters: &Letters) -> Vec<(Letter, Expr)> {
     advected.collect()
 }
 
-/// Replacements that put group elements at node k-1 forward to node k: `Λ(-1) = Λ Ω(-1)^-1`.
+/// Replacements that express group elements at node k-1 by node k: `Λ(-1) = Λ Ω(-1)^-1`.
 pub(super) fn previous_elements(spec: &Spec, letters: &Letters) -> Vec<(Letter, Expr)> {
     let s = &letters.symbols;
     spec.configurations
@@ -211,7 +211,7 @@ pub(super) fn previous_elements(spec: &Spec, letters: &Letters) -> Vec<(Letter, 
         .collect()
 }
 
-/// Reads `L x R` off a normal form that holds the letter once; `L` and `R` must be invertible.
+/// Splits a normal form that contains the letter once into `L x R`; `L` and `R` must be invertible.
 fn sandwich(algebra: &Algebra, poly: &Poly, x: Letter) -> Option<(Expr, Expr)> {
     let mut terms = poly.terms.iter();
     let (term, coefficient) = terms.next()?;
@@ -226,7 +226,7 @@ fn sandwich(algebra: &Algebra, poly: &Poly, x: Letter) -> Option<(Expr, Expr)> {
         algebra.raise(&Poly::term(Shape::SCALAR, *coefficient, term))
     };
     if poly.shape.is_scalar() {
-        // A number: the letter is one atom of the monomial.
+        // A scalar: the letter is one atom of the monomial.
         let mut monomial = term.monomial.clone();
         let i = monomial.iter().position(|(atom, e)| {
             matches!(atom, crate::algebra::Atom::Letter(l) if *l == x) && e.is_one()
@@ -322,7 +322,7 @@ fn wrong_side(
         || (w.clone(), format!("{w}^T")),
         |c| action(c.group, &w, shape.rows),
     );
-    // A form of a linear map stays symmetric: it is pulled back.
+    // A form of a linear map remains symmetric, because it is pulled back.
     let back = match s.get(a.quantity).structure.is_symmetric() && there == w {
         true => format!("{w}^T"),
         false => back,
@@ -349,8 +349,8 @@ fn wrong_side(
     ))
 }
 
-/// The field whose increment alone advects a quantity: the constraint contains no velocity of a group. If it
-/// contains no velocity at all, the first field of a model that has only fields.
+/// The field whose increment alone advects a quantity; the constraint contains no velocity of a group. If the
+/// constraint contains no velocity at all, the first field of a model that has only fields.
 fn by_field(spec: &Spec, a: &Advected) -> Option<String> {
     let letters = crate::expr::letters(&a.update);
     let stands = |c: &&Configuration| {
@@ -382,8 +382,8 @@ fn of_field(s: &Symbols, a: &Advected, field: &str) -> String {
     }
 }
 
-/// How an element `w` of a group and its inverse act on quantities of so many rows, as one writes
-/// it: vectors in space are turned by quaternions and motions as by the rotation these cover.
+/// The usual notation for the action of an element `w` of a group and of its inverse on quantities with this number
+/// of rows. Quaternions and rigid motions act on vectors in space by the rotation that they cover.
 fn action(group: Group, w: &str, rows: Dim) -> (String, String) {
     let turned = rows == Dim::Fixed(3);
     let inverse = |w: String, mark: &str| (w.clone(), format!("{w}^{mark}"));

@@ -1,6 +1,6 @@
-//! The only constructors of expression nodes. They compute shapes, flatten sums and products,
-//! drop neutral elements and move transposes to the leaves, so that equal things look equal.
-//! Shapes must already fit: `check` has verified the user's, the derivation builds its own.
+//! The only constructors of expression nodes. They compute shapes, flatten sums and products, drop neutral elements
+//! and move transposes to the leaves, so that equal expressions look equal. Shapes must already fit: `check` verifies
+//! the shapes in the user's model, and the derivation builds expressions of matching shapes.
 
 use super::function::Parity;
 use super::functional;
@@ -68,7 +68,7 @@ pub fn here(symbols: &Symbols, symbol: SymbolId) -> Expr {
     letter(symbols, symbol, Shift::HERE)
 }
 
-/// The same expression with the letter's shape given; used where no table is at hand.
+/// A letter of the given shape, for callers without a table of symbols.
 pub(super) fn letter_of_shape(at: Letter, shape: Shape) -> Expr {
     make(Node::Letter(at), shape)
 }
@@ -81,7 +81,7 @@ pub fn identity(n: Dim) -> Expr {
     make(Node::Identity(n), Shape::square(n))
 }
 
-/// The zero of a shape.
+/// Zero of a shape.
 pub fn zero(shape: Shape) -> Expr {
     if shape.is_scalar() {
         return integer(0);
@@ -94,7 +94,7 @@ pub fn unit(n: Dim, axis: u8) -> Expr {
     make(Node::Unit(n, axis), Shape::vector(n))
 }
 
-/// A one, or the unit vectors along all axes; nothing of other shapes, and of vectors whose size has only a name.
+/// 1 for scalars, the unit vectors along all axes for vectors. None for other shapes and for vectors of a named size.
 pub fn axes(shape: Shape) -> Option<Vec<Expr>> {
     match (shape.is_scalar(), shape.is_vector(), shape.rows) {
         (true, ..) => Some(vec![integer(1)]),
@@ -103,7 +103,7 @@ pub fn axes(shape: Shape) -> Option<Vec<Expr>> {
     }
 }
 
-/// Sum of terms of one shape; `shape` is needed for the empty sum. A term and its opposite cancel.
+/// Sum of terms of equal shape; the empty sum needs `shape`. A term cancels with its negative.
 pub fn sum(terms: impl IntoIterator<Item = Expr>, shape: Shape) -> Expr {
     let mut flat: Vec<Expr> = Vec::new();
     let mut constant = Rational::ZERO;
@@ -134,12 +134,12 @@ pub fn sum(terms: impl IntoIterator<Item = Expr>, shape: Shape) -> Expr {
     }
 }
 
-/// Drops pairs of a term and its opposite, the earliest first. The remaining terms keep their order.
+/// Removes pairs of a term and its negative, the earliest first. The remaining terms keep their order.
 fn without_opposites(terms: &mut Vec<Expr>) {
     if !terms.iter().any(|t| matches!(t.node(), Node::Neg(_))) {
         return;
     }
-    // Looked up, never iterated: no order of it reaches the sum.
+    // Looked up, never iterated, so its order does not affect the sum.
     let mut places: Hashed<Vec<usize>> = Hashed::default();
     for (i, term) in terms.iter().enumerate().rev() {
         if !matches!(term.node(), Node::Neg(_)) {
@@ -187,7 +187,7 @@ pub fn neg(a: Expr) -> Expr {
     }
 }
 
-/// Product in order. Numbers commute to the front; signs come out.
+/// Product in order. Scalars move to the front, and signs are factored out.
 pub fn product(factors: impl IntoIterator<Item = Expr>) -> Expr {
     let mut negative = false;
     let mut coefficient = Rational::ONE;
@@ -205,7 +205,7 @@ pub fn product(factors: impl IntoIterator<Item = Expr>) -> Expr {
                 negative = !negative;
                 queue.push(inner.clone());
             }
-            // A row times a column is a number and stays whole: its factors do not commute.
+            // A row times a column is a scalar but stays whole, because its factors do not commute.
             Node::Product(inner)
                 if !f.shape().is_scalar() || inner.iter().all(|x| x.shape().is_scalar()) =>
             {
@@ -272,7 +272,7 @@ pub fn mul(a: Expr, b: Expr) -> Expr {
     product([a, b])
 }
 
-/// A number that exact arithmetic does not follow.
+/// A constant that exact arithmetic does not represent.
 pub fn constant(c: Constant) -> Expr {
     make(Node::Constant(c), Shape::SCALAR)
 }
@@ -282,7 +282,7 @@ pub fn scale(q: Rational, a: Expr) -> Expr {
     product([number(q), a])
 }
 
-/// `a / b` for a number `b`.
+/// `a / b` for a scalar `b`.
 pub fn quotient(a: Expr, b: Expr) -> Expr {
     if a.is_zero() {
         return a;
@@ -301,7 +301,7 @@ pub fn quotient(a: Expr, b: Expr) -> Expr {
     }
 }
 
-/// `a^q` for a number `a`.
+/// `a^q` for a scalar `a`.
 pub fn power(a: Expr, q: Rational) -> Expr {
     if q.is_zero() {
         return integer(1);
@@ -324,7 +324,7 @@ pub fn power(a: Expr, q: Rational) -> Expr {
     make(Node::Power(a, q), Shape::SCALAR)
 }
 
-/// The transpose of what is computed elsewhere: it is not taken into sums and products.
+/// The transpose of a matrix that has a temporary. It stays a node, and sums and products do not absorb it.
 pub fn transposed(a: Expr) -> Expr {
     let shape = a.shape().transposed();
     make(Node::Transpose(a), shape)
@@ -401,7 +401,7 @@ fn is_rotation(symbols: &Symbols, a: &Expr) -> bool {
     }
 }
 
-/// The inverse; for a group element of SO(n) or SU(2) its transpose.
+/// The inverse; for an element of SO(n) or SU(2), its transpose.
 pub fn inverse(symbols: &Symbols, a: Expr) -> Expr {
     let shape = a.shape();
     if shape.is_scalar() {
@@ -426,7 +426,7 @@ pub fn inverse(symbols: &Symbols, a: Expr) -> Expr {
     }
 }
 
-/// Whether a matrix is invertible by its form, because all its factors are.
+/// Whether the form of a matrix shows that it is invertible, because all its factors are.
 pub fn is_invertible(symbols: &Symbols, e: &Expr) -> bool {
     let go = |x: &Expr| is_invertible(symbols, x);
     match e.node() {
@@ -508,7 +508,7 @@ pub fn vee(a: Expr) -> Expr {
     }
 }
 
-/// The vector of which this is the hat, times numbers.
+/// `v` times scalars if the expression is a hat `hat(v)` times scalars.
 fn vector_of_hat(e: &Expr) -> Option<Expr> {
     match e.node() {
         Node::Hat(v) => Some(v.clone()),
@@ -518,7 +518,7 @@ fn vector_of_hat(e: &Expr) -> Option<Expr> {
     }
 }
 
-/// The same of a product of numbers and one hat.
+/// The vector for a product of scalars and one hat.
 fn multiple_of_hat(factors: &[Expr]) -> Option<Expr> {
     let matrices = factors.iter().filter(|f| !f.shape().is_scalar()).count();
     if matrices != 1 {
@@ -550,7 +550,7 @@ pub fn part(which: Part, a: Expr) -> Expr {
     }
 }
 
-/// A function of a number.
+/// A function of a scalar.
 pub fn call(function: Function, a: Expr) -> Expr {
     if let Some(value) = function.at(&a) {
         return value;

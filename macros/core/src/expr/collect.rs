@@ -1,12 +1,12 @@
-//! Like terms collected and common numbers cancelled, for what is shown: `-V A - V A` reads
-//! `-2 V A`, `h^2 a/(2 h)` reads `h a/2`. Takes an expression, gives an equal one; products are not
-//! multiplied out, so that what the user wrote can still be recognised.
+//! Collects like terms and cancels common numeric factors for display: `-V A - V A` becomes `-2 V A`, `h^2 a/(2 h)`
+//! becomes `h a/2`. Takes an expression, gives an equal one. Products are not expanded, so that users recognize what
+//! they wrote.
 
 use super::substitute::bottom_up;
 use super::*;
 use crate::expr::symbol::Symbols;
 
-/// A term as coefficient, powers of numbers, and matrices in order.
+/// A term as coefficient, powers of scalars, and matrices in order.
 pub(super) struct Parts {
     pub coefficient: Rational,
     pub numbers: Vec<(Expr, Rational)>,
@@ -14,7 +14,7 @@ pub(super) struct Parts {
     pub shape: Shape,
 }
 
-/// The same expression with like terms collected at every depth.
+/// The expression with like terms collected at every depth.
 pub fn collect(symbols: &Symbols, e: &Expr) -> Expr {
     bottom_up(symbols, e, &|e| match e.node() {
         Node::Sum(terms) => sum_of(terms, e.shape()),
@@ -40,7 +40,7 @@ fn sum_of(terms: &[Expr], shape: Shape) -> Expr {
     sum(terms.collect::<Vec<_>>(), shape)
 }
 
-/// A number times a sum as the sum of the terms, each with the number: `2 (a/2 - b/2)` reads `a - b`.
+/// A scalar times a sum as the sum of the terms, each multiplied by the scalar: `2 (a/2 - b/2)` becomes `a - b`.
 pub fn term_by_term(e: &Expr) -> Expr {
     let (number, core) = coefficient(e);
     let Node::Sum(terms) = core.node() else {
@@ -56,8 +56,7 @@ pub fn term_by_term(e: &Expr) -> Expr {
     }
 }
 
-/// The same sum with a term that is added in front, where there is one: `-J A + A J` reads
-/// `A J - J A`.
+/// The sum with a positive term in front, if it has one: `-J A + A J` becomes `A J - J A`.
 pub fn positive_first(e: &Expr) -> Expr {
     let Node::Sum(terms) = e.node() else {
         return e.clone();
@@ -101,7 +100,7 @@ pub(super) fn scaled(c: Rational, a: Expr) -> Expr {
     }
 }
 
-/// The number in front of a term, and the term without it.
+/// The numeric factor of a term, and the term without it.
 pub fn coefficient(e: &Expr) -> (Rational, Expr) {
     let mut parts = parts(e);
     let coefficient = parts.coefficient;
@@ -125,7 +124,7 @@ pub(super) fn parts(e: &Expr) -> Parts {
     out
 }
 
-/// Adds the factors of `e`, raised to a power that is one for matrices.
+/// Adds the factors of `e` raised to `power`, which is 1 for matrices.
 pub(super) fn take(e: &Expr, power: Rational, out: &mut Parts) {
     let number = |out: &mut Parts, base: &Expr, power: Rational| {
         let known = out.numbers.iter_mut().find(|(other, _)| other == base);
@@ -149,7 +148,7 @@ pub(super) fn take(e: &Expr, power: Rational, out: &mut Parts) {
             }
         }
         Node::Product(list) if power.is_one() || list.iter().all(|f| f.shape().is_scalar()) => {
-            // A row times a column is one number.
+            // A row times a column is one scalar.
             if e.shape().is_scalar() && !list.iter().all(|f| f.shape().is_scalar()) {
                 let (numbers, word): (Vec<Expr>, Vec<Expr>) =
                     list.iter().cloned().partition(|f| f.shape().is_scalar());
@@ -168,7 +167,7 @@ pub(super) fn take(e: &Expr, power: Rational, out: &mut Parts) {
             _ => number(out, e, power),
         },
         _ if e.shape().is_scalar() => number(out, e, power),
-        // `(-A - B) C` reads `-(A + B) C`.
+        // `(-A - B) C` becomes `-(A + B) C`.
         Node::Sum(terms) if terms.iter().all(|t| parts(t).coefficient.is_negative()) => {
             out.coefficient = out.coefficient.negated();
             out.matrices.push(neg(e.clone()));
@@ -179,7 +178,7 @@ pub(super) fn take(e: &Expr, power: Rational, out: &mut Parts) {
 
 /// The product of the parts, with negative powers in the denominator.
 pub(super) fn whole(mut parts: Parts) -> Expr {
-    // Letters before scalar products and traces.
+    // Letters precede scalar products and traces.
     parts
         .numbers
         .sort_by_key(|(base, _)| !matches!(base.node(), Node::Letter(_)));
@@ -238,7 +237,7 @@ mod tests {
         let long = quotient(mul(square, l(a)), scale(Rational::integer(2), l(h)));
         let short = product([number(Rational::HALF), l(h), l(a)]);
         assert_eq!(collect(&s, &long), short);
-        // Terms that differ stay.
+        // Unlike terms are unchanged.
         let other = add(mul(l(v), l(m)), mul(l(m), l(v)));
         assert_eq!(collect(&s, &other), other);
     }

@@ -1,7 +1,7 @@
-//! Numbers that exact arithmetic does not follow: π, and decimals of many digits, such as physical constants. Takes
-//! a decimal; the algebra treats each of them as a letter of its own, and knows only that it is positive.
+//! Constants that exact arithmetic does not represent: π, and decimals of many digits, such as physical constants.
+//! Takes a decimal; the algebra treats each constant as a letter of its own and knows only that it is positive.
 
-/// A positive finite number, kept as the double that it is in a run.
+/// A positive finite number, stored as the double of the run.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct Constant(u64);
 
@@ -9,7 +9,7 @@ impl Constant {
     /// The ratio of the circumference of a circle to its diameter.
     pub const PI: Constant = Constant(std::f64::consts::PI.to_bits());
 
-    /// The double nearest to a decimal, where that is positive and finite.
+    /// The double nearest to a decimal, if it is positive and finite.
     pub fn parse(digits: &str) -> Option<Constant> {
         let value: f64 = digits.parse().ok()?;
         (value.is_finite() && value > 0.0).then_some(Constant(value.to_bits()))
@@ -25,7 +25,7 @@ impl Constant {
         self.0
     }
 
-    /// Significant digits, without zeros at their end, and the power of ten that multiplies them: `("1.380649", -23)`.
+    /// Significant digits without trailing zeros, and the power of ten that multiplies them: `("1.380649", -23)`.
     pub fn digits(self) -> (String, i32) {
         let text = format!("{:e}", self.value());
         match text.split_once('e') {

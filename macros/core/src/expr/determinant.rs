@@ -1,4 +1,4 @@
-//! Determinants and adjugates of expressions, and the polynomials that these are in two and three dimensions.
+//! Determinants and adjugates of expressions, and their polynomials in two and three dimensions.
 
 use super::build::{identity, integer, inverse, make, mul, neg, power, scale, sub, sum, trace};
 use super::shape::{Dim, Shape};
@@ -17,9 +17,9 @@ pub fn det(a: Expr) -> Expr {
     }
 }
 
-/// The determinants of the factors of a product of square matrices, whose product is its determinant: the
-/// determinant of `Q^T C Q` is written by the determinants of `Q` and `C`, and so are its derivatives, without
-/// inverses that cancel.
+/// The factors of a product of square matrices, whose determinants multiply to the determinant of the product. The
+/// determinant of `Q^T C Q` and its derivatives are expressed by the determinants of `Q` and `C`, without inverses
+/// that cancel.
 pub(super) fn factors_of_det(a: &Expr) -> Option<&[Expr]> {
     match a.node() {
         Node::Product(factors)
@@ -33,7 +33,7 @@ pub(super) fn factors_of_det(a: &Expr) -> Option<&[Expr]> {
     }
 }
 
-/// The determinant of a product of square matrices as the product of theirs.
+/// The determinant of a product of square matrices as a product of determinants.
 pub(super) fn det_by_factors(a: &Expr) -> Option<Expr> {
     let factors = factors_of_det(a)?;
     Some(super::build::product(factors.iter().cloned().map(det)))
@@ -42,23 +42,22 @@ pub(super) fn det_by_factors(a: &Expr) -> Option<Expr> {
 /// Largest argument whose adjugate is computed as a polynomial.
 const LARGEST_ADJUGATE: u32 = 8;
 
-/// The adjugate, `det(A) A^-1` for an invertible `A`. In two and three dimensions it is a node of
-/// its own, which has a value for every `A`, unless `A` is invertible by its structure or large.
+/// The adjugate, `det(A) A^-1` for an invertible `A`. In two and three dimensions it is a node of its own, defined
+/// for every `A`, unless `A` is large or invertible by its structure.
 pub fn adjugate(symbols: &Symbols, a: &Expr) -> Expr {
     let invertible = match a.node() {
         Node::Letter(at) => symbols.get(at.symbol).structure.is_invertible(),
         _ => false,
     };
     let small = matches!(a.shape().rows, Dim::Fixed(2 | 3));
-    // Its polynomial repeats its argument: for large ones the inverse is the lesser evil.
+    // The polynomial repeats its argument, so for large arguments the inverse is preferable.
     if small && !invertible && a.size() <= LARGEST_ADJUGATE {
         return make(Node::Adjugate(a.clone()), a.shape());
     }
     mul(det(a.clone()), inverse(symbols, a.clone()))
 }
 
-/// The adjugate of a matrix of two or three rows as a polynomial (Cayley-Hamilton): what is
-/// differentiated.
+/// The adjugate of a 2x2 or 3x3 matrix as a polynomial (Cayley-Hamilton), from which its derivatives are computed.
 pub fn adjugate_polynomial(a: &Expr) -> Expr {
     let n = a.shape().rows;
     let t = trace(a.clone());
@@ -80,7 +79,7 @@ pub fn adjugate_polynomial(a: &Expr) -> Expr {
     )
 }
 
-/// The same expression with determinants of products as products of determinants.
+/// The expression with determinants of products as products of determinants.
 pub fn with_plain_determinants(symbols: &Symbols, e: &Expr) -> Expr {
     let e = super::rebuild(symbols, e, &mut |x| with_plain_determinants(symbols, x));
     match e.node() {

@@ -1,5 +1,5 @@
-//! Between vectors and diagonals of matrices: the matrix with a given diagonal, and the diagonal of
-//! a matrix as a vector. Each is the adjoint of the other.
+//! Maps between vectors and diagonals of matrices: the matrix with a given diagonal, and the diagonal of a matrix as
+//! a vector. Each is the adjoint of the other.
 
 use super::build::make;
 use super::shape::Shape;

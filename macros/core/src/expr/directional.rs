@@ -1,12 +1,11 @@
-//! Directional derivatives: how an expression changes to first order when some letters change
-//! by given amounts. Linear in the amounts; one rule for each kind of node.
+//! Directional derivatives: the first-order change of an expression if some letters change by given amounts. It is
+//! linear in the amounts, with one rule per kind of node.
 
 use super::letter_mask::{Marks, Memo};
 use super::*;
 use crate::expr::symbol::Symbols;
 
-/// The derivative of `e` when each letter in `changes` moves by its amount and no other letter
-/// moves.
+/// The derivative of `e` if each letter in `changes` changes by its amount and no other letter changes.
 pub fn directional(symbols: &Symbols, e: &Expr, changes: &[(Letter, Expr)]) -> Expr {
     let moving = changes.iter().filter(|(_, amount)| !amount.is_zero());
     let walk = Walk {
@@ -17,11 +16,11 @@ pub fn directional(symbols: &Symbols, e: &Expr, changes: &[(Letter, Expr)]) -> E
     walk.of(e, &mut Memo::default())
 }
 
-/// The data that stay the same during one derivative.
+/// The data that are constant during one derivative.
 struct Walk<'a> {
     symbols: &'a Symbols,
     changes: &'a [(Letter, Expr)],
-    /// Marks of the letters that move.
+    /// Marks of the letters that change.
     marks: Marks,
 }
 
@@ -143,7 +142,7 @@ impl Walk<'_> {
                 Map::Diagonal => diagonal(d(a)),
                 Map::DiagonalOf => diagonal_of(d(a)),
                 Map::Twist => twist(d(a)),
-                // Right along the group, which is all that a letter of SU(2) moves along.
+                // A letter of SU(2) changes along the group only, here from the right.
                 Map::Rotation => {
                     let da = d(a);
                     if da.is_zero() {

@@ -1,5 +1,6 @@
-//! Common factors taken out of sums: `h M x + h M y` is computed as `h (M (x + y))`. Used for emitted code, not for
-//! print: divisions become products with inverses, which are known before. Takes an expression, gives an equal one.
+//! Factors common factors out of sums: `h M x + h M y` is computed as `h (M (x + y))`. Used for emitted code, not for
+//! display: divisions become products with inverses that are known beforehand. Takes an expression, gives an equal
+//! one.
 
 use super::collect::{Parts, parts};
 use super::shape::Structure;
@@ -7,17 +8,17 @@ use super::substitute::bottom_up;
 use super::*;
 use crate::expr::symbol::Symbols;
 
-/// Numbers and the powers they are raised to.
+/// Scalars and their exponents.
 type Powers = Vec<(Expr, Rational)>;
 
-/// A term of a sum without its numbers: how many times which factors in order.
+/// A term of a sum without its scalars: a multiple of a product of factors in order.
 #[derive(Clone)]
 struct Word {
     times: Rational,
     factors: Vec<Expr>,
 }
 
-/// The same expression with common factors taken out of sums of vectors and matrices.
+/// The expression with common factors taken out of sums of vectors and matrices.
 pub fn factored(symbols: &Symbols, e: &Expr) -> Expr {
     bottom_up(symbols, e, &|e| match e.node() {
         Node::Sum(_) | Node::Product(_) | Node::Quotient(..) if !e.shape().is_scalar() => {
@@ -30,8 +31,8 @@ pub fn factored(symbols: &Symbols, e: &Expr) -> Expr {
     })
 }
 
-/// `vee(a b^T)`, which is half of `b x a`, for a product of a column and a row, or of a matrix and a
-/// sum of such products: what acts on a body from several sides is a sum of cross products.
+/// `vee(a b^T)`, which is half of `b x a`, for a product of a column and a row, or of a matrix and a sum of such
+/// products. Moments on a body thus become a sum of cross products.
 pub fn axial_of_outer(symbols: &Symbols, a: &Expr) -> Option<Expr> {
     let Parts {
         coefficient,
@@ -70,7 +71,7 @@ pub fn axial_of_outer(symbols: &Symbols, a: &Expr) -> Option<Expr> {
     Some(product([scalar(half, &numbers), cross(b, a)]))
 }
 
-/// The terms of a sum, numbers multiplied through; a turn and its inverse side by side cancel.
+/// The terms of a sum with scalars multiplied through; an adjacent rotation and its inverse cancel.
 fn flatten(symbols: &Symbols, e: &Expr, out: &mut Vec<Parts>) {
     if let Node::Sum(terms) = e.node() {
         terms.iter().for_each(|t| flatten(symbols, t, out));
@@ -122,14 +123,14 @@ fn cancel(symbols: &Symbols, word: &mut Vec<Expr>) {
     }
 }
 
-/// The number `q` times powers of numbers.
+/// The number `q` times powers of scalars.
 fn scalar(q: Rational, numbers: &[(Expr, Rational)]) -> Expr {
     let powers = numbers.iter().map(|(base, x)| power(base.clone(), *x));
     product([number(q)].into_iter().chain(powers))
 }
 
 fn of_terms(symbols: &Symbols, terms: Vec<Parts>, shape: Shape) -> Expr {
-    // Terms of the same factors: their numbers add up.
+    // Terms with the same factors: their coefficients are added.
     let mut same: Vec<(Vec<Expr>, Vec<Parts>)> = Vec::new();
     for t in terms {
         match same.iter_mut().find(|(word, _)| *word == t.matrices) {
@@ -167,7 +168,7 @@ fn of_terms(symbols: &Symbols, terms: Vec<Parts>, shape: Shape) -> Expr {
     sum(written.collect::<Vec<_>>(), shape)
 }
 
-/// How many times the numbers that all terms have.
+/// The multiple of the scalars that all terms share.
 fn alike_total(list: &[Parts]) -> Option<Rational> {
     let (first, rest) = list.split_first()?;
     rest.iter().try_fold(first.coefficient, |total, t| {
@@ -199,7 +200,7 @@ fn without_common_number(mut words: Vec<Word>) -> (Rational, Vec<Word>) {
     (first, words)
 }
 
-/// The sum of words of one shape, the most frequent outer factor taken out, and so on within.
+/// The sum of words of one shape, with the most frequent outer factor taken out, recursively.
 fn of_words(symbols: &Symbols, words: Vec<Word>, shape: Shape) -> Expr {
     let whole = |w: &Word| match w.factors.is_empty() {
         true => scale(w.times, identity(shape.rows)),
@@ -241,7 +242,7 @@ fn of_words(symbols: &Symbols, words: Vec<Word>, shape: Shape) -> Expr {
     if without.is_empty() {
         return together;
     }
-    // The factored part and the rest may have something in common.
+    // The factored part and the remainder may share a factor.
     let both = add(together, of_words(symbols, without, shape));
     let Node::Sum(terms) = both.node() else {
         return both;
@@ -255,7 +256,7 @@ fn of_words(symbols: &Symbols, words: Vec<Word>, shape: Shape) -> Expr {
     }
 }
 
-/// Expands a word whose wrapping was removed. The word stays as it is if its terms contain other numbers.
+/// Expands a word after its outer factor was removed. The word is unchanged if its terms contain other scalars.
 fn opened(symbols: &Symbols, w: &Word) -> Vec<Word> {
     let mut terms = Vec::new();
     flatten(symbols, &product(w.factors.clone()), &mut terms);
@@ -270,7 +271,7 @@ fn opened(symbols: &Symbols, w: &Word) -> Vec<Word> {
     words.unwrap_or_else(|| vec![w.clone()])
 }
 
-/// A term that is a word; nothing if it contains other numbers.
+/// A term that is a word. None if it contains other scalars.
 fn word(e: &Expr) -> Option<Word> {
     let term = parts(e);
     term.numbers.is_empty().then_some(Word {
@@ -293,7 +294,7 @@ enum Outer {
 }
 
 impl Outer {
-    /// All that this word has.
+    /// All outer parts of this word.
     fn of(factors: &[Expr]) -> Vec<Outer> {
         let mut all = Vec::new();
         if let [only] = factors {
@@ -320,7 +321,7 @@ impl Outer {
         all
     }
 
-    /// Takes this off the word, where it is there.
+    /// Removes this outer part from the word, if present.
     fn take(&self, factors: &mut Vec<Expr>) -> bool {
         let only = match factors.as_slice() {
             [only] => Some(only.clone()),
@@ -362,7 +363,7 @@ impl Outer {
     }
 }
 
-/// The outer part that most words share, the first of equals; nothing if no two words share one.
+/// The outer part that most words share, the first one of several. None if no two words share one.
 fn outermost(words: &[Word]) -> Option<Outer> {
     let mut found: Vec<(Outer, usize)> = Vec::new();
     for w in words {

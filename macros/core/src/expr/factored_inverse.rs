@@ -1,4 +1,4 @@
-//! Products of matrices inverted factor by factor. With the inverse of `F` in front, `F A + B` becomes `A + F⁻¹ B`.
+//! Inverts products of matrices factor by factor. Multiplied by the inverse of `F`, `F A + B` becomes `A + F⁻¹ B`.
 //! The inverse of `Id + Q` for a rotation `Q` with Rodrigues vector `c` is `(Id - hat(c))/2`. Takes expressions and
 //! factors; gives equal expressions that cost less.
 
@@ -8,10 +8,10 @@ use super::simpler::identity_and;
 use super::*;
 use crate::expr::symbol::{Role, Symbols};
 
-/// A matrix that is to be undone.
+/// A factor that is to be inverted.
 #[derive(Clone, Debug)]
 pub enum Undone {
-    /// `Id + Q`, of a rotation with this Rodrigues vector; where `minus`, of its inverse.
+    /// `Id + Q` for a rotation with this Rodrigues vector, or for its inverse if `minus` is set.
     Cayley {
         /// `Id + Q` itself.
         whole: Expr,
@@ -22,13 +22,13 @@ pub enum Undone {
     },
     /// A rotation.
     Turn(Expr),
-    /// Any other.
+    /// Any other matrix.
     Matrix(Expr),
 }
 
 impl Undone {
-    /// The factors of a product with their order, and one over its number; `turn` knows the Rodrigues vectors of
-    /// rotations that are letters. `None` if a factor cannot be inverted.
+    /// The factors of a product in order, and the reciprocal of its scalar factor. `turn` gives the Rodrigues vectors
+    /// of letters that are rotations. `None` if a factor cannot be inverted.
     pub fn factors(
         symbols: &Symbols,
         e: &Expr,
@@ -80,13 +80,13 @@ impl Undone {
         }
     }
 
-    /// Whether `e` is this matrix, whatever the order of its terms.
+    /// Whether `e` is this matrix, for any order of its terms.
     fn is(&self, e: &Expr) -> bool {
         self.whole() == e
             || matches!((identity_and(self.whole()), identity_and(e)), (Some(a), Some(b)) if a == b)
     }
 
-    /// Its inverse times a vector or matrix; from the right where `from_right`.
+    /// The inverse times a vector or matrix; multiplied from the right if `from_right` is set.
     fn inverted(&self, symbols: &Symbols, e: Expr, from_right: bool) -> Expr {
         let placed = |a: Expr, e: Expr| match from_right {
             true => mul(e, a),
@@ -109,8 +109,8 @@ impl Undone {
         }
     }
 
-    /// Its inverse times a sum; terms that begin with the matrix lose it. From the right, terms that end
-    /// with it do.
+    /// The inverse times a sum; the matrix is removed from terms that begin with it. If `from_right` is set, from
+    /// terms that end with it.
     pub fn undo(&self, symbols: &Symbols, e: &Expr, from_right: bool) -> Expr {
         let (without, with) = self.apart(e, from_right);
         let rest = sum(with, e.shape());
@@ -124,12 +124,12 @@ impl Undone {
         )
     }
 
-    /// Whether a term of the sum begins with the matrix; from the right, whether it ends with it.
+    /// Whether a term of the sum begins with the matrix; if `from_right` is set, whether it ends with it.
     pub fn stands_in(&self, e: &Expr, from_right: bool) -> bool {
         !self.apart(e, from_right).0.is_empty()
     }
 
-    /// The terms that have lost it, and those without it.
+    /// The terms with the matrix, after its removal, and the terms without it.
     fn apart(&self, e: &Expr, from_right: bool) -> (Vec<Expr>, Vec<Expr>) {
         let terms = match e.node() {
             Node::Sum(terms) => terms.clone(),
@@ -159,7 +159,7 @@ impl Undone {
         (without, with)
     }
 
-    /// The expression with `image` wherever this matrix acts on `v`.
+    /// The expression with `image` in place of this matrix times `v`.
     pub fn acted(&self, symbols: &Symbols, e: &Expr, v: &Expr, image: &Expr) -> Expr {
         let e = rebuild(symbols, e, &mut |x| self.acted(symbols, x, v, image));
         if let (Node::Sum(terms), Some((_, q))) = (e.node(), identity_and(self.whole())) {
@@ -218,7 +218,7 @@ mod tests {
         assert!(matches!(first, Undone::Cayley { minus: false, .. }));
         assert!(matches!(second, Undone::Matrix(_)));
         assert!(matches!(third, Undone::Cayley { minus: true, .. }));
-        // The factor is removed from terms that begin with it, in whatever order they are.
+        // The factor is removed from terms that begin with it, for any order of its terms.
         let asked = add(mul(add(one(), q.clone()), u.clone()), v.clone());
         let rest = scale(Rational::HALF, sub(v.clone(), cross(c.clone(), v.clone())));
         assert_eq!(first.undo(&s, &asked, false), add(u.clone(), rest));
@@ -231,7 +231,7 @@ mod tests {
         let long = sum([mul(back, v.clone()), v.clone(), c.clone()], vector);
         let seen = third.acted(&s, &mul(m.clone(), long), &v, &u);
         assert_eq!(seen, mul(m, add(c.clone(), u.clone())));
-        // A matrix that varies is not inverted, and `Id - Q` is singular at rest.
+        // A matrix that varies is not inverted, and `Id - Q` is singular at zero velocity.
         assert!(Undone::factors(&s, &mul(far, a), turn).is_none());
         assert!(Undone::factors(&s, &sub(one(), q), turn).is_none());
     }

@@ -1,10 +1,9 @@
-//! Functions of one number: their names, derivatives and parity. Everything else about them is left
-//! to whoever evaluates them.
+//! Functions of one scalar: their names, derivatives and parity. All other properties are left to the evaluators.
 
 use super::{Expr, Node, call, integer, mul, neg, power, quotient, sub, zero};
 use crate::algebra::Rational;
 
-/// Functions of one number.
+/// Functions of one scalar.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Function {
     /// Exponential.
@@ -21,7 +20,7 @@ pub enum Function {
     Cosh,
     /// Hyperbolic tangent.
     Tanh,
-    /// Absolute value: the derivative at 0 does not exist and is taken as 0.
+    /// Absolute value; its derivative at 0, where it does not exist, is set to 0.
     Abs,
     /// The sign: -1, 0 or 1.
     Sign,
@@ -39,7 +38,7 @@ pub enum Parity {
 }
 
 impl Function {
-    /// All of them.
+    /// All functions.
     pub const ALL: [Function; 9] = [
         Function::Exp,
         Function::Log,
@@ -72,7 +71,7 @@ impl Function {
         Function::ALL.into_iter().find(|f| f.word() == word)
     }
 
-    /// Whether it is differentiable wherever it has a value.
+    /// Whether it is differentiable wherever it is defined.
     pub fn is_smooth(self) -> bool {
         !matches!(self, Function::Abs | Function::Sign)
     }

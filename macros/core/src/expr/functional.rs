@@ -1,9 +1,9 @@
-//! Functionals: functions of which the engine knows names and shapes alone, `f(x, y)`. Two kinds of node hold them:
-//! a value, differentiated along some arguments, `D_1 f(x, y)[u]`, and its pull-back, the transposed derivative
-//! with respect to one argument, applied to a seed. Gradients and directional derivatives of the two are sums of
-//! the two, so that no further kind is needed: the gradient of `<s, f(x)>` is a pull-back, the gradient of a
-//! pull-back is a pull-back along one more direction, and a directional derivative adds a direction. Derivatives of
-//! a number are gradients, never kept along their last direction: `Df(x)[u]` is `<∇f(x), u>`.
+//! Functionals: functions `f(x, y)` of which the engine knows only names and shapes. There are two kinds of node. One
+//! is a value, differentiated along some arguments, `D_1 f(x, y)[u]`. The other is its pull-back: the transposed
+//! derivative with respect to one argument, applied to a seed. Gradients and directional derivatives of the two kinds
+//! are sums of the two kinds. The gradient of `<s, f(x)>` is a pull-back, the gradient of a pull-back is a pull-back
+//! along one more direction, and a directional derivative adds a direction. The derivative of a scalar along its last
+//! direction is stored as a gradient: `Df(x)[u]` is `<∇f(x), u>`.
 
 #[cfg(test)]
 pub(crate) mod sample;
@@ -43,13 +43,13 @@ impl Kind {
 /// The path that denotes a function provided by the case.
 pub const BY_CASE: &str = "case";
 
-/// How far a functional sees.
+/// The arguments on which a functional depends.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Reach {
     /// Its value depends on the local values of its arguments.
     Point,
-    /// Its value at one site depends on its arguments at all sites, as areas of a mesh do: numbers that differ from
-    /// site to site do not factor out of its derivatives.
+    /// Its value at one site depends on its arguments at all sites, as areas of a mesh do. Scalars that vary between
+    /// sites do not factor out of its derivatives.
     Sites,
 }
 
@@ -62,11 +62,11 @@ pub struct Functional {
     pub arguments: Vec<Kind>,
     /// Its value; for a field, the value at one site.
     pub value: Kind,
-    /// How far it sees.
+    /// The arguments on which it depends.
     pub reach: Reach,
-    /// The Rust path of what computes it.
+    /// The Rust path of its implementation.
     pub path: String,
-    /// How it is typeset, in LaTeX, where its declaration says so.
+    /// Its LaTeX form, if the declaration gives one.
     pub typeset: Option<String>,
 }
 
@@ -77,7 +77,7 @@ pub struct Applied {
     pub functional: FunctionalId,
     /// Its arguments.
     pub arguments: Vec<Expr>,
-    /// The argument, counted from 0, and the direction of each derivative; their order means nothing.
+    /// The argument, counted from 0, and the direction of each derivative, in any order.
     pub along: Vec<(u8, Expr)>,
 }
 
@@ -88,28 +88,28 @@ impl Applied {
         self.along.iter().for_each(|(_, x)| visit(x));
     }
 
-    /// Differentiated once more.
+    /// With one more derivative.
     pub(crate) fn also_along(&self, which: u8, amount: Expr) -> Applied {
         let mut all = self.clone();
         all.along.push((which, amount));
         all
     }
 
-    /// Without the derivative at this place in the list.
+    /// Without the derivative at index `place`.
     pub(crate) fn less_one(&self, place: usize) -> Applied {
         let mut all = self.clone();
         all.along.remove(place);
         all
     }
 
-    /// With another direction at this place in the list.
+    /// With another direction at index `place`.
     fn with_direction(&self, place: usize, amount: Expr) -> Applied {
         let mut all = self.clone();
         all.along[place].1 = amount;
         all
     }
 
-    /// Every argument and its number.
+    /// Every argument with its index.
     fn numbered(&self) -> impl Iterator<Item = (u8, &Expr)> {
         (0u8..).zip(&self.arguments)
     }
@@ -157,7 +157,7 @@ pub fn given(symbols: &Symbols, functional: FunctionalId, arguments: Vec<Expr>) 
     )
 }
 
-/// `f(x, y)`, or `D_1 f(x, y)[u]` where it is differentiated along directions.
+/// `f(x, y)`, or `D_1 f(x, y)[u]` if it is differentiated along directions.
 pub fn derived(symbols: &Symbols, a: Applied) -> Expr {
     let f = symbols.functional(a.functional);
     let (outside, mut a) = apart(symbols, a);
@@ -194,8 +194,8 @@ pub fn pull_back(symbols: &Symbols, a: Applied, which: u8, seed: Expr) -> Expr {
     mul(outside, make(Node::PullBack(a, which, seed), shape))
 }
 
-/// The factors that come out of the directions, and the rest; the factor is zero where a direction is. Directions
-/// are projected onto the structure of their argument.
+/// The factors of the directions, and the remainder; the factor is zero if a direction is. Directions are projected
+/// onto the structure of their argument.
 fn apart(symbols: &Symbols, mut a: Applied) -> (Expr, Applied) {
     let f = symbols.functional(a.functional);
     let mut outside = integer(1);
@@ -213,8 +213,8 @@ fn apart(symbols: &Symbols, mut a: Applied) -> (Expr, Applied) {
     (outside, a)
 }
 
-/// A factor and the rest of what a derivative is linear in: signs and exact numbers, and all numbers
-/// where the functional sees one point.
+/// A factor, and the remainder on which a derivative depends linearly. Factors are signs and exact numbers, and all
+/// scalars if the functional depends on one point.
 fn taken_out(reach: Reach, e: Expr) -> (Expr, Expr) {
     let number = |x: &Expr| match reach {
         Reach::Point => x.shape().is_scalar(),
@@ -243,7 +243,7 @@ fn taken_out(reach: Reach, e: Expr) -> (Expr, Expr) {
     }
 }
 
-/// The same node with every child replaced, in their order.
+/// The node with every child replaced, in order.
 pub(super) fn rebuilt(
     symbols: &Symbols,
     a: &Applied,
@@ -260,7 +260,7 @@ pub(super) fn rebuilt(
     }
 }
 
-/// The contribution of a seed of the node to each child that is wanted.
+/// The contribution of a seed of the node to each selected child.
 pub(super) fn gradients<'a>(
     symbols: &Symbols,
     a: &'a Applied,
@@ -287,7 +287,7 @@ pub(super) fn gradients<'a>(
     all
 }
 
-/// The derivative of the node where its children change by `d`.
+/// The derivative of the node if its children change by `d`.
 pub(super) fn changed(
     symbols: &Symbols,
     a: &Applied,
@@ -319,7 +319,7 @@ pub(super) fn changed(
     sum(terms, shape)
 }
 
-/// `<a, b> = tr(a^T b)`, written as a product or scalar product where it is one.
+/// `<a, b> = tr(a^T b)`, written as a product or scalar product if it is one.
 pub(crate) fn pairing(symbols: &Symbols, a: Expr, b: Expr) -> Expr {
     if a.shape().is_scalar() {
         mul(a, b)

@@ -1,12 +1,12 @@
-//! Gradients with respect to one letter, by reverse accumulation, in the pairing
-//! `<A, B> = tr(A^T B)`: `d e = <gradient, d letter>`. The result keeps the user's structure.
+//! Gradients with respect to one letter, by reverse accumulation, in the pairing `<A, B> = tr(A^T B)`: `d e =
+//! <gradient, d letter>`. The result preserves the structure of the user's expression.
 
 use super::*;
 use crate::expr::symbol::Symbols;
 
 const QUARTER: Rational = Rational::QUARTER;
 
-/// The gradient of the number `e` with respect to `wrt`; its shape is the letter's.
+/// The gradient of the scalar `e` with respect to `wrt`, of the shape of that letter.
 pub fn gradient(symbols: &Symbols, e: &Expr, wrt: Letter) -> Expr {
     let shape = symbols.get(wrt.symbol).shape;
     let mut terms = Vec::new();

@@ -1,5 +1,6 @@
-//! Hashes of expressions, each computed once, when the expression is made: of whole words, since the macro's engine is not
-//! optimised. Gives maps and sets of expressions that use it. They are looked up, never iterated.
+//! Hashes of expressions. Each hash is computed once, when the expression is created, and uses whole words, since the
+//! macro's engine is compiled without optimization. Gives maps and sets of expressions that use these hashes. They
+//! are looked up, never iterated.
 
 use super::Expr;
 use core::hash::{BuildHasherDefault, Hasher};
@@ -8,10 +9,10 @@ use std::collections::{HashMap, HashSet};
 /// A map whose keys are expressions.
 pub(crate) type Hashed<V> = HashMap<Expr, V, BuildHasherDefault<Words>>;
 
-/// Some expressions.
+/// A set of expressions.
 pub(crate) type Exprs = HashSet<Expr, BuildHasherDefault<Words>>;
 
-/// A fixed hash: the same on every machine and in every run.
+/// A fixed hash: equal on every machine and in every run.
 #[derive(Default)]
 pub(crate) struct Words(u64);
 
@@ -23,7 +24,7 @@ impl Words {
 
 impl Hasher for Words {
     fn finish(&self) -> u64 {
-        // Tables look at the lowest and the highest bits.
+        // Hash tables use the lowest and the highest bits.
         self.0 ^ self.0 >> 29
     }
 

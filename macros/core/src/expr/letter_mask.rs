@@ -29,17 +29,17 @@ impl Marks {
         marks.fold(Marks::default(), Marks::with)
     }
 
-    /// The marks of both.
+    /// The marks of both sets.
     pub(super) fn with(self, other: Marks) -> Marks {
         Marks([self.0[0] | other.0[0], self.0[1] | other.0[1]])
     }
 
-    /// Whether no letter is in both.
+    /// Whether the sets have no mark in common.
     pub(super) fn are_apart(self, other: Marks) -> bool {
         self.0[0] & other.0[0] == 0 && self.0[1] & other.0[1] == 0
     }
 
-    /// Whether all of the other ones are among these.
+    /// Whether this set contains all marks of `other`.
     pub(super) fn hold(self, other: Marks) -> bool {
         self.with(other) == self
     }
@@ -55,21 +55,21 @@ pub(crate) fn may_hold(whole: &Expr, part: &Expr) -> bool {
     whole.0.marks.hold(part.0.marks)
 }
 
-/// Whether a letter may occur; where not, it does not.
+/// Whether a letter may occur; `false` proves that it does not.
 pub(crate) fn may_contain(e: &Expr, letter: Letter) -> bool {
     !e.0.marks.are_apart(Marks::of(letter))
 }
 
-/// Results of one walk for the parts that several places share. It holds these parts, so that no
-/// other expression comes to lie at the address of one.
+/// Results of one walk for shared parts. It owns these parts, so that no other expression can get the address of one
+/// of them.
 pub(super) struct Memo<T>(HashMap<usize, (Expr, T), BuildHasherDefault<Words>>);
 
-/// Parts of fewer nodes are read again: that costs less than looking them up.
+/// Smaller parts are visited again, because that costs less than looking them up.
 const SHARED: u32 = 8;
 
 impl<T> Default for Memo<T> {
     fn default() -> Self {
-        // Looked up, never iterated: no order of it reaches a result.
+        // Looked up, never iterated, so its order does not affect a result.
         Memo(HashMap::default())
     }
 }
@@ -81,7 +81,7 @@ impl<T: Clone> Memo<T> {
         Some(found.clone())
     }
 
-    /// Keeps what was found for this part, if it is shared.
+    /// Stores the result for this part, if the part is shared.
     pub(super) fn keep(&mut self, e: &Expr, found: &T) {
         if let Some(place) = place(e) {
             self.0.insert(place, (e.clone(), found.clone()));

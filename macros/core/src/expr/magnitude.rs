@@ -1,8 +1,8 @@
-//! How large the terms of an expression are: the scale of its rounding. To first order this is a running error
-//! bound in units of rounding (Higham, Accuracy and Stability of Numerical Algorithms, section 3.3): the terms of a
-//! sum count, each by itself; the terms of a factor count times the *values* of the other factors, so that a power
-//! of a small number is as small as it is. A difference of stored positions is as uncertain as the positions. Takes
-//! an expression; gives one without cancellation.
+//! The magnitude of the terms of an expression, which is the scale of its rounding error. To first order this is a
+//! running error bound in units of rounding (Higham, Accuracy and Stability of Numerical Algorithms, section 3.3).
+//! The terms of a sum count individually. The terms of a factor count times the *values* of the other factors, so
+//! that the power of a small number is small. A difference of stored positions is as uncertain as the positions.
+//! Takes an expression; gives one without cancellation.
 
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::Symbols;
@@ -11,7 +11,7 @@ use super::{
     position_differences, power, quotient, substitute, sum, trace, transpose,
 };
 
-/// How large the terms of an expression are.
+/// The magnitude of the terms of an expression.
 pub(crate) fn magnitude(s: &Symbols, e: &Expr) -> Expr {
     Terms {
         symbols: s,
@@ -21,8 +21,8 @@ pub(crate) fn magnitude(s: &Symbols, e: &Expr) -> Expr {
     .terms
 }
 
-/// The size of the terms of an expression at a node. Differences of positions count by their own lengths, plus the
-/// effect of the rounding of the positions themselves, to first order and in units of rounding.
+/// The magnitude of the terms of an expression at a node. Differences of positions count by their own lengths, plus
+/// the effect of the rounding of the positions themselves, to first order and in units of rounding.
 pub(crate) fn magnitude_by_differences(s: &Symbols, e: &Expr) -> Expr {
     let plain = |e: &Expr| magnitude(s, e);
     in_differences(s, e, plain, |named| {
@@ -37,13 +37,13 @@ pub(crate) fn magnitude_by_differences(s: &Symbols, e: &Expr) -> Expr {
     })
 }
 
-/// The same without the rounding of the positions.
+/// The magnitude without the rounding of the positions.
 pub(crate) fn lengths_of_differences(s: &Symbols, e: &Expr) -> Expr {
     let plain = |e: &Expr| magnitude(s, e);
     in_differences(s, e, plain, |named| magnitude(&named.symbols, &named.whole))
 }
 
-/// A size computed with letters for differences of positions; the plain size if there are no such differences.
+/// A magnitude computed with letters for differences of positions; the plain magnitude if there are none.
 fn in_differences(
     s: &Symbols,
     e: &Expr,
@@ -56,13 +56,13 @@ fn in_differences(
     }
 }
 
-/// Whether the scalar product of these is a component of a letter.
+/// Whether the scalar product of `a` and `b` is a component of a letter.
 fn is_component(a: &Expr, b: &Expr) -> bool {
     let is = |a: &Expr, b: &Expr| matches!((a.node(), b.node()), (Node::Letter(_), Node::Unit(..)));
     is(a, b) || is(b, a)
 }
 
-/// Whether the product is some rows of a letter, or those padded by zeros.
+/// Whether the product selects rows of a letter, possibly padded by zeros.
 fn is_selection(factors: &[Expr]) -> bool {
     let inclusion = |e: &Expr| match e.node() {
         Node::Transpose(a) => matches!(a.node(), Node::Inclusion(..)),
@@ -96,18 +96,18 @@ fn length(s: &Symbols, x: &Expr) -> Expr {
     power(square, Rational::HALF)
 }
 
-/// How large a value is.
+/// The magnitude of a value.
 struct Size {
-    /// Itself.
+    /// The value's own length.
     value: Expr,
-    /// Its terms, where they cancel; for a single term, its value.
+    /// The magnitude of its terms if they cancel; for a single term, its value.
     terms: Expr,
-    /// How large its change is where stored elements change by their rounding.
+    /// The magnitude of its change due to the rounding of stored elements.
     stored: Expr,
 }
 
 impl Size {
-    /// The size of an expression that is neither a sum nor stored.
+    /// The magnitude of an expression that is neither a sum nor stored.
     fn exact(value: Expr) -> Self {
         Self {
             terms: value.clone(),
@@ -121,7 +121,7 @@ impl Size {
         self.terms == self.value
     }
 
-    /// The size of a product.
+    /// The magnitude of a product.
     fn times(self, other: Self) -> Self {
         let value = mul(self.value.clone(), other.value.clone());
         let [own, others] = [
@@ -141,7 +141,7 @@ impl Size {
         }
     }
 
-    /// The size of a function with this value, which changes with its argument at this rate.
+    /// The magnitude of a function with this value and this derivative with respect to its argument.
     fn at_rate(self, value: Expr, rate: impl Fn(Expr) -> Expr) -> Self {
         Self {
             terms: match self.is_single() {
@@ -159,7 +159,7 @@ impl Size {
 
 struct Terms<'a> {
     symbols: &'a Symbols,
-    /// The sizes of the positions in the letters of differences, if their rounding is requested.
+    /// The magnitudes of the positions in the letters of differences, if their rounding is requested.
     differences: Option<&'a [(Letter, Expr)]>,
 }
 
@@ -183,7 +183,7 @@ impl Terms<'_> {
                     stored: total(&|x| x.stored.clone()),
                 }
             }
-            // Some rows of what is stored are as large as they are.
+            // Selected rows of a stored vector have their own magnitude.
             Node::Product(list) if is_selection(list) => Size {
                 stored: sum(
                     list.iter().map(|x| of(x).stored).collect::<Vec<_>>(),
@@ -196,7 +196,7 @@ impl Terms<'_> {
                 all.reduce(Size::times)
                     .unwrap_or_else(|| Size::exact(integer(1)))
             }
-            // A component of what is stored is as large as it is, not as the others are.
+            // A component of a stored vector has its own magnitude, not that of the other components.
             Node::Dot(a, b) if is_component(a, b) => Size {
                 stored: add(of(a).stored, of(b).stored),
                 ..Size::exact(length(e))
@@ -221,25 +221,25 @@ impl Terms<'_> {
                     _ => Size::exact(length(&identity(a.shape().rows))).times(of(a)),
                 }
             },
-            // The products of entries of which it is the sum are at most as large, together, as this (Hadamard).
+            // The sum of the absolute values of the products in a determinant is at most this (Hadamard).
             Node::Det(a) => match a.shape().rows {
                 Dim::Fixed(n) => Size {
                     value: length(e),
                     terms: power(length(a), Rational::integer(n.into())),
                     stored: integer(0),
                 },
-                // A power of a number that has only a name: the value itself.
+                // The dimension is named, so the power is not known: the value itself.
                 Dim::Named(_) => Size::exact(length(e)),
             },
             Node::Hat(a) | Node::Map(Map::Pure | Map::Twist, a) => {
                 Size::exact(integer(2)).times(of(a))
             }
-            // Linear in the entries; where these are of a quaternion, see `stored`.
+            // Linear in the entries; `stored` handles unit quaternions.
             Node::Map(Map::Imaginary | Map::Real, a) if !unit_quaternions(self.symbols, a) => of(a),
             Node::Map(Map::Diagonal | Map::DiagonalOf, a) => of(a),
             Node::Quotient(a, b) => of(a).times(Size::exact(quotient(integer(1), length(b)))),
             Node::Power(a, q) if *q == Rational::integer(2) => of(a).times(of(a)),
-            // A root does not have a rate at a zero of its argument.
+            // The derivative of a root does not exist at zero.
             Node::Power(a, q) if q.value() > 1.0 => of(a).at_rate(length(e), |change| {
                 let less = q.plus(Rational::MINUS_ONE);
                 less.map_or_else(
@@ -261,7 +261,7 @@ impl Terms<'_> {
         }
     }
 
-    /// The size of the stored elements of which a small value is made.
+    /// The magnitude of the stored elements from which a small value is computed.
     fn stored(&self, e: &Expr) -> Option<Expr> {
         let differences = self.differences?;
         match e.node() {

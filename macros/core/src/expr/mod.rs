@@ -1,5 +1,5 @@
-//! Expressions as the user wrote them: a closed, shaped, immutable tree. Decisions are taken on
-//! normal forms ([`crate::algebra`]); what is printed and emitted is always one of these.
+//! Expressions as the user wrote them: a closed, shaped, immutable tree. Decisions use normal forms
+//! ([`crate::algebra`]); printed and emitted code uses these trees.
 
 mod build;
 mod collect;
@@ -118,21 +118,21 @@ pub enum Part {
     Diagonal,
 }
 
-/// Maps of quaternions, as 4 x 4 matrices of left multiplication, of rigid motions, as 4 x 4
-/// homogeneous matrices, and between vectors and diagonals.
+/// Maps of quaternions as 4 x 4 matrices of left multiplication, maps of rigid motions as homogeneous matrices, and
+/// maps between vectors and diagonals.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Map {
     /// The real part, `tr(A)/4`.
     Real,
     /// The imaginary part: the vector `v` for which `pure(v)` is nearest to `A`.
     Imaginary,
-    /// The left multiplication by a vector, read as a quaternion without real part.
+    /// The left multiplication by a vector, taken as a quaternion without real part.
     Pure,
-    /// The rotation of a letter: that which a quaternion covers, the block of a rigid motion.
+    /// The rotation of a letter: the rotation that a quaternion covers, or the block of a rigid motion.
     Rotation,
-    /// The translation of a rigid motion, of a letter.
+    /// The translation of a rigid motion, which is a letter.
     Translation,
-    /// The element `[hat(ω) v; 0 0]` of the Lie algebra of rigid motions of a vector `(ω, v)`.
+    /// The element `[hat(ω) v; 0 0]` of the Lie algebra of rigid motions, for a vector `(ω, v)`.
     Twist,
     /// The matrix with a vector on its diagonal and zeros elsewhere.
     Diagonal,
@@ -145,27 +145,27 @@ pub enum Map {
 pub enum Node {
     /// An exact number.
     Number(Rational),
-    /// A number that exact arithmetic does not follow.
+    /// A constant that exact arithmetic does not represent.
     Constant(Constant),
     /// A symbol at an offset.
     Letter(Letter),
     /// The identity matrix.
     Identity(Dim),
-    /// The zero of a shape.
+    /// Zero of a shape.
     Zero(Shape),
     /// The unit vector along an axis (counted from 0).
     Unit(Dim, u8),
     /// The zero-padding inclusion of the given shape: the identity from this row on, zero elsewhere.
     Inclusion(Shape, u8),
-    /// A sum of terms of one shape.
+    /// A sum of terms of equal shape.
     Sum(Vec<Expr>),
-    /// The opposite.
+    /// The negative.
     Neg(Expr),
-    /// A product: numbers first, then matrices in order.
+    /// A product: scalars first, then matrices in order.
     Product(Vec<Expr>),
-    /// A quotient by a number.
+    /// A quotient by a scalar.
     Quotient(Expr, Expr),
-    /// A rational power of a number.
+    /// A rational power of a scalar.
     Power(Expr, Rational),
     /// The transpose.
     Transpose(Expr),
@@ -175,8 +175,7 @@ pub enum Node {
     Trace(Expr),
     /// The determinant of a square matrix.
     Det(Expr),
-    /// The adjugate of a square matrix of two or three rows: `det(A) A^-1`, with a value for
-    /// every `A`.
+    /// The adjugate of a 2x2 or 3x3 matrix: `det(A) A^-1`, defined for every `A`.
     Adjugate(Expr),
     /// The scalar product of two vectors.
     Dot(Expr, Expr),
@@ -184,21 +183,21 @@ pub enum Node {
     Cross(Expr, Expr),
     /// The skew matrix of a vector: `hat(v) w = v x w`.
     Hat(Expr),
-    /// The axial vector of the skew part of a 3 x 3 matrix, the inverse of `hat` on skew ones.
+    /// The axial vector of the skew part of a 3 x 3 matrix; on skew matrices, the inverse of `hat`.
     Vee(Expr),
     /// A linear part of a square matrix.
     Part(Part, Expr),
-    /// A function of a number.
+    /// A function of a scalar.
     Call(Function, Expr),
     /// A map of quaternions, rigid motions or diagonals.
     Map(Map, Expr),
     /// The value of a functional, differentiated along some of its arguments.
     Given(Applied),
-    /// Its transposed derivative with respect to one argument, applied to a seed.
+    /// The transposed derivative of a functional with respect to one argument, applied to a seed.
     PullBack(Applied, u8, Expr),
 }
 
-/// A shaped expression; cloning shares it.
+/// An expression with its shape; clones share the tree.
 #[derive(Clone)]
 pub struct Expr(Arc<Inner>);
 
@@ -221,7 +220,7 @@ impl Expr {
         self.0.shape
     }
 
-    /// Number of nodes of the tree, saturating: what a walk of it costs.
+    /// The number of nodes of the tree, saturating, which is the cost of a walk.
     pub fn size(&self) -> u32 {
         self.0.size
     }

@@ -7,7 +7,7 @@ use super::shape::{Dim, Shape, Structure};
 use super::symbol::{Role, Symbols};
 use super::*;
 
-/// Whether it is such a difference, up to sign: of positions, or of positions and constants.
+/// Whether the sum is such a difference, up to sign: of positions, or of positions and constants.
 pub(crate) fn is_between(symbols: &Symbols, e: &Expr) -> bool {
     let terms = match e.node() {
         Node::Sum(terms) => terms,
@@ -22,9 +22,9 @@ pub(crate) fn is_between(symbols: &Symbols, e: &Expr) -> bool {
     places.count() > 0 && (is_zero(own) || is_zero(all)) || are_weighted(symbols, e, terms)
 }
 
-/// Whether positions with constant weights can be moved together so that their sum stays, such as `y - x*E1` of a
-/// vector and a number or `x - r*φ` of two numbers. A sum of coordinates along different axes cannot. All other
-/// terms must be constants.
+/// Whether positions with constant weights can be shifted together without changing their sum, as in `y - x*E1` for a
+/// vector and a scalar or `x - r*φ` for two scalars. Coordinates along different axes cannot. All other terms must be
+/// constants.
 pub(crate) fn are_weighted(symbols: &Symbols, e: &Expr, terms: &[Expr]) -> bool {
     let mut known: Vec<(Expr, bool)> = Vec::new();
     let mut coordinates = 0;
@@ -62,7 +62,8 @@ fn is_constant(symbols: &Symbols, e: &Expr) -> bool {
         .all(|l| symbols.get(l.symbol).role == Role::Parameter)
 }
 
-/// The place of a term that is linear in it and constant otherwise, and whether something but a number multiplies it.
+/// The position in a term that is linear in it and otherwise constant, and whether a factor other than a number
+/// multiplies it.
 fn weighted(symbols: &Symbols, term: &Expr) -> Option<(Expr, bool)> {
     let found = parts(term);
     let numbers = found.numbers.iter().map(|(f, q)| (f, *q));
@@ -86,7 +87,7 @@ fn weighted(symbols: &Symbols, term: &Expr) -> Option<(Expr, bool)> {
     place.map(|place| (place, has_weight))
 }
 
-/// Whether it is a value of a field, or the place of a rigid motion.
+/// Whether it is the value of a field, or the position of a rigid motion.
 fn is_place(symbols: &Symbols, e: &Expr) -> bool {
     let element = |e: &Expr, general: bool| match e.node() {
         Node::Letter(l) => {
@@ -117,7 +118,7 @@ fn bare(symbols: &Symbols, term: &Expr) -> Option<(Rational, Bare)> {
     let found = parts(term);
     let only = match (found.matrices.as_slice(), found.numbers.as_slice()) {
         ([only], []) => only,
-        // A field of scalars is among the numbers.
+        // A scalar field is among the scalar factors.
         ([], [(only, q)]) if q.is_one() => only,
         _ => return None,
     };
@@ -206,7 +207,7 @@ fn name(s: &Symbols, all: &mut Symbols, found: &mut Vec<(Letter, Expr)>, e: &Exp
             .map(|x| name(s, all, found, x))
             .collect::<Vec<_>>()
             .into_iter();
-        // The names are letters of `all` alone.
+        // Only `all` contains the letters of the names.
         return rebuild(all, e, &mut |x| {
             children.next().unwrap_or_else(|| x.clone())
         });

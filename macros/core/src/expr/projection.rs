@@ -1,6 +1,6 @@
-//! Projects matrices onto a structure: the gradient with respect to a symmetric, skew or diagonal letter is itself
-//! symmetric, skew or diagonal. Takes any matrix; gives its projection in the pairing `tr(A^T B)`, term by term.
-//! Terms that have the structure stay as they are.
+//! Projects matrices onto a structure: the gradient with respect to a symmetric, skew or diagonal letter has the same
+//! structure. Takes any matrix; gives its projection in the pairing `tr(A^T B)`, term by term. Terms that have the
+//! structure are unchanged.
 
 use super::shape::Structure;
 use super::*;
@@ -12,7 +12,7 @@ pub fn projected(symbols: &Symbols, structure: Structure, e: &Expr) -> Expr {
         Structure::Symmetric => Part::Symmetric,
         Structure::Skew => Part::Skew,
         Structure::Diagonal => Part::Diagonal,
-        // These groups are not linear spaces of matrices: the multiplier of the group takes the rest.
+        // These groups are not linear spaces of matrices. The multiplier of the group accounts for the remainder.
         Structure::General
         | Structure::Orthogonal
         | Structure::Invertible
@@ -91,11 +91,11 @@ mod tests {
         let h = s.add("h", Shape::SCALAR, Structure::General, Role::Step);
         let (w, j, h) = (here(&s, w), here(&s, j), here(&s, h));
         let wt = transpose(&s, w.clone());
-        // d tr(ω J)/dJ = ω^T, of which the symmetric part counts.
+        // d tr(ω J)/dJ = ω^T; only its symmetric part counts.
         let raw = neg(quotient(wt.clone(), h.clone()));
         let expected = neg(quotient(part(Part::Symmetric, w.clone()), h));
         assert_eq!(projected(&s, Structure::Symmetric, &raw), expected);
-        // A symmetric term stays as it was written.
+        // A symmetric term is unchanged.
         let congruence = product([wt.clone(), j.clone(), w.clone()]);
         let mixed = add(congruence.clone(), wt.clone());
         let symmetric = add(congruence, part(Part::Symmetric, w.clone()));

@@ -1,6 +1,6 @@
-//! Quaternions as 4 x 4 matrices: the constructors of the maps between them and numbers, vectors and rotations. The
-//! matrix of a quaternion `w + v` is its left multiplication `p -> (w + v) p` on `(1, i, j, k)`. Products of
-//! quaternions are then products of matrices, and the conjugate is the transpose.
+//! Quaternions as 4 x 4 matrices: the constructors of the maps between quaternions and scalars, vectors and
+//! rotations. The matrix of a quaternion `w + v` is its left multiplication `p -> (w + v) p` on `(1, i, j, k)`.
+//! Products of quaternions are then products of matrices, and the conjugate is the transpose.
 
 use super::build::make;
 use super::rigid::within;
@@ -43,14 +43,14 @@ pub fn pure(v: Expr) -> Expr {
     }
 }
 
-/// The rotation of a product of quaternions, or of rigid motions: the product of theirs.
+/// The rotation of a product of quaternions or rigid motions, as the product of their rotations.
 pub fn rotation(symbols: &Symbols, a: Expr) -> Expr {
     let of = |x: &Expr| rotation(symbols, x.clone());
-    // Quaternions and homogeneous matrices both have a row more than the space that they turn.
+    // Quaternions and homogeneous matrices both have one row more than the dimension of space.
     let space = within(a.shape().rows);
     match a.node() {
         Node::Identity(_) => identity(space),
-        // q and -q cover one rotation.
+        // q and -q cover the same rotation.
         Node::Neg(x) => of(x),
         Node::Product(factors) => product(factors.iter().map(of).collect::<Vec<_>>()),
         Node::Transpose(x) | Node::Inverse(x) => transpose(symbols, of(x)),
@@ -58,8 +58,8 @@ pub fn rotation(symbols: &Symbols, a: Expr) -> Expr {
     }
 }
 
-/// `2 im(A)` for what moves a letter `W` by `δW`: with `A = W^T δW` the vector of the rotation's
-/// change, `δR = R hat(2 im(W^T δW))`.
+/// `2 im(A)` for a change `δW` of a letter `W`: with `A = W^T δW`, the vector of the change of the rotation, `δR = R
+/// hat(2 im(W^T δW))`.
 pub(super) fn angular(symbols: &Symbols, letter: &Expr, change: Expr) -> Expr {
     let back = transpose(symbols, letter.clone());
     scale(Rational::integer(2), imaginary(product([back, change])))

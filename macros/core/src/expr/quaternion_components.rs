@@ -1,6 +1,6 @@
-//! Splits quaternions for emitted code. Real and imaginary parts of products of unit quaternions, and of vectors
-//! read as quaternions, are written by the parts of their factors. The result has numbers and vectors of three
-//! components instead of matrices of four rows. Takes an expression, gives an equal one.
+//! Splits quaternions for emitted code. Real and imaginary parts of products of unit quaternions and of vectors (as
+//! quaternions) are expressed by the parts of their factors. The result has scalars and vectors of three components
+//! instead of matrices of four rows. Takes an expression, gives an equal one.
 
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::Symbols;
@@ -12,14 +12,14 @@ struct Both {
     im: Expr,
 }
 
-/// Most factors of a product that are multiplied out: the number of terms doubles with each.
+/// The largest number of factors of a product that is expanded; each factor doubles the number of terms.
 const MOST: usize = 4;
 
-/// Most products into which one is multiplied out.
+/// The largest number of products in an expansion.
 const MOST_WORDS: usize = 16;
 
-/// The same expression, real and imaginary parts taken of single quaternions and of quaternions from one to
-/// another, `re(q^T p)`, alone.
+/// The expression in which real and imaginary parts are taken only of single quaternions and of relative quaternions,
+/// `re(q^T p)`.
 pub fn quaternion_components(symbols: &Symbols, e: &Expr) -> Expr {
     let e = rebuild(symbols, e, &mut |x| quaternion_components(symbols, x));
     let taken = match e.node() {
@@ -42,7 +42,7 @@ fn is_unit(symbols: &Symbols, e: &Expr) -> bool {
     }
 }
 
-/// A unit quaternion that is conjugate, if it is one.
+/// The unit quaternion whose conjugate this is, if it is one.
 fn conjugated<'a>(symbols: &Symbols, e: &'a Expr) -> Option<&'a Expr> {
     match e.node() {
         Node::Transpose(x) if is_unit(symbols, x) => Some(x),
@@ -98,7 +98,7 @@ fn both(symbols: &Symbols, e: &Expr) -> Option<Both> {
     })
 }
 
-/// A product, sums in it multiplied out where they are few.
+/// A product in which short sums are expanded.
 fn of_product(symbols: &Symbols, e: &Expr) -> Option<Both> {
     let mut words = Vec::new();
     spread(e, &mut words)?;
@@ -113,7 +113,7 @@ fn of_product(symbols: &Symbols, e: &Expr) -> Option<Both> {
     })
 }
 
-/// Numbers, and quaternions in order.
+/// Scalars, and quaternions in order.
 type Word = (Vec<Expr>, Vec<Expr>);
 
 /// The words of a quaternion.
@@ -161,7 +161,7 @@ fn spread(e: &Expr, out: &mut Vec<Word>) -> Option<()> {
     (out.len() <= MOST_WORDS).then_some(())
 }
 
-/// One word.
+/// The parts of one word.
 fn of_word(symbols: &Symbols, numbers: Vec<Expr>, mut word: Vec<Expr>) -> Option<Both> {
     ordered(symbols, &mut word);
     let mut factors = Vec::new();
@@ -191,7 +191,7 @@ fn of_word(symbols: &Symbols, numbers: Vec<Expr>, mut word: Vec<Expr>) -> Option
     })
 }
 
-/// The parts of `x^T y` for two letters, written by the parts of the pair in one fixed order.
+/// The parts of `x^T y` for two letters, expressed by the parts of the pair in one fixed order.
 fn between(symbols: &Symbols, x: &Expr, y: &Expr) -> Both {
     let letter = |e: &Expr| letters(e).first().copied();
     let turned = letter(x) > letter(y);
@@ -224,8 +224,8 @@ fn times(a: Both, b: Both) -> Both {
     }
 }
 
-/// Cancels opposite factors, and moves vectors in front of the quaternions that turn them: `q quat(rot(q)^T v) =
-/// quat(v) q`.
+/// Cancels adjacent inverse factors, and moves vectors in front of the quaternions that rotate them: `q quat(rot(q)^T
+/// v) = quat(v) q`.
 fn ordered(symbols: &Symbols, word: &mut Vec<Expr>) {
     let opposite =
         |a: &Expr, b: &Expr| conjugated(symbols, a) == Some(b) || conjugated(symbols, b) == Some(a);
@@ -251,7 +251,7 @@ fn ordered(symbols: &Symbols, word: &mut Vec<Expr>) {
     }
 }
 
-/// `v` for `R v`.
+/// `v` if the expression is `R v`.
 fn without(e: &Expr, lead: &Expr) -> Option<Expr> {
     let go = |x: &Expr| without(x, lead);
     match e.node() {

@@ -1,22 +1,22 @@
-//! Bounds of numbers that hold whatever their letters are: `exp` is positive, squares are not
-//! negative, a sine is at most one. Takes an expression; gives an interval that holds every value it
-//! can have, and whether each end of it may be met. Rounded outward, never a wrong bound.
+//! Bounds of scalars that hold for all values of their letters: `exp` is positive, squares are not negative, a sine
+//! is at most one. Takes an expression; gives an interval that contains every possible value, and whether each end
+//! may be attained. Bounds are rounded outward and never wrong.
 
 use super::{Expr, Function, Node};
 use crate::algebra::Rational;
 
-/// Largest expression that is bounded; beyond it nothing is known.
+/// The size of the largest expression that is bounded; a larger one has no bounds.
 const LARGEST: u32 = 4_000;
 
 /// An end of an interval.
 #[derive(Clone, Copy, PartialEq, Debug)]
 struct End {
     at: f64,
-    /// Whether a value may be there: `exp` comes as near to 0 as one likes and is never 0.
+    /// Whether the value may be attained: `exp` comes arbitrarily close to 0 but is never 0.
     met: bool,
 }
 
-/// All values that a number may have lie here.
+/// An interval that contains all possible values of a scalar.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Range {
     low: End,
@@ -37,7 +37,7 @@ impl End {
     }
 
     fn times(self, other: End) -> End {
-        // Nothing times a bound that is infinite: the factor 0 decides.
+        // Zero times an infinite bound: the factor 0 decides.
         match self.at == 0.0 || other.at == 0.0 {
             true => end(
                 0.0,
@@ -61,7 +61,7 @@ impl Range {
         }
     }
 
-    /// The smallest interval with these ends among its own.
+    /// The smallest interval that contains these ends.
     fn hull(ends: &[End]) -> Range {
         let mut list = ends.iter().copied();
         let Some(first) = list.next() else {
@@ -90,7 +90,7 @@ impl Range {
         }
     }
 
-    /// Its ends moved apart by more than rounding; whole numbers are exact, and 0 stays 0.
+    /// The interval with its ends moved outward by more than the rounding error. Integers are exact, and 0 stays 0.
     fn outward(self) -> Range {
         let exact = |x: f64| x.fract() == 0.0 && x.abs() < 1e15;
         let moved = |e: End, by: f64| match exact(e.at) || e.at.is_infinite() {
@@ -103,13 +103,13 @@ impl Range {
         }
     }
 
-    /// Under a function that grows.
+    /// The image under an increasing function.
     fn under(self, f: impl Fn(f64) -> f64) -> Range {
         let image = |e: End| end(f(e.at), e.met);
         Range::hull(&[image(self.low), image(self.high)]).rounded()
     }
 
-    /// The same where what was computed is never exact.
+    /// The interval moved outward, for a computation that is never exact.
     fn rounded(self) -> Range {
         let moved = |e: End, by: f64| match e.at == 0.0 || e.at.is_infinite() {
             true => e,
@@ -142,7 +142,7 @@ impl Range {
         Range::hull(all.as_flattened()).outward()
     }
 
-    /// One over it; nothing is known where it may vanish inside.
+    /// The reciprocal; unbounded if the interval contains zero in its interior.
     fn inverse(self) -> Range {
         let over = |e: End, zero: f64| match e.at == 0.0 {
             true => end(zero, false),
@@ -190,7 +190,7 @@ impl Range {
             Some(1) => return self,
             Some(n) if n % 2 != 0 => return self.under(|x| x.powi(n)),
             Some(_) => self.magnitude(),
-            // A root has a value from 0 on only.
+            // A root is defined from 0 on only.
             None => Range {
                 low: match self.low.at > 0.0 {
                     true => self.low,
@@ -228,7 +228,7 @@ impl Range {
     }
 }
 
-/// Bounds of a number.
+/// The bounds of a scalar.
 pub fn range(e: &Expr) -> Range {
     match e.size() > LARGEST || !e.shape().is_scalar() {
         true => Range::ALL,
@@ -310,7 +310,7 @@ fn image(f: Function, a: Range) -> Range {
             }
         }
         Function::Tanh => {
-            // It comes as near to one as one likes.
+            // It comes arbitrarily close to one.
             let r = a.under(f64::tanh);
             Range {
                 low: match r.low.at <= -1.0 {
@@ -344,7 +344,7 @@ mod tests {
 
     #[test]
     fn values_lie_in_their_range() {
-        // Every function and operation of two letters at many values.
+        // Every function and operation of two letters, at many values.
         let mut s = Symbols::default();
         let id = s.add("p", Shape::SCALAR, Structure::General, Role::Parameter);
         let p = expr::here(&s, id);

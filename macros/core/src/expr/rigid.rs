@@ -1,5 +1,5 @@
-//! Rigid motions as homogeneous matrices `[R x; 0 1]` of one row more than the space has dimensions: their blocks,
-//! the elements of their Lie algebra, and zero-padding inclusions. Blocks of products are written by the blocks of
+//! Rigid motions as homogeneous matrices `[R x; 0 1]`, with one row more than the dimension of space: their blocks,
+//! the elements of their Lie algebra, and zero-padding inclusions. Blocks of products are expressed by the blocks of
 //! the factors, so that shown and emitted expressions use the dimension of the space itself.
 
 use super::build::make;
@@ -15,7 +15,7 @@ const ONE: Dim = Dim::Fixed(1);
 const TWO: Dim = Dim::Fixed(2);
 const THREE: Dim = Dim::Fixed(3);
 
-/// One dimension less: the dimension of the space with this many homogeneous coordinates.
+/// The dimension of the space with this many homogeneous coordinates, which is one less.
 pub fn within(homogeneous: Dim) -> Dim {
     match homogeneous {
         Dim::Fixed(n) => Dim::Fixed(n.saturating_sub(1)),
@@ -23,7 +23,7 @@ pub fn within(homogeneous: Dim) -> Dim {
     }
 }
 
-/// The last of so many axes.
+/// The last of `n` axes.
 pub fn last_axis(n: Dim) -> u8 {
     match n {
         Dim::Fixed(n) => u8::try_from(n.saturating_sub(1)).unwrap_or(u8::MAX),
@@ -31,7 +31,7 @@ pub fn last_axis(n: Dim) -> u8 {
     }
 }
 
-/// The dimension of the space that twists with so many coordinates move: `n (n + 1)/2` of them.
+/// The dimension `n` of the space whose twists have this many coordinates, `n (n + 1)/2`.
 fn moved_by(coordinates: Dim) -> Dim {
     match coordinates {
         THREE => TWO,
@@ -39,15 +39,15 @@ fn moved_by(coordinates: Dim) -> Dim {
     }
 }
 
-/// The quarter turn of the plane, `(x, y) -> (-y, x)`, as the matrix that it is.
+/// The quarter turn of the plane, `(x, y) -> (-y, x)`, as a matrix.
 pub fn quarter_turn(symbols: &Symbols) -> Expr {
     let (x, y) = (unit(TWO, 0), unit(TWO, 1));
     let dyad = |a: &Expr, b: &Expr| mul(a.clone(), transpose(symbols, b.clone()));
     sub(dyad(&y, &x), dyad(&x, &y))
 }
 
-/// The matrix that puts a vector of length `cols` into one of length `rows`, from row `at` on; the
-/// other entries are zero.
+/// The matrix that embeds a vector of length `cols` into one of length `rows`, starting at row `at`; the other
+/// entries are zero.
 pub fn inclusion(rows: Dim, cols: Dim, at: u8) -> Expr {
     let shape = Shape { rows, cols };
     make(Node::Inclusion(shape, at), shape)
@@ -61,8 +61,8 @@ pub fn is_motion(symbols: &Symbols, e: &Expr) -> bool {
     }
 }
 
-/// The element `[hat(ω) v; 0 0]` of the Lie algebra with coordinates `(ω, v)`; in the plane `ω` is a number, and
-/// `ω` times the quarter turn replaces `hat(ω)`.
+/// The element `[hat(ω) v; 0 0]` of the Lie algebra with coordinates `(ω, v)`. In the plane, `ω` is a number, and `ω`
+/// times the quarter turn replaces `hat(ω)`.
 pub fn twist(x: Expr) -> Expr {
     let shape = Shape::square(match moved_by(x.shape().rows) {
         TWO => THREE,
@@ -75,7 +75,7 @@ pub fn twist(x: Expr) -> Expr {
     }
 }
 
-/// An angular and a linear part on top of each other.
+/// An angular part stacked on a linear part.
 pub fn stacked(angular: Expr, linear: Expr) -> Expr {
     let rows = |e: &Expr| match e.shape().rows {
         Dim::Fixed(n) => n,
@@ -87,7 +87,7 @@ pub fn stacked(angular: Expr, linear: Expr) -> Expr {
     add(put(whole, 0, angular), put(whole, at, linear))
 }
 
-/// A vector or number in a longer vector, from this row on.
+/// A vector or scalar embedded in a longer vector, starting at row `at`.
 fn put(whole: Dim, at: u8, part: Expr) -> Expr {
     match part.shape().is_scalar() {
         true => mul(part, unit(whole, at)),
@@ -95,7 +95,7 @@ fn put(whole: Dim, at: u8, part: Expr) -> Expr {
     }
 }
 
-/// So many components of a longer vector, from this row on; one of them is a number.
+/// `count` components of a longer vector, starting at row `at`; a single component is a scalar.
 pub fn rows_of(symbols: &Symbols, x: &Expr, at: u8, count: Dim) -> Expr {
     let whole = x.shape().rows;
     match count {
@@ -104,8 +104,8 @@ pub fn rows_of(symbols: &Symbols, x: &Expr, at: u8, count: Dim) -> Expr {
     }
 }
 
-/// The rows of the angular and of the linear part of an expression that is written in them, or is a
-/// vector of six: the first one and how many.
+/// The first row and the number of rows of the angular and of the linear part, for an expression in such parts or a
+/// vector of length six.
 pub fn rows_in_parts(e: &Expr) -> Option<[(u8, Dim); 2]> {
     let whole = match e.shape() {
         s if s == Shape::vector(Dim::Fixed(6)) => return Some([(0, THREE), (3, THREE)]),
@@ -132,7 +132,7 @@ pub fn rows_in_parts(e: &Expr) -> Option<[(u8, Dim); 2]> {
     }
 }
 
-/// Some components of an expression that is written in such parts: terms in other components are left out.
+/// Some components of an expression in such parts; terms in other components are omitted.
 pub fn taken_rows(symbols: &Symbols, e: &Expr, row: u8, count: Dim) -> Expr {
     let taken = |x: &Expr| taken_rows(symbols, x, row, count);
     match e.node() {
@@ -162,16 +162,16 @@ pub fn taken_rows(symbols: &Symbols, e: &Expr, row: u8, count: Dim) -> Expr {
     }
 }
 
-/// Three components of a vector of six, from this row on.
+/// Three components of a vector of length six, starting at row `row`.
 pub fn part_of_six(symbols: &Symbols, x: &Expr, row: u8) -> Expr {
     rows_of(symbols, x, row, THREE)
 }
 
 /// Blocks of a matrix whose last row is a multiple of `(0, 0, 0, 1)`.
 struct Blocks {
-    /// The upper left one.
+    /// The upper left block.
     turn: Expr,
-    /// The upper right one.
+    /// The upper right block.
     shift: Expr,
     /// Whether the last entry is 1; otherwise it is 0.
     corner: bool,
@@ -232,7 +232,7 @@ fn blocks(symbols: &Symbols, e: &Expr) -> Option<Blocks> {
     })
 }
 
-/// All of a matrix but its last row and column: the rotation of a rigid motion.
+/// A matrix without its last row and column: the rotation of a rigid motion.
 pub fn block(symbols: &Symbols, a: &Expr) -> Expr {
     if let Some(all) = blocks(symbols, a) {
         return all.turn;
@@ -277,7 +277,7 @@ pub fn column(symbols: &Symbols, a: &Expr) -> Expr {
     }
 }
 
-/// One dimension more: the number of homogeneous coordinates.
+/// The number of homogeneous coordinates, which is one more than the dimension.
 fn homogeneous(space: Dim) -> Dim {
     match space {
         Dim::Fixed(n) => Dim::Fixed(n + 1),
@@ -285,14 +285,14 @@ fn homogeneous(space: Dim) -> Dim {
     }
 }
 
-/// The homogeneous matrix with a block upper left and zeros elsewhere: the adjoint of [`block`].
+/// The homogeneous matrix with `a` as its upper left block and zeros elsewhere: the adjoint of [`block`].
 pub(super) fn in_block(symbols: &Symbols, a: Expr) -> Expr {
     let space = a.shape().rows;
     let first = inclusion(homogeneous(space), space, 0);
     product([first.clone(), a, transpose(symbols, first)])
 }
 
-/// The homogeneous matrix with a vector upper right and zeros elsewhere: the adjoint of [`column`].
+/// The homogeneous matrix with `v` as its upper right column and zeros elsewhere: the adjoint of [`column`].
 pub(super) fn in_column(symbols: &Symbols, v: Expr) -> Expr {
     let space = v.shape().rows;
     let whole = homogeneous(space);
@@ -300,8 +300,8 @@ pub(super) fn in_column(symbols: &Symbols, v: Expr) -> Expr {
     product([inclusion(whole, space, 0), v, last])
 }
 
-/// The coordinates `(ω, v)` that a matrix `S` pairs with the elements of the Lie algebra:
-/// `<S, twist(x)>` is the scalar product with `x`.
+/// The coordinates `(ω, v)` of the pairing of a matrix `S` with the Lie algebra: `<S, twist(x)>` is the scalar
+/// product with `x`.
 pub fn paired_with_twists(symbols: &Symbols, s: &Expr) -> Expr {
     let turn = block(symbols, s);
     let angular = match turn.shape().rows {

@@ -1,12 +1,12 @@
-//! Shapes and structures of quantities: how many rows and columns, and which identity
-//! (symmetric, skew, orthogonal, ...) a matrix obeys whatever its value.
+//! Shapes and structures of quantities: the numbers of rows and columns, and the identity (symmetric, skew,
+//! orthogonal, ...) that a matrix satisfies for all values.
 
 pub use clebsch_program::{Dim, Shape};
 
 /// An identity that a matrix satisfies for every value.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Structure {
-    /// Nothing.
+    /// No identity.
     General,
     /// `A^T = A`.
     Symmetric,
@@ -25,7 +25,7 @@ pub enum Structure {
 }
 
 impl Structure {
-    /// Whether the transpose is the matrix itself.
+    /// Whether the matrix equals its transpose.
     pub fn is_symmetric(self) -> bool {
         matches!(self, Structure::Symmetric | Structure::Diagonal)
     }
@@ -43,7 +43,7 @@ impl Structure {
         }
     }
 
-    /// Whether the inverse is the transpose.
+    /// Whether the inverse equals the transpose.
     pub fn is_orthogonal(self) -> bool {
         matches!(self, Structure::Orthogonal | Structure::UnitQuaternion)
     }

@@ -1,12 +1,12 @@
-//! Like terms collected for a reader: powers of one number are one power, `√a a` reads `a^{3/2}`, and terms are alike
-//! whatever the order of their numbers. Takes an expression, gives one that is equal where the first has a value.
+//! Collects like terms for display: powers of one number become one power, `√a a` becomes `a^{3/2}`, and terms are
+//! alike for any order of their scalars. Takes an expression, gives one that is equal wherever the first is defined.
 
 use super::collect::{Parts, coefficient, parts, scaled, take, whole};
 use super::substitute::bottom_up;
 use super::*;
 use crate::expr::symbol::Symbols;
 
-/// The same expression with like terms and powers collected at every depth.
+/// The expression with like terms and powers collected at every depth.
 pub fn shown(symbols: &Symbols, e: &Expr) -> Expr {
     bottom_up(symbols, e, &|e| match e.node() {
         Node::Sum(terms) => sum_of(terms, e.shape()),
@@ -22,7 +22,7 @@ pub fn shown(symbols: &Symbols, e: &Expr) -> Expr {
     })
 }
 
-/// Like terms of a sum as one.
+/// A sum with like terms combined.
 fn sum_of(terms: &[Expr], shape: Shape) -> Expr {
     let mut found: Vec<(Parts, Rational)> = Vec::new();
     for term in terms {
@@ -38,7 +38,7 @@ fn sum_of(terms: &[Expr], shape: Shape) -> Expr {
     sum(terms.collect::<Vec<_>>(), shape)
 }
 
-/// The number in front of a term, and the term without it, powers of one number as one.
+/// The numeric factor of a term, and the term without it, with powers of each scalar combined.
 fn of_one_power(e: &Expr) -> (Rational, Expr) {
     let own = parts(e);
     match own.numbers.iter().any(|(base, _)| root(base).is_some()) {
@@ -59,7 +59,7 @@ fn root(e: &Expr) -> Option<(&Expr, Rational)> {
     }
 }
 
-/// The same parts with the powers of each number as one.
+/// The parts with the powers of each scalar combined.
 fn joined(own: Parts) -> Parts {
     let Parts {
         coefficient,
@@ -96,7 +96,7 @@ fn joined(own: Parts) -> Parts {
     out
 }
 
-/// Whether two numbers are one; a scalar product is the same in either order.
+/// Whether two scalars are equal; the factors of a scalar product may be in either order.
 fn is_same(a: &Expr, b: &Expr) -> bool {
     a == b
         || match (a.node(), b.node()) {
@@ -105,7 +105,7 @@ fn is_same(a: &Expr, b: &Expr) -> bool {
         }
 }
 
-/// Whether two matrices are one; the inverse of a transpose is the transpose of the inverse.
+/// Whether two matrices are equal; the inverse of a transpose equals the transpose of the inverse.
 fn is_same_matrix(a: &Expr, b: &Expr) -> bool {
     fn of(e: &Expr) -> Option<&Expr> {
         match e.node() {
@@ -123,7 +123,7 @@ fn is_same_matrix(a: &Expr, b: &Expr) -> bool {
     a == b || of(a).is_some_and(|x| of(b) == Some(x))
 }
 
-/// Whether two terms differ by their coefficients alone.
+/// Whether two terms differ only in their coefficients.
 fn are_alike(a: &Parts, b: &Parts) -> bool {
     let same = |x: &(Expr, Rational), y: &(Expr, Rational)| x.1 == y.1 && is_same(&x.0, &y.0);
     let mut matrices = a.matrices.iter().zip(&b.matrices);
@@ -135,7 +135,8 @@ fn are_alike(a: &Parts, b: &Parts) -> bool {
             .all(|x| b.numbers.iter().any(|y| same(x, y)))
 }
 
-/// The vector or number of which a power is one of its length, and the exponent: `(x·x)^{3/2}` is `|x|^3`.
+/// For a power of `x·x` or of a square, the vector or number `x` and the exponent of its length: `(x·x)^{3/2}` is
+/// `|x|^3`.
 pub fn power_of_length(e: &Expr) -> Option<(&Expr, Rational)> {
     let (square, q) = root(e)?;
     let twice = q.times(Rational::integer(2))?;
@@ -179,7 +180,7 @@ mod tests {
             of(3, 2)
         );
         assert_eq!(shown(&s, &mul(length.clone(), length.clone())), square);
-        // Like terms in other orders, and with other spellings of one power.
+        // Like terms in other orders, and with different forms of one power.
         let one = quotient(product([a.clone(), b.clone(), x.clone()]), long);
         let other = quotient(product([b.clone(), a.clone(), x.clone()]), of(5, 2));
         assert!(shown(&s, &sub(one.clone(), other.clone())).is_zero());

@@ -1,12 +1,12 @@
-//! Equal forms that cost less: `(Id + Q^T) Q` is `Q + Id`, and `(Id + A) v` is `v + A v`. If `A` is symmetric, the
-//! axial vector of `A Q^T` is the axial vector of `-Q A`. Used for emitted code. Takes an expression, gives an
-//! equal one.
+//! Equal forms that cost less: `(Id + Q^T) Q` becomes `Q + Id`, and `(Id + A) v` becomes `v + A v`. If `A` is
+//! symmetric, the axial vector of `A Q^T` is the axial vector of `-Q A`. Used for emitted code. Takes an expression,
+//! gives an equal one.
 
 use super::shape::Structure;
 use super::*;
 use crate::expr::symbol::Symbols;
 
-/// The same expression, such sums multiplied out at every depth.
+/// The expression with such sums expanded at every depth.
 pub fn simpler(symbols: &Symbols, e: &Expr) -> Expr {
     let e = rebuild(symbols, e, &mut |x| simpler(symbols, x));
     match e.node() {
@@ -25,18 +25,18 @@ pub fn simpler(symbols: &Symbols, e: &Expr) -> Expr {
     }
 }
 
-/// Whether the transpose is the same expression: its axial vector is then zero.
+/// Whether the expression equals its transpose, so that its axial vector is zero.
 fn is_symmetric(symbols: &Symbols, e: &Expr) -> bool {
     transpose(symbols, e.clone()) == *e
 }
 
-/// The transpose, where less is transposed in it.
+/// The transpose, if it contains fewer transposes.
 fn upright(symbols: &Symbols, e: &Expr) -> Option<Expr> {
     let turned = transpose(symbols, e.clone());
     (transposes(&turned) < transposes(e)).then_some(turned)
 }
 
-/// How many matrices are read by rows.
+/// The number of matrices that are accessed by rows.
 fn transposes(e: &Expr) -> usize {
     let inner: usize = e.children().into_iter().map(transposes).sum();
     inner + usize::from(matches!(e.node(), Node::Transpose(_)))
@@ -163,7 +163,7 @@ mod tests {
         assert_eq!(simpler(&s, &trace(word)), trace(mul(q.clone(), a.clone())));
         assert!(simpler(&s, &vee(a.clone())).is_zero());
         assert_eq!(simpler(&s, &vee(add(a.clone(), b.clone()))), vee(b.clone()));
-        // Nothing is saved.
+        // Expansion would save nothing.
         for stays in [
             mul(less(b.clone()), q.clone()),
             mul(add(a.clone(), b.clone()), v),

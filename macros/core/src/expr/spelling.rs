@@ -1,6 +1,6 @@
-//! How a name is read when it is printed: from `Lambda1`, `J^R_{k+1}` or `gU` to a base letter or
-//! word, subscripts and a superscript. Greek words become Greek letters, trailing digits become
-//! subscripts. Two names that read the same are the same to a reader, however they are spelt.
+//! How a name is interpreted for printing: `Lambda1`, `J^R_{k+1}` or `gU` is split into a base letter or word,
+//! subscripts and a superscript. Greek words become Greek letters, trailing digits become subscripts. Two names that
+//! print alike are the same name to a reader, however they are spelled.
 
 mod confusable;
 mod typeset;
@@ -12,7 +12,7 @@ pub(crate) use typeset::seen_typeset;
 /// A name in its parts.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(crate) struct Parsed {
-    /// A letter, or a word of several.
+    /// A letter or a word.
     pub base: String,
     /// Subscripts in order, as text.
     pub subs: Vec<String>,
@@ -20,7 +20,7 @@ pub(crate) struct Parsed {
     pub sup: Option<String>,
 }
 
-/// The sign of an increment, before the name of what it is one of.
+/// The sign of an increment, before the name of the quantity.
 pub(crate) const INCREMENT: char = 'Δ';
 
 /// The Greek letter of a word such as `Lambda`, or the word itself; for an increment such as `Δphi`, `Δ` and the
@@ -37,7 +37,7 @@ pub(crate) fn letter(word: &str) -> String {
     }
 }
 
-/// A name in a sentence, its Greek words as letters: `theta_dot` as `θ_dot`.
+/// A name in a sentence, with Greek words as letters: `theta_dot` becomes `θ_dot`.
 pub(crate) fn in_words(name: &str) -> String {
     let mut out = String::new();
     let mut word = String::new();
@@ -53,7 +53,7 @@ pub(crate) fn in_words(name: &str) -> String {
     out
 }
 
-/// Takes a name apart.
+/// Splits a name into its parts.
 pub(crate) fn parse(text: &str) -> Parsed {
     let end = text
         .char_indices()
@@ -93,7 +93,8 @@ pub(crate) fn parse(text: &str) -> Parsed {
     parsed
 }
 
-/// The same of the copy of a quantity at a site, with the site in brackets: where another name prints as the copy does.
+/// Splits the name of a copy of a quantity at a site and puts the site in brackets, for use if another name prints
+/// alike.
 pub(crate) fn parse_apart(text: &str) -> Parsed {
     let mut parsed = parse(text);
     if let Some(site) = parsed.subs.last_mut() {
@@ -102,7 +103,7 @@ pub(crate) fn parse_apart(text: &str) -> Parsed {
     parsed
 }
 
-/// Greek letters that look Latin, which LaTeX prints as such.
+/// Greek letters that look Latin, which LaTeX prints as Latin letters.
 const LATIN: [(char, char); 15] = [
     ('Α', 'A'),
     ('Β', 'B'),
@@ -143,8 +144,8 @@ fn script(text: &str) -> String {
     out
 }
 
-/// The appearance of a base with scripts. A time index at its end, `k`, `k+1` or `k-1`, is left out: a moving
-/// quantity gets it anyway.
+/// The appearance of a base with scripts. A trailing time index `k`, `k+1` or `k-1` is omitted, because a moving
+/// quantity always gets one.
 fn shown(base: &str, mut below: Vec<String>, above: &str, index: &str) -> String {
     let last = below.last().map(|l| {
         let stem = l.trim_end_matches("+1").trim_end_matches("-1");
@@ -162,7 +163,7 @@ fn shown(base: &str, mut below: Vec<String>, above: &str, index: &str) -> String
     latin(&format!("{base}_{}^{above}", below.join(",")))
 }
 
-/// A name as a reader sees it: one text for all spellings that print alike, as `index` counts time.
+/// A name as a reader sees it: one text for all spellings that print alike. `index` is the time index.
 pub(crate) fn seen(text: &str, index: &str) -> String {
     seen_as(&parse(&skeleton(text)), index)
 }
@@ -214,7 +215,7 @@ mod tests {
             ("x_k", "x"),
             ("x_{k+1}", "x"),
             ("x1_k", "x_1"),
-            // Other characters of the same form.
+            // Other characters of the same shape.
             ("µ", "μ"),
             ("Ω", "\u{2126}"),
             ("K", "\u{212a}"),

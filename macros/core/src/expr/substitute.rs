@@ -28,7 +28,7 @@ pub fn contains_role(symbols: &Symbols, e: &Expr, role: Role) -> bool {
         .any(|l| symbols.get(l.symbol).role == role)
 }
 
-/// Every letter that occurs, sorted, once.
+/// Every letter that occurs, sorted, without repetition.
 pub fn letters(e: &Expr) -> Vec<Letter> {
     fn walk(e: &Expr, seen: &mut Memo<()>, out: &mut Vec<Letter>) {
         if let Node::Letter(at) = e.node() {
@@ -47,7 +47,7 @@ pub fn letters(e: &Expr) -> Vec<Letter> {
     out
 }
 
-/// The expression with every letter that lives in time moved by `by` levels. Constants stay.
+/// The expression with every time-dependent letter shifted by `by` levels. Constants are unchanged.
 pub fn shift_time(symbols: &Symbols, e: &Expr, by: i8) -> Expr {
     let shifted = |at: Letter, shape| {
         let moves = match symbols.get(at.symbol).role {
@@ -65,7 +65,7 @@ pub fn shift_time(symbols: &Symbols, e: &Expr, by: i8) -> Expr {
     map_letters(symbols, e, &mut Memo::default(), &shifted)
 }
 
-/// The expression with letters replaced; letters not listed stay.
+/// The expression with letters replaced; letters that are not listed are unchanged.
 pub fn substitute(symbols: &Symbols, e: &Expr, replacements: &[(Letter, Expr)]) -> Expr {
     let wanted = Marks::of_all(replacements.iter().map(|(l, _)| *l));
     if e.0.marks.are_apart(wanted) {
@@ -98,7 +98,7 @@ fn map_letters(
     mapped
 }
 
-/// The expression rewritten from its leaves to its root, a part that several places share once.
+/// The expression rewritten from its leaves to its root; shared parts are rewritten once.
 pub(super) fn bottom_up(symbols: &Symbols, e: &Expr, f: &dyn Fn(Expr) -> Expr) -> Expr {
     rewritten(symbols, e, f, &mut Memo::default())
 }
@@ -119,7 +119,7 @@ fn rewritten(
     new
 }
 
-/// The same node with every child replaced; the very same expression where none is another one.
+/// The node with every child replaced; if no child changes, the identical expression.
 pub fn rebuild(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -> Expr {
     let (mut children, mut same) = (Vec::new(), true);
     e.node().each_child(&mut |x| {
@@ -133,7 +133,7 @@ pub fn rebuild(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -
     }
 }
 
-/// The same node with these in the places of its children, in their order; leaves stay.
+/// The node with `children` as its children, in order; leaves are unchanged.
 pub fn with_children(symbols: &Symbols, e: &Expr, children: Vec<Expr>) -> Expr {
     if let Node::Sum(_) = e.node() {
         return sum(children, e.shape());

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct SymbolId(pub u32);
 
-/// The role of a symbol, which decides where it lives.
+/// The role of a symbol, which determines whether its values belong to nodes, edges or the model.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Role {
     /// The time step, a positive constant.
@@ -36,7 +36,7 @@ pub enum Role {
 pub struct Symbol {
     /// Name as written, e.g. `Λ1`.
     pub name: String,
-    /// ASCII twin used in files, e.g. `Lambda1`.
+    /// The ASCII spelling used in files, e.g. `Lambda1`.
     pub ascii: String,
     /// Shape.
     pub shape: Shape,
@@ -44,9 +44,9 @@ pub struct Symbol {
     pub structure: Structure,
     /// Role.
     pub role: Role,
-    /// How it is typeset, in LaTeX, where its declaration says so.
+    /// Its LaTeX form, if the declaration gives one.
     pub typeset: Option<String>,
-    /// Whether it is a copy that prints with its site in brackets, since another name prints as it does without.
+    /// Whether it is a copy that prints with its site in brackets, because another name would print alike.
     pub apart: bool,
     /// Lines of the documentation of its declaration.
     pub docs: Vec<String>,
@@ -68,15 +68,15 @@ pub struct Symbols {
     list: Vec<Symbol>,
     /// Their names as readers see them.
     seen: BTreeSet<String>,
-    /// The index that counts time; empty where none was given.
+    /// The time index; empty if none was given.
     time_index: String,
     dims: Vec<NamedSize>,
     functionals: Vec<Functional>,
-    /// Whether differences from rest are computed with all their digits, which takes longer.
+    /// Whether differences from the identity are computed without loss of digits, which costs more.
     differences: bool,
 }
 
-/// A dimension that has only a name.
+/// A named dimension.
 #[derive(Clone, PartialEq, Eq, Debug)]
 struct NamedSize {
     name: String,
@@ -84,8 +84,8 @@ struct NamedSize {
     to: u64,
 }
 
-/// Largest size taken for a dimension that has only a name, where smaller ones are allowed: if an identity of words
-/// of so many factors holds there, it holds for every larger size.
+/// The largest size that is tried for a named dimension, if the model allows smaller ones. An identity between words
+/// that holds at this size holds for every larger size.
 const LARGEST_TRIED: u64 = 8;
 
 impl Symbols {
@@ -105,24 +105,24 @@ impl Symbols {
         SymbolId((self.list.len() - 1) as u32)
     }
 
-    /// Says whether differences from rest, `Id - Ω`, are computed with all their digits.
+    /// Sets whether differences from the identity, `Id - Ω`, are computed without loss of digits.
     pub fn keep_differences(&mut self, whole: bool) {
         self.differences = whole;
     }
 
-    /// Whether differences from rest are computed with all their digits.
+    /// Whether differences from the identity are computed without loss of digits.
     pub fn differences(&self) -> bool {
         self.differences
     }
 
-    /// Says by which index time is counted: `x_k` then prints as `x` at a node.
+    /// Sets the time index: `x_k` then prints as `x` at a node.
     pub fn count_time_by(&mut self, index: &str) {
         self.time_index = index.to_owned();
     }
 
-    /// Says how a symbol is typeset and what it means, as its declaration does.
+    /// Sets the LaTeX form and the documentation of a symbol, from its declaration.
     pub fn describe(&mut self, id: SymbolId, typeset: Option<String>, docs: &[String]) {
-        // Letters of the derivation keep clear of it, as of the name itself.
+        // Letters of the derivation avoid the printed form as well as the name.
         let printed = typeset.iter().map(|t| seen_typeset(t, &self.time_index));
         self.seen.extend(printed);
         if let Some(symbol) = self.list.get_mut(id.0 as usize) {
@@ -166,7 +166,7 @@ impl Symbols {
         Some(FunctionalId(found as u32))
     }
 
-    /// Declares a named dimension, from this size to that.
+    /// Declares a named dimension with its range of sizes.
     pub fn add_dim(&mut self, name: &str, from: u64, to: u64) -> Dim {
         self.dims.push(NamedSize {
             name: name.to_owned(),
@@ -188,7 +188,7 @@ impl Symbols {
         }
     }
 
-    /// The smallest and the largest size that a dimension is tried at.
+    /// The smallest and the largest size at which a dimension is tried.
     pub fn sizes(&self, dim: Dim) -> (usize, usize) {
         match dim {
             Dim::Fixed(n) => (n as usize, n as usize),
@@ -199,7 +199,7 @@ impl Symbols {
         }
     }
 
-    /// How many dimensions have names.
+    /// The number of named dimensions.
     pub fn dim_count(&self) -> u16 {
         u16::try_from(self.dims.len()).unwrap_or(u16::MAX)
     }
@@ -226,8 +226,8 @@ impl Symbols {
         (0..self.list.len() as u32).map(SymbolId)
     }
 
-    /// The first of these letters that is not the name of a symbol; if it will be numbered, not with a number either.
-    /// The first one if all are taken.
+    /// The first of these letters that no symbol has as its name; if `is_numbered` is set, followed by a number
+    /// either. The first letter if all are taken.
     pub fn free_letter<'a>(&self, letters: &[&'a str], is_numbered: bool) -> &'a str {
         let digit = |c: char| c.is_ascii_digit() || c == '_';
         let bears = |s: &Symbol, letter: &str| match s.name.strip_prefix(letter) {
@@ -240,8 +240,8 @@ impl Symbols {
         found.copied().unwrap_or("")
     }
 
-    /// A name that no symbol has yet, in print either: `base`, or `base` with a number, which is set apart from a
-    /// number at its end: `R_1` is of one site, and `R_11` of another.
+    /// A name that no symbol has or prints as: `base`, or `base` with a number. The number is separated from a
+    /// trailing digit: `R_1` belongs to one site, and `R_11` to another.
     pub fn fresh_name(&self, base: &str) -> String {
         let apart = if base.ends_with(|c: char| c.is_ascii_digit()) {
             "_"
@@ -288,7 +288,7 @@ pub const GREEK: [(char, &str); 54] = [
     ('ρ', "rho"),
     ('ς', "varsigma"),
     ('σ', "sigma"),
-    // Variants, by their names in HTML where LaTeX means the plain letter by the shorter one.
+    // Variants, by their HTML names, where LaTeX uses the shorter name for the plain letter.
     ('ϵ', "straightepsilon"),
     ('ϑ', "vartheta"),
     ('ϕ', "straightphi"),
@@ -326,7 +326,7 @@ pub const GREEK: [(char, &str); 54] = [
     ('Ω', "Omega"),
 ];
 
-/// The command of LaTeX for a letter of [`GREEK`]; capitals that look Latin do not have one.
+/// The LaTeX command for a letter of [`GREEK`]; capitals that look Latin have none.
 pub(crate) fn greek_command(word: &str) -> String {
     let latin = match word {
         "Alpha" => "A",
@@ -352,8 +352,8 @@ pub(crate) fn greek_command(word: &str) -> String {
     format!("\\mathrm{{{latin}}}")
 }
 
-/// The ASCII twin of a name: Greek letters spelled out, other non-ASCII characters as `u` and
-/// their code point in hexadecimal.
+/// The ASCII spelling of a name: Greek letters by name, other non-ASCII characters as `u` and their code point in
+/// hexadecimal.
 pub fn ascii(name: &str) -> String {
     let mut out = String::new();
     for c in name.chars() {

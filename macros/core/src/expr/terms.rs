@@ -1,5 +1,5 @@
-//! Terms of an expression: summands at any depth on which the value depends linearly. Dropping
-//! one shows whether it matters; flipping one is the smallest wrong sign.
+//! Terms of an expression: summands at any depth on which the value depends linearly. Dropping a term shows whether
+//! it matters; flipping its sign is the smallest sign error.
 
 use super::symbol::Symbols;
 use super::{Expr, Map, Node, neg, rebuild, sum, zero};

@@ -1,11 +1,11 @@
-//! Vectors in the frame to which a rotation takes them: `R (a x R^T b)` is `R a x b`, and nothing is turned forth
-//! and back. For what is emitted. Takes a rotation and an expression; gives their product, or nothing if this does
-//! not save work.
+//! Vectors in the frame to which a rotation transforms them: `R (a x R^T b)` becomes `R a x b`, without rotating back
+//! and forth. Used for emitted code. Takes a rotation and an expression; gives their product, or None if this saves
+//! no work.
 
 use super::*;
 use crate::expr::symbol::Symbols;
 
-/// `turn x`, where every term of the vector `x` is turned back in part.
+/// `turn x`, if every term of the vector `x` contains an inverse rotation that cancels in part.
 pub fn turned(symbols: &Symbols, turn: &Expr, x: &Expr) -> Option<Expr> {
     let of = |e: &Expr| turned(symbols, turn, e);
     match x.node() {

@@ -1,5 +1,5 @@
-//! Numbers, vectors and matrices under addition: fields. The velocity of an edge is the increment `next(X) - X`,
-//! and variations are free in the shape. Every frame is the same, so that momenta are not transformed.
+//! Numbers, vectors and matrices under addition: fields. The velocity of an edge is the increment `next(X) - X`, and
+//! variations are arbitrary arrays of the same shape. All frames are equal, so momenta are not transformed.
 
 use super::{Element, Kept, Record, Sizes, entries};
 use crate::check::spec::Side;
@@ -7,7 +7,7 @@ use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
 
-/// Arrays of one shape.
+/// Arrays of a given shape.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Additive(pub Shape);
 

@@ -1,34 +1,33 @@
-//! The engine's view of rigid motions, whatever the dimension of their space: the angular and the linear part of
-//! their covectors, and the effect of turns and positions on them. Takes expressions of the space; gives
-//! expressions of the space.
+//! The engine's view of rigid motions of a space of any dimension: the angular and the linear part of their
+//! covectors, and the effect of rotations and positions on them. Takes expressions of the space; gives expressions of
+//! the space.
 
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
 
-/// A group of rigid motions `p -> R p + x`. Covectors and velocities in continuous time are an angular
-/// part on top of a linear one.
+/// A group of rigid motions `p -> R p + x`. Covectors and velocities in continuous time are an angular part stacked
+/// on a linear one.
 pub trait Euclidean {
     /// The dimension of its space.
     fn space(&self) -> Dim;
 
-    /// The number of coordinates of turns.
+    /// The number of coordinates of rotations.
     fn angles(&self) -> Dim;
 
-    /// The velocity of a place in space that turns about the origin, `ω × x`.
+    /// The velocity of a spatial position that rotates about the origin, `ω × x`.
     fn swept(&self, s: &Symbols, turning: Expr, place: Expr) -> Expr;
 
     /// The moment of a linear momentum about the origin, `x × l`.
     fn moment(&self, s: &Symbols, place: Expr, linear: Expr) -> Expr;
 
-    /// An angular part as another frame sees it, which is turned by `turn`.
+    /// An angular part in a frame that is rotated by `turn`.
     fn turned(&self, turn: Expr, angular: Expr) -> Expr;
 
-    /// An angular part in the form in which turns of this space are combined with turns of other groups: axial vectors,
-    /// or skew matrices.
+    /// An angular part in the form that is combined with rotations of other groups: an axial vector or a skew matrix.
     fn as_turn(&self, s: &Symbols, angular: Expr) -> Expr;
 
-    /// The other way round, for a rate of turning.
+    /// The inverse of [`Euclidean::as_turn`], for an angular velocity.
     fn of_turn(&self, turn: Expr) -> Expr;
 }
 
@@ -58,7 +57,7 @@ impl dyn Euclidean + '_ {
         expr::rows_of(s, x, at, count)
     }
 
-    /// Its linear part.
+    /// The linear part of a vector of coordinates.
     pub fn linear(&self, s: &Symbols, x: &Expr) -> Expr {
         let [_, (at, count)] = self.rows();
         expr::rows_of(s, x, at, count)

@@ -1,12 +1,12 @@
-//! Invertible matrices, GL(n). The Lie algebra is all matrices, and covectors are matrices, paired
-//! as `tr(M^T X)`.
+//! Invertible matrices, GL(n). The Lie algebra consists of all matrices. Covectors are matrices with the pairing
+//! `tr(M^T X)`.
 
 use super::{Chart, Element, Kept, Record, Sizes, entries};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
 
-/// Invertible matrices of n rows.
+/// Invertible matrices with n rows.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct GeneralLinear(pub Dim);
 

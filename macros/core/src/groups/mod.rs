@@ -1,6 +1,6 @@
-//! The table of groups: one record per file, with everything that the engine knows of a group. Takes nothing but
-//! sizes; gives shapes of letters, the Lie algebra and its dual, how both are transformed, and the words for them.
-//! To add a group, add its file and its line in [`Group`].
+//! The table of groups: one record per file, with all properties of a group that the engine uses. Takes sizes only;
+//! gives shapes of letters, the Lie algebra and its dual, the transformations of both, and their names in text. To
+//! add a group, add its file and its line in [`Group`].
 
 mod additive;
 mod euclidean;
@@ -30,7 +30,7 @@ use std::ops::Deref;
 /// The size of three-dimensional space.
 pub const THREE: Dim = Dim::Fixed(3);
 
-/// The size of an angular and a linear part together.
+/// The size of an angular and a linear part in space.
 pub const SIX: Dim = Dim::Fixed(6);
 
 /// A group of the table, of one size.
@@ -46,7 +46,7 @@ pub enum Group {
     PlaneMotions(PlaneMotions),
     /// Rigid motions of space, SE(3), as 4 x 4 homogeneous matrices.
     RigidMotions(RigidMotions),
-    /// Numbers, vectors or matrices that are added: fields.
+    /// Numbers, vectors or matrices under addition: fields.
     Additive(Additive),
 }
 
@@ -69,7 +69,7 @@ impl Deref for Group {
 pub struct Line {
     /// The name of its family.
     pub family: &'static str,
-    /// The only size it has, if it has one alone.
+    /// Its size, if it has a single size.
     pub size: Option<u32>,
     /// The group of a size.
     pub group: fn(Dim) -> Group,
@@ -96,7 +96,7 @@ impl Line {
         self.size.is_none_or(|size| n == Dim::Fixed(size))
     }
 
-    /// The group as it is stated, with `n` for any size.
+    /// The group in the syntax of a model, with `n` for any size.
     fn stated(&self) -> String {
         let size = self.size.map_or("n".to_owned(), |n| n.to_string());
         format!("{}<{size}>", self.family)
@@ -119,19 +119,19 @@ pub fn named(family: &str, n: Dim) -> Option<Group> {
     Some((found.group)(n))
 }
 
-/// The families, each once.
+/// The families, without repetition.
 pub fn families() -> impl Iterator<Item = &'static str> {
     let first = |i: &usize| TABLE.iter().position(|l| l.family == TABLE[*i].family) == Some(*i);
     (0..TABLE.len()).filter(first).map(|i| TABLE[i].family)
 }
 
-/// Whether a family has but some sizes.
+/// Whether a family has some sizes only.
 pub fn has_few_sizes(family: &str) -> bool {
     let mut lines = TABLE.iter();
     lines.any(|line| line.family == family && line.size.is_some())
 }
 
-/// Groups of the table as they are stated, the last one after `last`: `SO<n>, GL<n> and SU<2>`.
+/// Groups of the table in the syntax of a model, with `last` before the last one: `SO<n>, GL<n> and SU<2>`.
 pub fn listed(last: &str, which: impl Fn(&str, Group) -> bool) -> String {
     let lines = TABLE.iter().filter(|line| {
         let n = Dim::Fixed(line.size.unwrap_or(3));
@@ -163,12 +163,12 @@ fn families_in(shape: Shape) -> impl Iterator<Item = Group> {
 }
 
 impl Group {
-    /// Rotations of n dimensions.
+    /// Rotations in n dimensions.
     pub fn rotations(n: Dim) -> Group {
         Group::SpecialOrthogonal(SpecialOrthogonal(n))
     }
 
-    /// Whether its Lie algebra is the skew matrices.
+    /// Whether its Lie algebra consists of the skew matrices.
     pub fn is_orthogonal(self) -> bool {
         matches!(self, Group::SpecialOrthogonal(_))
     }
@@ -178,7 +178,7 @@ impl Group {
         self == Group::rotations(THREE)
     }
 
-    /// Whether its elements are added: then nothing is turned, and all frames are one.
+    /// Whether it is additive: its elements rotate nothing, and all frames are equal.
     pub fn is_additive(self) -> bool {
         matches!(self, Group::Additive(_))
     }
@@ -188,13 +188,13 @@ impl Group {
         matches!(self, Group::UnitQuaternions(_))
     }
 
-    /// Whether its elements are all invertible matrices.
+    /// Whether it consists of all invertible matrices.
     pub fn is_linear(self) -> bool {
         matches!(self, Group::GeneralLinear(_))
     }
 }
 
-/// How the runtime keeps the elements of a group.
+/// How the runtime stores the elements of a group.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Kept {
     /// Rotations of space, by unit quaternions; covectors are vectors.
@@ -207,20 +207,20 @@ pub enum Kept {
     Quaternion,
     /// A type of the group's own; covectors are vectors of coordinates.
     Coordinates(Names),
-    /// Numbers, vectors or matrices that are added; covectors are of the same shape.
+    /// Numbers, vectors or matrices under addition; covectors have the same shape.
     Field(Shape),
 }
 
-/// In which coordinates loops over sites keep elements that they do not take themselves.
+/// The coordinates in which loops over sites store elements of groups that they do not support directly.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Chart {
-    /// The entries of a matrix of so many rows.
+    /// The entries of a matrix with this number of rows.
     Entries(u32),
     /// An angle.
     Angle,
-    /// An angle and a place in the plane.
+    /// An angle and a position in the plane.
     AngleAndPlace,
-    /// A rotation of space and a place.
+    /// A rotation of space and a position.
     TurnAndPlace,
 }
 
@@ -231,7 +231,7 @@ pub struct Names {
     pub element: &'static str,
     /// The type of momenta, after the name of the frame.
     pub momentum: &'static str,
-    /// How many coordinates the Lie algebra has.
+    /// The number of coordinates of the Lie algebra.
     pub coordinates: u32,
     /// The kind of an element in case files.
     pub kind: &'static str,
@@ -239,14 +239,14 @@ pub struct Names {
     pub words: &'static str,
 }
 
-/// An element of a basis of a Lie algebra: its entries (row, column, value) that are not zero.
+/// An element of a basis of a Lie algebra: its nonzero entries (row, column, value).
 pub type Element = Vec<(usize, usize, i64)>;
 
 /// The values of the sizes.
 pub type Sizes<'a> = dyn Fn(Dim) -> usize + 'a;
 
 /// The properties of a group that the engine uses. Letters of variation `ξ` are elements of the Lie algebra as
-/// matrices, or their coordinates; covectors, momenta, are written as [`Record::dual`] says.
+/// matrices, or their coordinates. Covectors (momenta) have the form of [`Record::dual`].
 pub trait Record {
     /// The shape of its elements, and of velocities.
     fn shape(&self) -> Shape;
@@ -254,7 +254,7 @@ pub trait Record {
     /// The structure of its elements.
     fn structure(&self) -> Structure;
 
-    /// The number of coordinates of its Lie algebra, where the letters of variation are those.
+    /// The number of coordinates of its Lie algebra, if its letters of variation are coordinates.
     fn coordinates(&self) -> Option<Dim> {
         None
     }
@@ -271,39 +271,38 @@ pub trait Record {
     /// variation.
     fn basis(&self, size: &Sizes) -> Vec<Element>;
 
-    /// The element of the Lie algebra, as a matrix, that a letter of variation denotes.
+    /// The matrix of the Lie algebra for a letter of variation.
     fn element(&self, x: Expr) -> Expr {
         x
     }
 
-    /// The letter of variation that a velocity in continuous time is.
+    /// The letter of variation for a velocity in continuous time.
     fn rate(&self, zeta: Expr) -> Expr {
         zeta
     }
 
-    /// The covector that a matrix `Y` gives on the Lie algebra, `ξ -> <Y, ξ>`: the inverse of the
-    /// inclusion, on the dual.
+    /// The covector of a matrix `Y` on the Lie algebra, `ξ -> <Y, ξ>`: the dual of the inclusion.
     fn covector(&self, s: &Symbols, y: Expr) -> Expr;
 
-    /// The same as an element of the Lie algebra, as the thesis writes its momenta.
+    /// The covector of `Y` as an element of the Lie algebra, as the thesis writes its momenta.
     fn as_algebra(&self, s: &Symbols, y: Expr) -> Expr {
         self.covector(s, y)
     }
 
-    /// The covector that the gradient of a number linear in the letter of variation is.
+    /// The covector of the gradient of a scalar that is linear in the letter of variation.
     fn of_gradient(&self, _: &Symbols, y: Expr) -> Expr {
         y
     }
 
-    /// The covector that the gradient in a velocity of continuous time is.
+    /// The covector of the gradient with respect to a velocity in continuous time.
     fn of_rate_gradient(&self, _: &Symbols, y: Expr) -> Expr {
         y
     }
 
-    /// The number that a covector gives on a letter of variation.
+    /// The pairing of a covector with a letter of variation.
     fn pairing(&self, s: &Symbols, covector: Expr, xi: Expr) -> Expr;
 
-    /// `Ad*` of the inverse of `g`: a body covector as seen from space.
+    /// `Ad*` of the inverse of `g`: a body covector in the frame of space.
     fn to_space(&self, s: &Symbols, g: &Expr, covector: Expr) -> Expr;
 
     /// `<μ, [ξ, η]>`.
@@ -337,7 +336,7 @@ pub trait Record {
         side.product(g, xi)
     }
 
-    /// Twice the term of second order of `exp(ξ)`.
+    /// Twice the second-order term of `exp(ξ)`.
     fn second(&self, xi: Expr) -> Expr {
         expr::mul(xi.clone(), xi)
     }
@@ -354,26 +353,26 @@ pub trait Record {
         Rational::ONE
     }
 
-    /// Whether the Lie algebra is not all of the matrices in which its elements are written: then a
-    /// relation for a velocity holds up to the multiplier of the group itself.
+    /// Whether the Lie algebra is a proper subspace of the matrices that represent the elements. A relation for a
+    /// velocity then holds up to the multiplier of the group.
     fn has_normal(&self) -> bool {
         true
     }
 
-    /// The rotation by which an element turns space, if it does.
+    /// The rotation of space by an element, if it has one.
     fn turn(&self, _: &Symbols, _: &Expr) -> Option<Expr> {
         None
     }
 
-    /// How the runtime keeps its elements.
+    /// How the runtime stores its elements.
     fn kept(&self) -> Kept;
 
-    /// In which coordinates loops over sites keep an element, where they do not take it as it is.
+    /// The coordinates in which loops over sites store an element, if they do not support the group directly.
     fn chart(&self) -> Option<Chart> {
         None
     }
 
-    /// The same as a group of rigid motions, if it is one.
+    /// The group as a group of rigid motions, if it is one.
     fn rigid(&self) -> Option<&dyn Euclidean> {
         None
     }
@@ -384,18 +383,18 @@ pub trait Record {
         self.rigid().map(|_| expr::column(s, g))
     }
 
-    /// Whether elements keep lengths and change no place: then a spatial equation costs no more than
-    /// one of the body.
+    /// Whether elements preserve lengths and do not change positions. A spatial equation then costs no more than one
+    /// in the body.
     fn is_isometric(&self) -> bool {
         self.structure().is_orthogonal()
     }
 
-    /// Whether turns are all that its elements do: then an angular momentum is the whole of one.
+    /// Whether its elements are rotations only, so that a momentum is an angular momentum.
     fn only_turns(&self) -> bool {
         self.structure().is_orthogonal()
     }
 
-    /// A description of a letter of variation: on a line, and typeset.
+    /// A description of a letter of variation: as plain text, and typeset.
     fn variation_words(&self) -> [String; 2];
 
     /// A description of the elements as symmetries of space.
@@ -403,18 +402,18 @@ pub trait Record {
         "rotations of space"
     }
 
-    /// The group as a model states it, `SO<3>`; sizes as the model names them.
+    /// The group in the syntax of a model, `SO<3>`; `size` names the sizes.
     fn statement(&self, size: &dyn Fn(Dim) -> String) -> String;
 
-    /// The group as a paper names it, `SO(3)`; of a field what its values are.
+    /// The group in the notation of a paper, `SO(3)`; for a field, the set of its values.
     fn name(&self, size: &dyn Fn(Dim) -> String) -> String;
 
-    /// A kinetic term of a model that is stated by `next`, to show.
+    /// An example of a kinetic term of a model that is stated by `next`.
     fn kinetic_example(&self, element: &str) -> String;
 }
 
 impl dyn Record {
-    /// How many rows its elements have.
+    /// The number of rows of its elements.
     pub fn size(&self) -> Dim {
         self.shape().rows
     }

@@ -1,5 +1,5 @@
-//! Rigid motions of the plane, SE(2), as 3 x 3 homogeneous matrices. Letters of variation and covectors
-//! are vectors of three components, an angle on top of a translation.
+//! Rigid motions of the plane, SE(2), as 3 x 3 homogeneous matrices. Letters of variation and covectors are vectors
+//! of three components, an angle stacked on a translation.
 
 use super::{Chart, Element, Euclidean, Kept, Names, Record, Sizes, THREE};
 use crate::expr::shape::{Dim, Shape, Structure};
@@ -142,7 +142,7 @@ impl Euclidean for PlaneMotions {
         expr::dot(quarter(s, place), linear)
     }
 
-    /// Turns of the plane commute: an angular momentum is the same number in all frames.
+    /// Rotations of the plane commute: an angular momentum is the same number in all frames.
     fn turned(&self, _: Expr, angular: Expr) -> Expr {
         angular
     }

@@ -1,5 +1,5 @@
-//! Rigid motions of space, SE(3), as 4 x 4 homogeneous matrices. Letters of variation and covectors
-//! are vectors of six components, an angular part on top of a linear one.
+//! Rigid motions of space, SE(3), as 4 x 4 homogeneous matrices. Letters of variation and covectors are vectors of
+//! six components, an angular part stacked on a linear part.
 
 use super::{Chart, Element, Euclidean, Kept, Names, Record, SIX, Sizes, THREE};
 use crate::expr::shape::{Dim, Shape, Structure};

@@ -1,5 +1,5 @@
-//! Rotations, SO(n). The Lie algebra is the skew matrices; in three dimensions covectors and
-//! velocities in continuous time are vectors, axial ones, else skew matrices.
+//! Rotations, SO(n). The Lie algebra consists of the skew matrices. In three dimensions, covectors and velocities in
+//! continuous time are axial vectors, otherwise skew matrices.
 
 use super::{Chart, Element, Kept, Record, Sizes, THREE};
 use crate::algebra::Rational;
@@ -8,7 +8,7 @@ use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
 
-/// Rotations of n dimensions.
+/// Rotations in n dimensions.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct SpecialOrthogonal(pub Dim);
 

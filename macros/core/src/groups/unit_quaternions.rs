@@ -1,6 +1,5 @@
-//! Unit quaternions, SU(2), as 4 x 4 matrices of left multiplication. Letters of variation and
-//! covectors are vectors: the element of the Lie algebra is half the vector, so that it turns space
-//! with the angular velocity of its coordinates.
+//! Unit quaternions, SU(2), as 4 x 4 matrices of left multiplication. Letters of variation and covectors are vectors.
+//! The element of the Lie algebra is half the vector, so that the coordinates are the angular velocity of space.
 
 use super::{Element, Kept, Record, Sizes, THREE};
 use crate::algebra::Rational;

@@ -1,23 +1,23 @@
-//! Functionals with values: a table of functions by name, each asked for a value, a derivative along
-//! directions or a pull-back.
+//! Functionals with values: a table of functions by name. Each computes its value, its derivatives along directions
+//! and its pull-backs.
 
 use super::{Assignment, Matrix};
 use crate::expr::symbol::Symbols;
 use clebsch_program::{Array, Call};
 use std::sync::Arc;
 
-/// What a functional is asked for. Arguments are counted from 0.
+/// A request for a value, a derivative or a pull-back. Arguments are counted from 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked<'a> {
     /// The arguments.
     pub arguments: &'a [Matrix],
     /// The argument and the direction of each derivative.
     pub along: &'a [(usize, Matrix)],
-    /// The argument and the seed of the pull-back; nothing where the value itself is asked for.
+    /// The argument and the seed of the pull-back. None for a value or a derivative.
     pub back: Option<(usize, &'a Matrix)>,
 }
 
-/// A function that answers; nothing where it has no such derivative.
+/// The function that answers a request. None if it lacks the derivative.
 type Answers = dyn Fn(&Asked) -> Option<Matrix> + Send + Sync;
 
 /// Functions by name.
@@ -33,7 +33,7 @@ impl core::fmt::Debug for Table {
 }
 
 impl Assignment {
-    /// Gives a functional its values.
+    /// Defines the function of a functional.
     pub fn define(
         &mut self,
         name: &str,

@@ -1,4 +1,4 @@
-//! Residuals that differ from the emitted one by one term: what tests of the derivation must notice.
+//! Residuals that differ from the emitted one by one term, which tests of the derivation must detect.
 
 use super::{Assignment, EvalError, Evaluator};
 use crate::derive::Derivation;
@@ -6,8 +6,7 @@ use crate::expr::{self, Expr};
 use crate::schedule::program;
 
 impl Derivation {
-    /// Every residual that differs from the emitted one by one term: dropped, or with its sign
-    /// flipped.
+    /// Every residual that differs from the emitted one in one term, which is dropped or has the opposite sign.
     pub fn mutations(&self) -> Vec<Mutant<'_>> {
         let s = &self.letters.symbols;
         let original = self.residual_expressions();
@@ -37,7 +36,7 @@ pub struct Mutant<'a> {
 }
 
 impl Mutant<'_> {
-    /// Which term, and what was done to it.
+    /// The changed term and its change, in words.
     pub fn describe(&self) -> String {
         let style = crate::print::Style::new(&self.derivation.spec.time_index);
         let format = crate::print::Format::Text;

@@ -1,4 +1,5 @@
-//! The residual of the discrete equations at three nodes, and the equations of motion at one moment, with numbers.
+//! Numerical values of the residual of the discrete equations at three nodes, and of the equations of motion at one
+//! time.
 
 use super::{Assignment, EvalError, Evaluator, Matrix, evaluate};
 use crate::check::spec::Group;
@@ -8,10 +9,10 @@ use crate::expr::shape::Structure;
 use crate::expr::{self, Expr, Shift};
 use crate::schedule::{Program, program};
 
-/// The numbers of a covector in the basis of its Lie algebra. SO(3): the vector. SO(n): for
-/// `i < j`, row by row, the pairing with the element that has -1 at (i, j) and +1 at (j, i).
-/// GL(n): all entries, row by row (the variation being the matrix unit). SU(2): the vector, whose
-/// variation is half the imaginary unit. Rigid motions: the angular, then the linear components.
+/// The components of a covector in the basis of its Lie algebra. SO(3): the vector. SO(n): for `i < j`, row by row,
+/// the pairing with the element that has -1 at (i, j) and +1 at (j, i). GL(n): all entries, row by row, since the
+/// variations are matrix units. SU(2): the vector, whose variation is half the imaginary unit. Rigid motions: the
+/// angular, then the linear components.
 fn coordinates(group: Group, m: &Matrix) -> Vec<f64> {
     if group.dual().1 != Structure::Skew {
         return m.data.clone();
@@ -21,8 +22,8 @@ fn coordinates(group: Group, m: &Matrix) -> Vec<f64> {
 }
 
 impl Derivation {
-    /// The residual of the discrete Euler-Lagrange equations at node k, incoming minus outgoing
-    /// edge, for each configuration: the program that the macro emits.
+    /// The residual of the discrete Euler-Lagrange equations at node k, incoming minus outgoing edge, for each
+    /// configuration. The macro emits the same program.
     pub fn residual_program(&self) -> Program {
         program(&self.letters.symbols, &self.residual_expressions(), "t")
     }
@@ -57,11 +58,11 @@ impl Derivation {
         Ok(groups.flat_map(|(c, m)| coordinates(c.group, m)).collect())
     }
 
-    /// Evaluates the continuous equations of motion, `-dμ/dt ± ad*_ζ μ + Σ ∂L/∂a ◇ a`, at one
-    /// moment of any curve: level 0 of elements and of advected quantities without definition,
-    /// velocities under the names of [`Letters::rate`](crate::derive::Letters), accelerations under
-    /// those of `acceleration`. Components as in [`Derivation::residual`], whose limit over the
-    /// step this is; nothing where the action has no limit.
+    /// Evaluates the continuous equations of motion, `-dμ/dt ± ad*_ζ μ + Σ ∂L/∂a ◇ a`, at one time of any curve. The
+    /// values are elements and undefined advected quantities at level 0, velocities under the names of
+    /// [`Letters::rate`](crate::derive::Letters), and accelerations under the names of `acceleration`. The components
+    /// are in the order of [`Derivation::residual`]; divided by the step size, that residual has these equations as
+    /// its limit. None if the action has no limit.
     pub fn continuous_balance(&self, values: &Assignment) -> Result<Option<Vec<f64>>, EvalError> {
         let s = &self.letters.symbols;
         let Some(continuous) = &self.continuous else {

@@ -24,7 +24,7 @@ pub struct ChainConstraint {
     pub name: String,
     /// The label.
     pub label: usize,
-    /// The last index of an open line, less the number of segments.
+    /// The last index of an open chain, minus the number of segments.
     pub to: isize,
     /// The distance between its letters, in sites: neighbours at most.
     pub width: usize,
@@ -46,45 +46,45 @@ pub struct ChainConstraint {
     pub reaches: Vec<Reach>,
 }
 
-/// How a constraint reaches one configuration.
+/// The action of a constraint on one configuration.
 #[derive(Clone, Debug)]
 pub struct Reach {
     /// The configuration as stated.
     pub on: String,
     /// Its site, from the index of the constraint.
     pub site: usize,
-    /// The reaction, a covector, for the multiplier.
+    /// The constraint force as a covector, for the multiplier.
     pub reaction: Expr,
-    /// The same for each component of it.
+    /// The constraint force for each component of the multiplier.
     pub columns: Matrix,
-    /// Whether a sum over sites holds it.
+    /// Whether it occurs in a sum over sites.
     pub in_sum: bool,
 }
 
 /// A matrix by its columns.
 #[derive(Clone, Debug)]
 pub enum Matrix {
-    /// So many times the identity.
+    /// A multiple of the identity.
     Multiple(Expr),
     /// Any other.
     Columns(Vec<Expr>),
 }
 
-/// Configurations of a site whose velocities are found together, and what an impulse does to them.
+/// Configurations of a site whose velocities are found together, and their response to an impulse.
 #[derive(Clone, Debug)]
 pub struct ConstraintResponse {
-    /// Their numbers in the model of the site.
+    /// Their indices in the model of the site.
     pub members: Vec<usize>,
-    /// The derivative of the momenta of an edge by the velocities, member after member; none for a rotation.
+    /// The derivative of the edge momenta with respect to the velocities, member by member; none for a rotation.
     pub of_edge: Option<Vec<Matrix>>,
-    /// The same of the limit of small steps.
+    /// The same derivative in the limit of small steps.
     pub of_node: Vec<Matrix>,
-    /// The momenta of that limit where nothing moves.
+    /// The momenta of that limit at zero velocity.
     pub at_rest: Vec<Expr>,
 }
 
 impl Matrix {
-    /// The matrix of these columns; a multiple of the identity is seen.
+    /// The matrix of these columns; recognizes a multiple of the identity.
     fn of(algebra: &Algebra, columns: Vec<Expr>) -> Matrix {
         let columns: Vec<Expr> = columns
             .into_iter()
@@ -351,7 +351,7 @@ fn total(
     with_derivatives(part, hold, held)
 }
 
-/// An expression at the base, with its letters named as letters of the site `i`, for print.
+/// An expression at the base, with its letters named as letters of the site `i`, for display.
 fn seen_from(part: &RepresentativeChain, e: &Expr, index: &str, symbols: &mut Symbols) -> Expr {
     let mut list = Vec::new();
     for l in expr::letters(e) {
@@ -431,7 +431,7 @@ pub(super) fn units(
     for members in &lone.blocks {
         let own = |i: &usize| lone.movers.iter().find(|m| m.index == *i);
         let movers: Vec<&SiteUnknown> = members.iter().filter_map(own).collect();
-        // If a constraint acts on part of a block, the whole block moves.
+        // If a constraint acts on part of a block, it changes the velocities of the whole block.
         if movers.iter().any(|m| reached(m)) {
             out.push(unit(lone, members, &movers)?);
         }

@@ -14,13 +14,13 @@ use crate::lattice::Lattice;
 /// Terms with functionals.
 #[derive(Clone, Debug)]
 pub struct FunctionalForce {
-    /// The terms of the Lagrangian, with the label over whose sites each is summed.
+    /// The terms of the Lagrangian, each with the label of the sites of its sum.
     pub terms: Vec<(usize, Expr)>,
-    /// The contributions, each as a whole at one node.
+    /// The contributions, each in full at one node.
     pub forces: Vec<Force>,
 }
 
-/// The terms with functionals, if there are any.
+/// The terms with functionals, if any.
 pub(super) fn meshed(
     lattice: &Lattice,
     part: &RepresentativeChain,
@@ -70,7 +70,7 @@ fn gathered(part: &RepresentativeChain, e: &Expr) -> Expr {
             rest.push(term);
             continue;
         };
-        // A factor of a seed may be part of it, as long as it is the same at all sites.
+        // A factor of a seed may move into the seed if it is the same at all sites.
         let seed = expr::mul(expr::number(factor), gathered(part, &seed));
         match backs.iter_mut().find(|(b, i, _)| *b == a && *i == which) {
             Some((.., seeds)) => seeds.push(seed),
@@ -84,7 +84,7 @@ fn gathered(part: &RepresentativeChain, e: &Expr) -> Expr {
     expr::sum(rest.into_iter().chain(backs).collect::<Vec<_>>(), e.shape())
 }
 
-/// A pull-back of a number with an exact number before it.
+/// A pull-back of a scalar, and the exact number that multiplies it.
 fn back(e: &Expr) -> Option<(Rational, Applied, u8, Expr)> {
     match e.node() {
         Node::PullBack(a, which, seed) if seed.shape().is_scalar() => {

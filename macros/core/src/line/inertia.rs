@@ -1,6 +1,6 @@
-//! The kinetic energy of the limit of small steps where terms of neighbours hold velocities: momenta as linear functions of
-//! velocities, of sites by themselves and of those terms. Takes limits; gives the derivatives that are inverted for all sites
-//! together.
+//! The kinetic energy in the limit of small steps, if neighbour terms contain velocities: momenta as linear functions
+//! of velocities, for single sites and for those terms. Takes limits; gives the derivatives that are inverted for all
+//! sites together.
 
 use super::{RepresentativeChain, SiteModel, VelocityCoupling, velocity};
 use crate::algebra::Algebra;
@@ -14,13 +14,13 @@ use crate::expr::{self, Expr, Letter, Shift};
 /// Momenta that are linear in velocities.
 #[derive(Clone, Debug)]
 pub struct Inertia {
-    /// The momentum of each configuration where nothing moves.
+    /// The momentum of each configuration at zero velocity.
     pub at_rest: Vec<Expr>,
     /// For each configuration, the derivative with respect to the velocities of each; one column per axis.
     pub columns: Vec<Vec<Expr>>,
 }
 
-/// That of these configurations in a limit.
+/// The inertia of these configurations in a limit.
 fn of(spec: &Spec, letters: &Letters, limit: &Limit, members: &[usize]) -> Inertia {
     let s = &letters.symbols;
     let gradient = |of: &Expr, i: usize| {
@@ -48,7 +48,7 @@ fn of(spec: &Spec, letters: &Letters, limit: &Limit, members: &[usize]) -> Inert
     }
 }
 
-/// That of configurations of a site by itself, if there is a limit.
+/// The inertia of configurations of a single site, if there is a limit.
 pub fn of_site(lone: &SiteModel, members: &[usize]) -> Option<Inertia> {
     let limit = lone.d.limit.as_ref().ok()?;
     Some(of(&lone.d.spec, &lone.d.letters, limit, members))

@@ -40,9 +40,9 @@ use crate::syntax::ast::{Model, NodeRule, Statement};
 
 /// A model with labels for every number of sites.
 pub struct Line {
-    /// The model as stated; what is kept in coordinates is stated in these.
+    /// The model as stated; configurations that are stored in coordinates are stated in those.
     pub model: Model,
-    /// Configurations of groups that are kept in coordinates.
+    /// Configurations of groups that are stored in coordinates.
     pub coordinates: Vec<Coordinates>,
     /// Its labels.
     pub lattice: Lattice,
@@ -75,18 +75,18 @@ pub struct Line {
 pub struct RepresentativeChain {
     /// The choice.
     pub choice: Choice,
-    /// The model of as many bodies.
+    /// The expanded model of that choice.
     pub unfolded: ExpandedModel,
-    /// How its copies vary, and their equations.
+    /// The variations of its copies, and their equations.
     pub d: Outline,
 }
 
 /// The reason why a model cannot be one program for every number of sites: it is then expanded, body by body.
 #[derive(Debug)]
 pub enum Refused {
-    /// The model itself is wrong.
+    /// The model itself contains errors.
     Model(Errors),
-    /// Its form is not one that loops over sites take; in words.
+    /// Loops over sites do not support its form; the reason in words.
     Form(String),
 }
 
@@ -208,7 +208,7 @@ impl Line {
         Ok(())
     }
 
-    /// Multipliers are found beside velocities of sites alone.
+    /// Multipliers are supported only if velocities are not coupled along the chain.
     fn holds_are_alone(&self) -> Result<(), Refused> {
         let refused = |words: &str| Err(Refused::Form(words.to_owned()));
         if self.holds.is_empty() {
@@ -243,7 +243,7 @@ impl Line {
             .find_map(|l| Some((l, l.movers.iter().find(|m| m.name == name)?)))
     }
 
-    /// How many sites beyond the last one terms look.
+    /// The largest number of sites that terms reach beyond the last one.
     pub fn beyond(&self) -> usize {
         let tied = self.ties.iter().map(|t| t.width);
         let pulled = self.pulls.iter().map(|p| p.width);
@@ -277,7 +277,7 @@ fn written(
     })
 }
 
-/// Everything that moves lives at sites, and nothing scales the action.
+/// Checks that every configuration belongs to sites, and that nothing scales the action.
 fn stands_alone(model: &Model, lattice: &Lattice) -> Result<(), Refused> {
     let refused = |words: &str| Err(Refused::Form(words.to_owned()));
     for statement in &model.statements {
@@ -304,7 +304,7 @@ fn stands_alone(model: &Model, lattice: &Lattice) -> Result<(), Refused> {
     Ok(())
 }
 
-/// Rejects quantities that advance with the step by themselves: loops over sites keep no time.
+/// Rejects clocks, which advance with the step size only: loops over sites store no time.
 fn without_clocks(representative: &RepresentativeChain) -> Result<(), Refused> {
     let spec = &representative.d.spec;
     match spec.clocks().first() {

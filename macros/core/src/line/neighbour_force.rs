@@ -21,9 +21,9 @@ use crate::{algebra::Algebra, check};
 pub struct Force {
     /// The configuration as stated.
     pub on: String,
-    /// Its site, from the index of the term; of an end condition from the first or to the last site.
+    /// Its site, relative to the index of the term; for an end condition, counted from that end.
     pub site: usize,
-    /// The covector, as a whole at one node.
+    /// The covector, in full at one node.
     pub value: Expr,
 }
 
@@ -32,9 +32,9 @@ pub struct Force {
 pub struct NeighbourForce {
     /// The label.
     pub label: usize,
-    /// The first index of an open line.
+    /// The first index of an open chain.
     pub from: usize,
-    /// The last index of an open line, less the number of segments.
+    /// The last index of an open chain, minus the number of segments.
     pub to: isize,
     /// The distance between its letters, in sites.
     pub width: usize,
@@ -47,22 +47,22 @@ pub struct NeighbourForce {
 /// The contributions of one end condition.
 #[derive(Clone, Debug)]
 pub struct EndTerm {
-    /// Whether of the last site.
+    /// Whether it belongs to the last site.
     pub last: bool,
-    /// Which alternative.
+    /// The index of the alternative.
     pub which: usize,
-    /// The sites and ends that its letters are copies of.
+    /// The forces, on sites counted from the end.
     pub forces: Vec<Force>,
     /// The terms of the Lagrangian.
     pub terms: Expr,
-    /// Letters as they are bound: name as stated, and the site counted from the end, or none for
-    /// parameters of the end itself.
+    /// The letters with their bindings: the name as stated, and the site counted from the end, or none for parameters
+    /// of the end condition.
     pub letters: Vec<(Letter, String, Option<usize>)>,
     /// The symbols of the letters.
     pub symbols: crate::expr::symbol::Symbols,
 }
 
-/// The kind of sites of which every one has this term by itself; no term of neighbours.
+/// The kind of sites that each have this term on their own; None for a neighbour term.
 pub(super) fn lone_at(summand: &Summand) -> Option<Sites> {
     let [(sites, 0)] = summand.letters.as_slice() else {
         return None;
@@ -75,13 +75,13 @@ pub(super) fn lone_at(summand: &Summand) -> Option<Sites> {
     (range.from == 0 && range.to == last).then_some(*sites)
 }
 
-/// A term with the range of its sites, letters of the first one at the base of the representative.
+/// A term with the range of its sites; the letters of the first site are at the base of the representative.
 pub(super) struct Placed {
     /// The label.
     pub label: usize,
-    /// The first index of an open line.
+    /// The first index of an open chain.
     pub from: usize,
-    /// The last one, less the number of segments.
+    /// The last index, minus the number of segments.
     pub to: isize,
     /// The distance between its letters, in sites.
     pub width: usize,
@@ -198,7 +198,7 @@ pub(super) fn pulls(
     Ok((out, ties))
 }
 
-/// Whether a term stays as it is when all copies of a field grow alike, as they do once around a ring.
+/// Whether a term is invariant if all copies of a field are shifted equally, as happens once around a ring.
 fn keeps(lattice: &Lattice, part: &RepresentativeChain, term: &Expr) -> bool {
     let s = &part.d.letters.symbols;
     let algebra = Algebra::new(s);
@@ -210,14 +210,14 @@ fn keeps(lattice: &Lattice, part: &RepresentativeChain, term: &Expr) -> bool {
         let Some(first) = own.first() else {
             return true;
         };
-        // By an arbitrary amount: the first letter itself.
+        // The amount is arbitrary: the first letter itself.
         let by = expr::letter(s, first.symbol, first.shift);
         let changes: Vec<(Letter, Expr)> = own.iter().map(|l| (*l, by.clone())).collect();
         algebra.is_zero(&expr::directional(s, term, &changes))
     })
 }
 
-/// A summand as it is shown.
+/// A summand as displayed.
 fn read(part: &RepresentativeChain, summand: &Summand) -> Result<Expr, Refused> {
     let found = check::numbers(&part.unfolded.model, &[&summand.shown]);
     match found.into_iter().next() {
@@ -232,8 +232,8 @@ pub(super) fn in_two(part: &RepresentativeChain, summand: &Summand) -> Result<[E
     Ok([edge, nodal])
 }
 
-/// The same if the derivation combines terms with negative powers of the step size: the nodal part of a difference
-/// over the step then belongs to the edge, at the end where it is stated.
+/// The two parts of a term, if the derivation combines terms with negative powers of the step size: the nodal part of
+/// a difference over the step size then belongs to the edge, at the end where it is stated.
 fn gathered(part: &RepresentativeChain, summand: &Summand) -> Result<[Expr; 2], Refused> {
     let s = &part.d.letters.symbols;
     let reduction = part.d.spec.reduction.as_ref();
@@ -257,7 +257,7 @@ fn gathered(part: &RepresentativeChain, summand: &Summand) -> Result<[Expr; 2], 
     Ok([sum(on_edge), sum(at_node)])
 }
 
-/// A summand as it is shown; it must belong to one node in time.
+/// A summand as displayed; it must belong to one node in time.
 pub(super) fn elaborated(part: &RepresentativeChain, summand: &Summand) -> Result<Expr, Refused> {
     let [edge, nodal] = in_two(part, summand)?;
     match edge.is_zero() {
@@ -270,7 +270,7 @@ pub(super) fn elaborated(part: &RepresentativeChain, summand: &Summand) -> Resul
     }
 }
 
-/// Advected quantities by the configurations that carry them.
+/// Expresses advected quantities by the configurations that advect them.
 pub(super) fn defined(part: &RepresentativeChain, term: &Expr) -> Result<Expr, Refused> {
     let d = &part.d;
     let s = &d.letters.symbols;

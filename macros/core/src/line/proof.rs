@@ -1,5 +1,5 @@
-//! The proof that the model of a single site and the contributions of neighbours are the whole equation of a site:
-//! shown on the expanded chain, at a site with all its neighbours.
+//! Proves that the model of a single site and the contributions of neighbours are the whole equation of a site. The
+//! proof uses the expanded chain, at a site with all its neighbours.
 
 use super::{Line, Refused, SiteModel, SiteUnknown};
 use crate::algebra::Algebra;
@@ -33,7 +33,7 @@ impl Line {
         let part = &self.representative;
         let d = &part.d;
         let s = &d.letters.symbols;
-        // The site in the middle of the sites shown.
+        // The site in the middle of the expanded chain.
         let site = match lone.sites {
             Sites::Members => 0,
             Sites::Nodes | Sites::Segments => self.beyond() + 1,

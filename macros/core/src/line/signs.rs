@@ -1,6 +1,6 @@
-//! Signs of unit quaternions: which quantities along the chain meet their neighbours in a term, whether the term
-//! depends on the sign, and at which ends they meet a prescribed quaternion. Takes the expanded chain; gives the
-//! quantities whose signs must agree when a trajectory starts, since `q` and `-q` are one attitude and two states.
+//! Signs of unit quaternions: which quantities along the chain occur in a term with their neighbours, whether the
+//! term depends on the sign, and at which ends they occur with a prescribed quaternion. Takes the expanded chain;
+//! gives the quantities whose signs must agree at the start, since `q` and `-q` are one attitude but two states.
 
 use super::neighbour_force::{self, EndTerm};
 use super::{Refused, RepresentativeChain, written};
@@ -12,32 +12,32 @@ use crate::lattice::{Kind, Lattice};
 use crate::pipeline;
 use crate::syntax::ast::Model;
 
-/// A quantity of unit quaternions that meets its neighbour.
+/// A unit quaternion that occurs in a term with its neighbour.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Signs {
     /// The quantity as stated.
     pub of: String,
-    /// Whether a term changes if the sign of one site does.
+    /// Whether a term changes if the sign at one site changes.
     pub seen: bool,
     /// The walls at the first end and at the last.
     pub walls: [Vec<Wall>; 2],
 }
 
-/// A unit quaternion that an end condition gives, in a term with one of a site.
+/// A unit quaternion prescribed by an end condition, in a term with one of a site.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Wall {
-    /// Which alternative of the end.
+    /// The index of the alternative.
     pub which: usize,
     /// The parameter as stated.
     pub parameter: String,
-    /// How far the site is from the end.
+    /// The distance of the site from the end.
     pub site: usize,
 }
 
 /// The quantities of a model whose signs are made to agree.
 ///
 /// # Errors
-/// [`Refused`] where the model is wrong, or a term is not read.
+/// [`Refused`] if the model contains errors or has a term that cannot be read.
 pub fn signs(model: &Model, lattice: &Lattice) -> Result<Vec<Signs>, Refused> {
     let any = lattice.quantities.iter().any(|q| {
         q.kind == Kind::Configuration && lattice.line == Some(q.label) && q.offset.is_none()
@@ -124,7 +124,7 @@ fn sees(part: &RepresentativeChain, algebra: &Algebra, term: &Expr, of: &str) ->
     Some(!algebra.is_zero(&expr::sub(term.clone(), other)))
 }
 
-/// The quaternions that an end gives in terms with this quantity.
+/// The quaternions that an end condition prescribes in terms with this quantity.
 fn walls(ends: &[EndTerm], last: bool, of: &str) -> Vec<Wall> {
     let own = ends.iter().filter(|e| e.last == last);
     let each = own.filter_map(|e| {

@@ -6,8 +6,8 @@ use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Letter};
 use crate::lattice::copy_name;
 
-/// The site from which letters of terms of neighbours are counted: the first one whose equation has
-/// all its neighbours at every width.
+/// The site from which letters of neighbour terms are counted. It is the first site whose equation has all its
+/// neighbours, for every width.
 pub const BASE: usize = 1;
 
 /// The prefix that turns the name of a configuration into the name of its node momentum.
@@ -26,7 +26,7 @@ pub struct Sited {
 }
 
 impl Sited {
-    /// The name of what is declared.
+    /// The name of the declared quantity.
     pub fn plain(&self) -> &str {
         let of = self.momentum_of().or_else(|| self.velocity_of());
         of.unwrap_or(&self.of)
@@ -44,7 +44,7 @@ impl Sited {
 }
 
 impl RepresentativeChain {
-    /// The quantity and the site of a letter, where it is a copy.
+    /// The quantity and the site of a letter, if it is a copy.
     pub fn sited(&self, symbol: SymbolId) -> Option<Sited> {
         let name = &self.d.letters.symbols.get(symbol).name;
         if let Some(copy) = self.unfolded.copy(name) {
@@ -85,7 +85,7 @@ impl RepresentativeChain {
         }
     }
 
-    /// An expression of one site by itself in the letters of a copy of it, momenta among them.
+    /// An expression of a single site in the letters of one of its copies, including momenta.
     pub fn of_site(&self, lone: &SiteModel, e: &Expr, site: usize) -> Option<Expr> {
         let s = &self.d.letters.symbols;
         let own = &lone.d.letters;

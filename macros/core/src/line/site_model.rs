@@ -30,7 +30,7 @@ pub struct SiteModel {
     pub outline: Outline,
     /// Its configurations.
     pub movers: Vec<SiteUnknown>,
-    /// Configurations whose velocities are found together, each by its number.
+    /// Configurations whose velocities are found together, by their indices.
     pub blocks: Vec<Vec<usize>>,
 }
 
@@ -38,52 +38,52 @@ pub struct SiteModel {
 pub struct SiteUnknown {
     /// Its name.
     pub name: String,
-    /// Its number in the derivation.
+    /// Its index in the derivation.
     pub index: usize,
     /// How its velocity is found.
     pub how: SiteSolve,
 }
 
-/// How a velocity is found from the momentum that leaves the node.
+/// How a velocity is found from the momentum of the edge that leaves the node.
 pub enum SiteSolve {
-    /// A rotation by the Moser-Veselov equation with a factor of parameters, or a unit quaternion by its
-    /// like on SU(2).
+    /// A rotation by the Moser-Veselov equation with a factor that depends on parameters, or a unit quaternion by the
+    /// analogous equation on SU(2).
     Rotation {
         /// The factor.
         factor: Expr,
         /// For a unit quaternion, its real coefficient, which also contains parameters only.
         real: Option<Expr>,
-        /// The impulse at the start of the edge, seen from the body there.
+        /// The impulse at the start of the edge, in the body frame there.
         leave: Expr,
-        /// The same at its end.
+        /// The impulse at the end of the edge, in the body frame there.
         arrive: Expr,
     },
-    /// A field on which only potentials act: `p = L ΔX R + rest`.
+    /// A field with potential forces only: `p = L ΔX R + rest`.
     Field {
         /// The factors.
         form: TwoSidedLinear,
         /// The impulse at the end of the edge.
         arrive: Expr,
     },
-    /// Fields whose momenta are linear in all velocities of their block together.
+    /// Fields whose momenta are linear in all velocities of their block.
     System {
-        /// The momentum where nothing moves.
+        /// The momentum at zero velocity.
         rest: Expr,
-        /// The columns of the momentum's derivative, one for each component of each velocity of the block.
+        /// The columns of the momentum's derivative, one per component of each velocity of the block.
         columns: Vec<Expr>,
         /// The increment of the momentum over the edge, in velocities and both ends.
         added: Expr,
     },
-    /// Fields whose momenta are other functions of the velocities of their block: by Newton's method.
+    /// Fields whose momenta are nonlinear functions of the velocities of their block, solved by Newton's method.
     Newton {
         /// The momentum, in the velocities of the block.
         momentum: Expr,
-        /// Its derivative by each component of each velocity of the block.
+        /// Its derivative with respect to each component of each velocity of the block.
         columns: Vec<Expr>,
-        /// The increment of the momentum over the edge, in velocities and both ends; for a rotation, the increment at
-        /// its start, seen from the body there.
+        /// The increment of the momentum over the edge, in velocities and both ends. For a rotation, the increment at
+        /// its start, in the body frame there.
         added: Expr,
-        /// For a rotation, the increment at its end, seen from the body there.
+        /// For a rotation, the increment at its end, in the body frame there.
         arriving: Option<Expr>,
     },
 }
@@ -98,7 +98,7 @@ impl SiteSolve {
     }
 }
 
-/// The models of the sites that hold something that moves.
+/// The models of all sites with configurations.
 pub(super) fn lone(
     model: &Model,
     lattice: &Lattice,
@@ -189,7 +189,7 @@ fn one(
     })
 }
 
-/// Rejects terms with advected quantities that have a constraint but not a definition: a chain does not store their
+/// Rejects terms with advected quantities that have a constraint but no definition: a chain does not store their
 /// values from step to step.
 fn without_carried(d: &Derivation) -> Result<(), Refused> {
     let s = &d.letters.symbols;
@@ -296,7 +296,7 @@ fn alone(
         }
     }
     let lagrangian = match terms.len() {
-        // Its velocities occur in terms of neighbours only.
+        // Its velocities occur in neighbour terms only.
         0 => Some(Expression {
             kind: Kind::Number(Rational::integer(0)),
             place,
@@ -312,7 +312,7 @@ fn alone(
     Ok(out)
 }
 
-/// Whether it declares nothing.
+/// Whether the statement declares nothing.
 fn is_empty(statement: &Statement) -> bool {
     match statement {
         Statement::Param { names, .. }
@@ -405,7 +405,7 @@ fn how(
 fn system(d: &Derivation, i: usize, block: &[usize]) -> Result<SiteSolve, Refused> {
     let s = &d.letters.symbols;
     let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
-    // All of a block are solved for in one way.
+    // All configurations of a block are solved in the same way.
     for j in block {
         let (_, columns) = momentum(d, *j, block)?;
         if columns.iter().any(moving) {
@@ -427,7 +427,7 @@ fn system(d: &Derivation, i: usize, block: &[usize]) -> Result<SiteSolve, Refuse
     })
 }
 
-/// The same as a function whose derivative may depend on the velocities.
+/// The momentum of a field as a function whose derivative may depend on the velocities.
 fn by_newton(d: &Derivation, i: usize, block: &[usize]) -> Result<SiteSolve, Refused> {
     let (momentum, columns) = momentum(d, i, block)?;
     let c = &d.spec.configurations[i];

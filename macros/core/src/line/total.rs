@@ -1,5 +1,5 @@
-//! Conserved totals of a chain: sums over sites of one density, the same at every site that no end prescribes. The
-//! density may contain prescribed positions. clebsch finds totals on the expanded chain.
+//! Conserved totals of a chain: sums over sites of one density, the same at every site that no end condition
+//! prescribes. The density may contain prescribed positions. clebsch finds totals on the expanded chain.
 
 use super::site::BASE;
 use super::{FunctionalForce, Refused, RepresentativeChain, SiteModel};
@@ -21,11 +21,11 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Density {
     /// The label of the sites.
     pub label: usize,
-    /// Which of its sites.
+    /// The kind of its sites.
     pub sites: Sites,
-    /// How many of them ends hold, at the first end and at the last: these are left out.
+    /// The number of sites that end conditions prescribe, at the first and at the last end. The sum omits them.
     pub left_out: [usize; 2],
-    /// The summand, its letters at the base of the representative.
+    /// The summand, with its letters at the base of the representative.
     pub value: Expr,
 }
 
@@ -36,13 +36,13 @@ pub struct Total {
     pub name: String,
     /// Why it is conserved.
     pub reason: String,
-    /// On which lines.
+    /// The chains on which it is conserved.
     pub on: String,
     /// The densities.
     pub densities: Vec<Density>,
-    /// The letters that an end prescribes, with whether it is the last end:
+    /// The letters that an end condition prescribes, each with whether it is the last end.
     pub places: Vec<(Letter, bool)>,
-    /// The conditions at the first and at the last end that prescribe the same configurations as those of the search.
+    /// The alternatives at the first and at the last end that prescribe the same configurations as in the search.
     pub ends: [Vec<usize>; 2],
 }
 
@@ -59,7 +59,7 @@ impl Total {
         let each = self.densities.iter().map(|density| {
             let (label, sites, e) = (density.label, density.sites, &density.value);
             let [first, last] = density.left_out;
-            // With names that are the same on every chain of the model.
+            // With names that are equal on every chain of the model.
             let mut s = part.d.letters.symbols.clone();
             let place = |l: &Letter| self.places.iter().find(|(own, _)| own == l);
             let name = |l: &Letter| match (part.sited(l.symbol), place(l)) {
@@ -109,7 +109,7 @@ pub(super) fn totals(
     };
     let on = |choice: Choice| -> Result<Vec<Total>, Refused> {
         let own = written(choice.clone())?;
-        // A constraint on a sum may bring the number of sites into a total, which a longer chain then does not repeat.
+        // A constraint on a sum may introduce the number of sites into a total, which then differs on a longer chain.
         match lattice
             .line
             .filter(|_| holds_sums(model) && !own.is_empty())
@@ -128,11 +128,11 @@ pub(super) fn totals(
     let choice = default_choice(lattice, part.choice.clone());
     let mut all = on(choice.clone())?;
     for other in holding_others(lattice, &choice) {
-        // Errors of other ends are reported where a case chooses these ends.
+        // Errors of other end conditions are reported if a case selects these.
         for total in on(other).unwrap_or_default() {
             let text = total.text(part);
             let mut alike = all.iter().filter(|t| t.name == total.name);
-            // A name is one function.
+            // Each name has one function.
             if alike.all(|t| t.shape() == total.shape() && t.text(part) != text) {
                 all.push(total);
             }
@@ -141,7 +141,7 @@ pub(super) fn totals(
     Ok(all)
 }
 
-/// The same ends with more sites; a ring keeps an odd number of them.
+/// The same end conditions with more sites; the number of sites of a ring stays odd.
 fn longer(mut choice: Choice, line: usize) -> Choice {
     if let Some(count) = choice.counts.get_mut(line) {
         *count += if choice.periodic { 2 } else { 1 };
@@ -186,7 +186,7 @@ fn holding_others(lattice: &Lattice, choice: &Choice) -> Vec<Choice> {
     each.collect()
 }
 
-/// The end conditions that hold the same configurations as the chosen ones.
+/// The end conditions that prescribe the same configurations as the chosen ones.
 fn holding_alike(lattice: &Lattice, choice: &Choice) -> [Vec<usize>; 2] {
     [0, 1].map(|end| {
         let given = |i: usize| -> BTreeSet<&str> {
@@ -245,12 +245,12 @@ pub(super) fn beside_functionals(
     out
 }
 
-/// Totals of one name by the labels of their sites as well.
+/// Gives totals of equal names different names, by the labels of their sites.
 pub(super) fn name_apart(lattice: &Lattice, totals: &mut [Total]) {
     for i in 1..totals.len() {
         let (before, rest) = totals.split_at_mut(i);
         let Some(own) = rest.first_mut() else { break };
-        // On chains with other prescribed ends, this total applies.
+        // This total applies to chains with other prescribed ends.
         let is_other = |t: &Total| t.name == own.name && t.ends == own.ends;
         if !before.iter().any(is_other) {
             continue;
@@ -268,8 +268,8 @@ pub(super) fn name_apart(lattice: &Lattice, totals: &mut [Total]) {
     }
 }
 
-/// Whether the contributions of functionals to the momenta of this field have sum zero: these functionals are
-/// invariant under equal shifts, and no term contains a position itself.
+/// Whether the forces of functionals on this field sum to zero: these functionals are invariant under equal shifts,
+/// and no term contains a position itself.
 fn is_pushed_evenly(
     lattice: &Lattice,
     part: &RepresentativeChain,
@@ -305,7 +305,7 @@ fn outside(s: &Symbols, e: &Expr, out: &mut Vec<Letter>) {
     }
 }
 
-/// Whether the derivative of a value by a momentum holds no letter.
+/// Whether the derivative of a value with respect to a momentum contains no letter.
 fn has_constant_factor(s: &Symbols, value: &Expr, momentum: Letter) -> bool {
     let shape = expr::letter(s, momentum.symbol, momentum.shift).shape();
     let by = |u: &Expr| expr::directional(s, value, &[(momentum, u.clone())]);
@@ -376,7 +376,7 @@ pub fn totals_on(
         .collect()
 }
 
-/// The values of invariants. Invariants of single sites are added up to one total.
+/// The values of invariants. Invariants of single sites are added to one total.
 fn summed<'v>(
     part: &RepresentativeChain,
     invariants: Vec<&'v Invariant>,
@@ -412,7 +412,7 @@ fn summed<'v>(
     out.into_iter().map(|(v, e, _)| (v, e)).collect()
 }
 
-/// The densities of a sum over all sites of each kind that no end holds, at the base.
+/// The densities of a sum over all sites of each kind that no end condition prescribes, at the base.
 fn densities(lattice: &Lattice, part: &RepresentativeChain, e: &Expr) -> Option<Vec<Density>> {
     let mut by_site: BTreeMap<(usize, Sites), BTreeMap<usize, Vec<Expr>>> = BTreeMap::new();
     for term in terms(part, e) {
@@ -457,7 +457,7 @@ fn densities(lattice: &Lattice, part: &RepresentativeChain, e: &Expr) -> Option<
     (!out.is_empty()).then_some(out)
 }
 
-/// Whether an end holds a configuration at this site.
+/// Whether an end condition prescribes a configuration at this site.
 fn holds(lattice: &Lattice, part: &RepresentativeChain, kind: (usize, Sites), site: usize) -> bool {
     let mut held = part
         .unfolded
@@ -470,14 +470,14 @@ fn holds(lattice: &Lattice, part: &RepresentativeChain, kind: (usize, Sites), si
     })
 }
 
-/// Whether a letter is prescribed by an end, and thus the same for all sites.
+/// Whether an end condition prescribes a letter, which is then the same for all sites.
 fn is_held(part: &RepresentativeChain, l: &Letter) -> bool {
     part.unfolded
         .given
         .contains(&part.d.letters.symbols.get(l.symbol).name)
 }
 
-/// A summand of one site at the base; letters that ends prescribe stay where they are.
+/// A summand of one site at the base; prescribed letters stay unchanged.
 fn at_base(part: &RepresentativeChain, e: &Expr, site: usize) -> Option<Expr> {
     let by = isize::try_from(BASE).ok()? - isize::try_from(site).ok()?;
     let s = &part.d.letters.symbols;
@@ -491,7 +491,7 @@ fn at_base(part: &RepresentativeChain, e: &Expr, site: usize) -> Option<Expr> {
     Some(expr::substitute(s, e, &list))
 }
 
-/// Whether an expression contains configurations that an end prescribes, and besides them letters of a single site.
+/// Whether an expression contains prescribed configurations, and otherwise letters of a single site.
 fn is_from_held(part: &RepresentativeChain, e: &Expr) -> bool {
     let letters = expr::letters(e).into_iter();
     let (held, others): (Vec<Letter>, Vec<Letter>) = letters.partition(|l| is_held(part, l));
@@ -503,7 +503,7 @@ fn is_from_held(part: &RepresentativeChain, e: &Expr) -> bool {
     !held.is_empty() && first.is_some() && sites.all(|s| Some(s) == first)
 }
 
-/// The only site of a term, apart from sites that ends prescribe.
+/// The only site of a term, apart from prescribed sites.
 fn only_site(
     lattice: &Lattice,
     part: &RepresentativeChain,
@@ -525,7 +525,7 @@ fn only_site(
     found
 }
 
-/// The terms of a sum, with common factors multiplied in. Expanded distances would round more, so they stay.
+/// The terms of a sum, with common factors multiplied in. Distances stay unexpanded, which keeps rounding errors small.
 fn terms(part: &RepresentativeChain, e: &Expr) -> Vec<Expr> {
     if is_from_held(part, e) {
         return vec![e.clone()];

@@ -1,5 +1,5 @@
-//! Derivatives of momenta by the velocities of a site, of fields and of rotations seen from the body. Takes a
-//! momentum and the velocity; gives the columns of its derivative, next to each other.
+//! Derivatives of momenta with respect to the velocities of a site, for fields and for rotations in the body frame.
+//! Takes a momentum and the velocity; gives the columns of its derivative, side by side.
 
 use crate::check::spec::{Configuration, Side};
 use crate::derive::tangent::Direction;
@@ -15,19 +15,19 @@ pub(super) fn letter(c: &Configuration) -> Letter {
     }
 }
 
-/// Whether its velocities may be found together with others, or by Newton's method: fields, and rotations of space
-/// seen from the body.
+/// Whether its velocity may be found together with others, or by Newton's method. This holds for fields and for
+/// rotations of space in the body frame.
 pub(super) fn is_free(c: &Configuration) -> bool {
     turns(c) || c.group.is_additive() && expr::axes(c.group.shape()).is_some()
 }
 
-/// Whether it is a rotation of space seen from the body.
+/// Whether it is a rotation of space in the body frame.
 pub(super) fn turns(c: &Configuration) -> bool {
     c.group.is_of_space() && c.side == Side::Body
 }
 
-/// The derivative by a velocity, columns side by side: one for each axis of a field; of a rotation `Ω` all three
-/// at once, along `Ω hat(η)`. `None` for other groups.
+/// The derivative with respect to a velocity, columns side by side: one per axis of a field; all three together for a
+/// rotation `Ω`, along `Ω hat(η)`. `None` for other groups.
 pub(super) fn columns(s: &Symbols, momentum: &Expr, c: &Configuration) -> Option<Vec<Expr>> {
     let velocity = letter(c);
     if !turns(c) {
@@ -72,8 +72,8 @@ pub(super) fn columns(s: &Symbols, momentum: &Expr, c: &Configuration) -> Option
     Some(vec![whole.unwrap_or_else(by_columns)])
 }
 
-/// The derivative of a momentum of the limit of small steps by the velocity `xi` of a configuration there, a column for each
-/// axis.
+/// The derivative of a momentum in the limit of small steps with respect to the velocity `xi` of a configuration, one
+/// column per axis.
 pub(super) fn columns_of_limit(
     s: &Symbols,
     momentum: &Expr,

@@ -1,5 +1,5 @@
-//! Terms of neighbours that contain velocities: their contributions to the momenta of the sites that they touch.
-//! The velocities of these sites are then found together. Letters are letters of the expanded chain.
+//! Neighbour terms that contain velocities: their contributions to the momenta of the sites that they touch. The
+//! velocities of these sites are then found together. Letters are letters of the expanded chain.
 
 use super::neighbour_force::{Placed, defined};
 use super::{Inertia, Refused, RepresentativeChain, inertia, velocity};
@@ -14,9 +14,9 @@ use crate::{algebra::Algebra, line::BASE};
 pub struct VelocityCoupling {
     /// The label.
     pub label: usize,
-    /// The first index of an open line.
+    /// The first index of an open chain.
     pub from: usize,
-    /// The last index of an open line, less the number of segments.
+    /// The last index of an open chain, minus the number of segments.
     pub to: isize,
     /// The distance between its letters, in sites.
     pub width: usize,
@@ -33,15 +33,17 @@ pub struct VelocityCoupling {
 pub struct Part {
     /// The configuration as stated.
     pub on: String,
-    /// Its site, from the index of the term.
+    /// Its site, relative to the index of the term.
     pub site: usize,
     /// Its velocity.
     pub velocity: Letter,
-    /// To the momentum of the edge where it comes to a node: the derivative with respect to the velocity.
+    /// The contribution to the momentum of the edge on arrival at a node: the derivative with respect to the
+    /// velocity.
     pub incoming: Expr,
-    /// The increment of the momentum over the edge, seen from there: the derivative with respect to the position.
+    /// The increment of the momentum over the edge, in that frame: the derivative with respect to the position.
     pub added: Expr,
-    /// To the momentum of the edge where it leaves a node: seen from there, minus the increment over the edge.
+    /// The contribution to the momentum of the edge at its start, in the frame there, minus the increment over the
+    /// edge.
     pub momentum: Expr,
 }
 
@@ -67,8 +69,8 @@ pub(super) fn put(ties: &mut Vec<VelocityCoupling>, part: &RepresentativeChain, 
     }
 }
 
-/// Splits terms of neighbours, together with the nodal terms of the same range: the part that vanishes at rest is
-/// the coupling, and the remainder is nodal. Differences thus stay together.
+/// Splits neighbour terms, together with the nodal terms of the same range. The part that vanishes at zero velocity
+/// is the coupling, and the remainder is nodal, so differences stay together.
 pub(super) fn settle(
     part: &RepresentativeChain,
     tie: &mut VelocityCoupling,
@@ -93,7 +95,7 @@ pub(super) fn settle(
         .map(|c| (velocity::letter(c), c.group.identity()))
         .collect();
     let at_rest = algebra.shortest(&expr::substitute(s, &whole, &still));
-    // Nothing is left of differences as they are stated.
+    // The stated differences vanish at zero velocity.
     if at_rest.is_zero() && d.spec.configurations.iter().any(velocity::turns) {
         tie.terms = whole;
         return at_rest;
@@ -102,7 +104,8 @@ pub(super) fn settle(
     at_rest
 }
 
-/// Finds what the terms add, which must be to fields and rotations of one kind of sites, next to one another.
+/// Finds the contributions of the terms, which must be to fields and rotations of one kind of sites, at adjacent
+/// sites.
 pub(super) fn finish(
     lattice: &Lattice,
     part: &RepresentativeChain,
@@ -133,7 +136,7 @@ pub(super) fn finish(
                     false => shorter(&algebra, gradient),
                 }
             };
-            // The covector of a variation of what the terms see.
+            // The covector of a variation of all letters in the terms.
             let along = |(letter, change): (Letter, Expr)| -> Expr {
                 let gradient = expr::gradient(s, &tie.terms, letter);
                 let paired = expr::sum([pairing(&d.letters, &gradient, &change)], Shape::SCALAR);
@@ -168,7 +171,7 @@ pub(super) fn finish(
                     let velocity = here(c.velocity);
                     let leaving = along((velocity, going));
                     let added = along(v.element.clone());
-                    // Together they are often shorter than either.
+                    // The difference is often shorter than either expression.
                     let momentum = shorter(&algebra, expr::sub(leaving, added.clone()));
                     [along((velocity, coming)), added, momentum]
                 }
@@ -200,7 +203,7 @@ pub(super) fn finish(
 }
 
 impl VelocityCoupling {
-    /// The derivative of the momentum of one part by the velocity of another, columns side by side.
+    /// The derivative of the momentum of one part with respect to the velocity of another, columns side by side.
     pub fn columns(&self, part: &RepresentativeChain, of: &Part, by: &Part) -> Vec<Expr> {
         let s = &part.d.letters.symbols;
         let mut all = part.d.spec.configurations.iter();

@@ -1,4 +1,4 @@
-//! Functionals of the model: arguments, then directions by their arguments, then the seed.
+//! Calls of the model's functionals: arguments, then directions ordered by their arguments, then the seed.
 
 use super::Lowering;
 use crate::expr::{Applied, Expr};

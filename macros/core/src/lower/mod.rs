@@ -1,5 +1,5 @@
-//! From expressions to kernels: one rule for each kind of node, differences from rest and products in the order
-//! in which they keep their digits and cost least.
+//! From expressions to kernels: one rule per kind of node. Differences from zero velocity and products are ordered so
+//! that they lose no digits and cost least.
 
 mod functional;
 mod product;
@@ -12,7 +12,7 @@ use crate::expr::{self, Constant, Expr, Function, Letter, Map, Node, Part};
 use crate::schedule::Program;
 use clebsch_program::{Kernel, Kind, Number, Operation, Pair, Single, Value};
 
-/// What an input of a kernel stands for.
+/// The source of an input of a kernel.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Source {
     /// The value of a letter.
@@ -23,25 +23,25 @@ pub enum Source {
     QuaternionOf(Letter),
 }
 
-/// The names under which a kernel finds letters.
+/// The names of letters in a kernel.
 pub trait Inputs {
     /// The name of a letter's value.
     fn letter(&self, symbols: &Symbols, letter: Letter) -> String;
 
-    /// The name of the rotation that a unit quaternion covers, if it is kept.
+    /// The name of the rotation that a unit quaternion covers, if the kernel has it.
     fn rotation(&self, letter: Letter) -> Option<String> {
         let _ = letter;
         None
     }
 
-    /// The name of a unit quaternion that is kept as four numbers.
+    /// The name of a unit quaternion as four numbers, if the kernel has it.
     fn quaternion(&self, letter: Letter) -> Option<String> {
         let _ = letter;
         None
     }
 }
 
-/// A kernel, and what its inputs stand for.
+/// A kernel, and the sources of its inputs.
 #[derive(Clone, Debug)]
 pub struct Lowered {
     /// The operations.
@@ -59,7 +59,7 @@ pub fn program(
     let mut lowering = Lowering::new(&p.symbols, inputs);
     for (id, e) in &p.temporaries {
         let value = lowering.value(e);
-        // What has a name keeps it.
+        // A value that has a name keeps it.
         let line = lowering.kernel.line(value);
         if line.name.is_none() && !matches!(line.operation, Operation::Input(_)) {
             lowering.kernel.name(value, &name(*id));
@@ -81,7 +81,7 @@ pub fn expression(symbols: &Symbols, e: &Expr, inputs: &dyn Inputs) -> Lowered {
     lowering.done()
 }
 
-/// A kernel in the making.
+/// A kernel under construction.
 pub(crate) struct Lowering<'a> {
     symbols: &'a Symbols,
     inputs: &'a dyn Inputs,
@@ -210,7 +210,7 @@ impl<'a> Lowering<'a> {
         self.input(&name, kind, Source::Letter(l))
     }
 
-    /// An exact number: as binary64 holds it, or as a quotient.
+    /// An exact number: a binary64 constant, or a quotient.
     pub(crate) fn rational(&mut self, q: Rational) -> Value {
         self.push(Operation::Number(number(q)))
     }
@@ -240,7 +240,7 @@ impl<'a> Lowering<'a> {
             return self.two(Pair::Dot, a, b);
         };
         let row = *row as usize;
-        // One entry, not a column of which one entry is taken.
+        // A single entry, instead of a column from which one entry is taken.
         if let Node::Product(factors) = a.node()
             && let [matrix, last] = factors.as_slice()
             && !matrix.shape().is_scalar()
@@ -284,7 +284,7 @@ impl<'a> Lowering<'a> {
         self.of(single, a)
     }
 
-    /// A unit quaternion that is kept as four numbers, or the one from such a quaternion to another.
+    /// A unit quaternion that has a name as four numbers, or the relative quaternion of two of these.
     fn quaternion(&mut self, a: &Expr) -> Option<Value> {
         match quaternion(a, &|l| self.inputs.quaternion(l))? {
             Quaternion::Own(l, name) => {
@@ -298,7 +298,7 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// Whether this is a diagonal matrix by its declaration.
+    /// Whether this is declared as a diagonal matrix.
     fn is_diagonal(&self, e: &Expr) -> bool {
         match e.node() {
             Node::Letter(at) => self.symbols.get(at.symbol).structure == Structure::Diagonal,
@@ -307,15 +307,15 @@ impl<'a> Lowering<'a> {
     }
 }
 
-/// A unit quaternion that an expression is.
+/// An expression that is a unit quaternion.
 pub(crate) enum Quaternion {
-    /// That of a letter.
+    /// The unit quaternion of a letter.
     Own(Letter, String),
     /// `conj(a) b`.
     Between((Letter, String), (Letter, String)),
 }
 
-/// The unit quaternion that an expression is, where the quaternions of letters have names.
+/// The unit quaternion of an expression, if the letters have names as four numbers.
 pub(crate) fn quaternion(a: &Expr, named: &dyn Fn(Letter) -> Option<String>) -> Option<Quaternion> {
     let bound = |e: &Expr| match e.node() {
         Node::Letter(l) => named(*l).map(|name| (*l, name)),

@@ -1,4 +1,4 @@
-//! Products: chains of matrices bracketed by cost, numbers gathered into one factor with one division.
+//! Products: matrix chains bracketed by cost, and scalars collected into one factor with one division.
 
 use super::Lowering;
 use crate::algebra::Rational;
@@ -27,7 +27,7 @@ impl Lowering<'_> {
                 self.two(Pair::Div, chain, below)
             }
             (several, _) if number => self.quotient_from(Some(chain), several),
-            // Made once: every component is multiplied by it.
+            // Computed once, because every component is multiplied by it.
             (several, _) => {
                 let factor = self.quotient(several);
                 self.two(Pair::Mul, chain, factor)
@@ -35,13 +35,12 @@ impl Lowering<'_> {
         }
     }
 
-    /// A product of numbers, with one division by all that stand below. Divisions read better than
-    /// negative powers.
+    /// A product of scalars, with one division by all divisors. Divisions read better than negative powers.
     fn quotient(&mut self, numbers: &[Expr]) -> Value {
         self.quotient_from(None, numbers)
     }
 
-    /// The same, after a first factor.
+    /// The product after a first factor.
     fn quotient_from(&mut self, first: Option<Value>, numbers: &[Expr]) -> Value {
         let above: Vec<&Expr> = numbers.iter().filter(|n| divisor(n).is_none()).collect();
         let below: Vec<Expr> = numbers.iter().filter_map(divisor).collect();
@@ -51,7 +50,7 @@ impl Lowering<'_> {
             product = Some(self.times(product, n));
         }
         let above = match product {
-            // A lone first factor is not multiplied by 1.
+            // A single first factor is not multiplied by 1.
             Some(value) => value,
             None => self.rational(Rational::ONE),
         };
@@ -78,7 +77,7 @@ impl Lowering<'_> {
         self.bracketed(&bracketed, factors).0
     }
 
-    /// The value, its shape, and the factor where it is one.
+    /// The value, its shape, and the factor if it is a single one.
     fn bracketed<'e>(
         &mut self,
         b: &Bracketed,
@@ -147,7 +146,7 @@ impl Lowering<'_> {
             _ => None,
         };
         let is_diagonal = [first, second].map(|e| e.is_some_and(|e| self.is_diagonal(e)));
-        // nalgebra multiplies by a number on the right.
+        // nalgebra multiplies by scalars from the right.
         if left.is_scalar() {
             let (y, x) = (self.bracketed(b, factors).0, self.bracketed(a, factors).0);
             return self.two(Pair::Mul, y, x);
@@ -175,7 +174,7 @@ impl Lowering<'_> {
     }
 }
 
-/// `A` where the whole is `2 vee(A)`, the axial vector of `A - A^T`; the number in front is halved.
+/// `A` if the whole is `2 vee(A)`, the axial vector of `A - A^T`; halves the scalar factor.
 fn doubled(numbers: &mut Vec<Expr>, matrices: &[Expr]) -> Option<Expr> {
     let [only] = matrices else {
         return None;
@@ -213,7 +212,7 @@ fn factor_of<'e>(b: &Bracketed, factors: &'e [Expr]) -> Option<&'e Expr> {
     }
 }
 
-/// What a number divides by, if it stands below.
+/// The divisor of a scalar factor, if it is a reciprocal.
 fn divisor(number: &Expr) -> Option<Expr> {
     match number.node() {
         Node::Power(base, q) if q.is_negative() => Some(expr::power(base.clone(), q.negated())),

@@ -1,4 +1,4 @@
-//! Sums: differences from rest first, which keep their digits only together.
+//! Sums: differences from zero velocity first, because the two terms lose digits if they are separated.
 
 use super::Lowering;
 use crate::expr::shape::Dim;
@@ -53,7 +53,7 @@ impl Lowering<'_> {
         sum.unwrap_or_else(|| self.rational(crate::algebra::Rational::ZERO))
     }
 
-    /// The matrix of `tr(A) Id - A` in three dimensions.
+    /// The matrix `A` in `tr(A) Id - A`, in three dimensions.
     fn complement(&self, terms: &[Expr]) -> Option<Expr> {
         let [trace, subtracted] = terms else {
             return None;
@@ -72,8 +72,8 @@ impl Lowering<'_> {
         (a == x || *a == expr::transpose(self.symbols, x.clone())).then(|| a.clone())
     }
 
-    /// `Ω - Id` or `Id - Ω` among the terms of a sum, for what keeps lengths, and `re(W) - 1`: whether
-    /// it is subtracted, where the two terms are, and what differs from rest.
+    /// `Ω - Id` or `Id - Ω` among the terms of a sum, for orthogonal `Ω`, and `re(W) - 1`. Gives whether the letter
+    /// is subtracted, the positions of the two terms, and the letter.
     fn difference(&self, terms: &[&Expr]) -> Option<(bool, (usize, usize), Expr)> {
         let plain = |e: &Expr| match e.node() {
             Node::Neg(a) => (true, a.clone()),

@@ -1,5 +1,5 @@
-//! The cheapest way to bracket a chain of matrix products, by the classical dynamic program:
-//! `A B v` is computed as `A (B v)`.
+//! The cheapest bracketing of a chain of matrix products, by the classical dynamic program: `A B v` is computed as `A
+//! (B v)`.
 
 use crate::expr::shape::Dim;
 use crate::expr::{Expr, Node};
@@ -13,7 +13,7 @@ pub enum Bracketed {
     Pair(Box<Bracketed>, Box<Bracketed>),
 }
 
-/// Brackets the factors, which must chain.
+/// Brackets the factors, whose shapes must match.
 pub fn associate(factors: &[Expr]) -> Bracketed {
     let n = factors.len();
     let size = |d: Dim| match d {
@@ -34,7 +34,7 @@ pub fn associate(factors: &[Expr]) -> Bracketed {
         for i in 0..=n - length {
             let j = i + length - 1;
             let candidates = (i..j).map(|m| {
-                // Rows are picked, not multiplied.
+                // Rows are selected, not multiplied.
                 let picked =
                     (m == i && constant(&factors[i])) || (m + 1 == j && constant(&factors[j]));
                 let work = if picked {

@@ -1,11 +1,11 @@
-//! Combines like terms of sums, in whatever order their factors are: the gradient of a symmetric form contains each
-//! term twice. Takes an expression; gives an equal one.
+//! Combines like terms of sums, regardless of the order of their factors: the gradient of a symmetric form contains
+//! each term twice. Takes an expression; gives an equal one.
 
 use crate::algebra::Rational;
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Hashed, Node};
 
-/// The same expressions with like terms added.
+/// The expressions with like terms combined.
 pub fn collected(symbols: &Symbols, results: &[Expr]) -> Vec<Expr> {
     let mut like = Like {
         symbols,
@@ -15,7 +15,7 @@ pub fn collected(symbols: &Symbols, results: &[Expr]) -> Vec<Expr> {
     results.iter().map(|e| like.collect(e)).collect()
 }
 
-/// A term: a rational times other numbers times a word of matrices.
+/// A term: a rational times scalars times a word of matrices.
 struct Term {
     times: Rational,
     scalars: Vec<Expr>,
@@ -24,7 +24,7 @@ struct Term {
 
 struct Like<'a> {
     symbols: &'a Symbols,
-    /// A number for each factor, in the order in which they were met.
+    /// A number per factor, in order of occurrence.
     numbers: Hashed<usize>,
     done: Hashed<Expr>,
 }
@@ -56,7 +56,7 @@ impl Like<'_> {
             }
             let mut key: Vec<usize> = term.scalars.iter().map(|x| self.number(x)).collect();
             key.sort_unstable();
-            // No factor has this number: it separates the numbers from the word.
+            // No factor has this number, so it separates the scalars from the word.
             key.push(usize::MAX);
             key.extend(term.word.iter().map(|x| self.number(x)));
             match list.iter_mut().find(|(known, _)| *known == key) {
@@ -83,7 +83,7 @@ impl Like<'_> {
     }
 }
 
-/// Takes a term apart; whether its rational can be written.
+/// Splits a term into its parts; `false` if its rational cannot be represented.
 fn take(e: &Expr, into: &mut Term) -> bool {
     match e.node() {
         Node::Neg(a) => {
@@ -134,7 +134,7 @@ mod tests {
         assert_eq!(collected(&symbols, &[twice]), [once]);
         let opposite = sum(&[half([&a, &h, &x]), y.clone(), expr::neg(half([&h, &a, &x]))]);
         assert_eq!(collected(&symbols, &[opposite]), std::slice::from_ref(&y));
-        // Matrices do not commute, and what is as it was stays as it is.
+        // Matrices do not commute, and an unchanged expression keeps its form.
         let products = sum(&[expr::mul(x.clone(), y.clone()), expr::mul(y, x)]);
         assert_eq!(
             collected(&symbols, std::slice::from_ref(&products)),

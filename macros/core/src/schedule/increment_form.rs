@@ -1,22 +1,22 @@
-//! Differences from rest: `A Ω - A` as `A (Ω - Id)`, `tr(J) - tr(J Ω)` as `-tr(J (Ω - Id))`, `cosh(Δx) - 1` as `2
-//! sinh(Δx/2)^2`. For small steps a velocity is near the identity, and the difference keeps all its digits only if
-//! both are in one term: `emit` writes it so, where [`Symbols::differences`] asks for it. Takes an expression;
-//! gives an equal one.
+//! Differences from zero velocity: `A Ω - A` as `A (Ω - Id)`, `tr(J) - tr(J Ω)` as `-tr(J (Ω - Id))`, `cosh(Δx) - 1`
+//! as `2 sinh(Δx/2)^2`. For small steps a velocity is near the identity, and the difference loses no digits only if
+//! both are in one term. `emit` writes it so if [`Symbols::differences`] requires it. Takes an expression; gives an
+//! equal one.
 
 use crate::algebra::Rational;
 use crate::expr::shape::{self, Shape, Structure};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::*;
 
-/// Whether a Lagrangian divides by more than the first power of the step: differences from rest then occur in it to
-/// a power, and their rounding is divided by the step size more often than the rounding of a matrix of second
-/// moments. A step inside a function or a root counts as such.
+/// Whether a Lagrangian divides by more than the first power of the step size. Differences from the identity then
+/// occur to a power, and their rounding errors are divided by the step size more often than the rounding errors of a
+/// matrix of second moments. A step size inside a function or a root counts too.
 pub fn divides_twice(e: &Expr, step: Letter) -> bool {
     lowest(e, step).is_none_or(|n| n < -1.0)
 }
 
-/// Whether a number that moves multiplies or divides one with the velocity of a rotation, as in `q^2*(3 -
-/// tr(Ω))/h`: the difference from rest then occurs in the momentum of `q`, where its rounding would be divided by
+/// Whether a moving scalar multiplies or divides a scalar with the velocity of a rotation, as in `q^2*(3 - tr(Ω))/h`.
+/// The difference from the identity then occurs in the momentum of `q`, where its rounding error would be divided by
 /// the step size.
 pub fn varies_with_rotations(symbols: &Symbols, e: &Expr) -> bool {
     let has = |e: &Expr, wanted: &dyn Fn(Role, Structure) -> bool| {
@@ -76,7 +76,7 @@ fn lowest(e: &Expr, step: Letter) -> Option<f64> {
     }
 }
 
-/// The power of the step that a factor is proportional to.
+/// The exponent of the step size to which a factor is proportional.
 fn exact(e: &Expr, step: Letter) -> Option<f64> {
     match e.node() {
         Node::Sum(_) if contains(e, step) => None,
@@ -84,8 +84,8 @@ fn exact(e: &Expr, step: Letter) -> Option<f64> {
     }
 }
 
-/// The identity, for a letter that keeps lengths as velocities do and a rotation that one covers; 1 for
-/// the real part of a quaternion.
+/// The value at zero velocity: the identity for an orthogonal velocity or the rotation of a quaternion velocity; 1
+/// for the real part of a quaternion.
 pub fn at_rest(symbols: &Symbols, e: &Expr) -> Option<Expr> {
     if !symbols.differences() {
         return None;
@@ -107,7 +107,7 @@ fn is_velocity(symbols: &Symbols, e: &Expr) -> bool {
     matches!(e.node(), Node::Letter(l) if symbols.get(l.symbol).role == Role::Velocity)
 }
 
-/// Whether this is a difference from rest and nothing else: it stays whole.
+/// Whether this is exactly a difference from zero velocity, which must stay whole.
 pub fn is_difference(symbols: &Symbols, e: &Expr) -> bool {
     let Node::Sum(terms) = e.node() else {
         return false;
@@ -122,12 +122,12 @@ pub fn is_difference(symbols: &Symbols, e: &Expr) -> bool {
     opposite(a, b) || opposite(b, a)
 }
 
-/// Whether the expression must not be split: a difference from rest, or from the identity.
+/// Whether the expression must not be split: a difference from zero velocity, or from the identity.
 pub(super) fn stays_whole(symbols: &Symbols, e: &Expr) -> bool {
     is_difference(symbols, e) || super::increments::is_increment(symbols, e)
 }
 
-/// The expression of what `go` gives of its parts; a difference from rest as it is.
+/// The expression rebuilt with `go` applied to its children; a difference from zero velocity is unchanged.
 pub(super) fn rebuilt(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -> Expr {
     match stays_whole(symbols, e) {
         true => e.clone(),
@@ -135,7 +135,7 @@ pub(super) fn rebuilt(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> 
     }
 }
 
-/// The same expression with differences from rest written as such, at every depth.
+/// The expression with differences from zero velocity in increment form, at every depth.
 pub fn displaced(symbols: &Symbols, e: &Expr) -> Expr {
     // Applied to the whole, since a product that is expanded in one part would cancel against other parts.
     parts_displaced(symbols, &super::increments::by_increments(symbols, e))
@@ -154,8 +154,8 @@ fn parts_displaced(symbols: &Symbols, e: &Expr) -> Expr {
     }
 }
 
-/// `vee(A Ω)` as `vee(A (Ω - Id)) + vee(A)`, where the latter is known: if `A` is symmetric, its axial vector is
-/// zero, and its large entries then multiply small ones only. The entries of `vee(Ω)` are small as they are.
+/// `vee(A Ω)` as `vee(A (Ω - Id)) + vee(A)`, if the latter is known. If `A` is symmetric, its axial vector is zero,
+/// so that the large entries of `A` multiply small ones only. The entries of `vee(Ω)` are small already.
 fn of_axial(symbols: &Symbols, a: &Expr) -> Option<Expr> {
     if at_rest(symbols, a).is_some() {
         return None;
@@ -165,7 +165,7 @@ fn of_axial(symbols: &Symbols, a: &Expr) -> Option<Expr> {
         .find_map(|(rest, moved)| Some(add(vee(moved), axial(symbols, &rest)?)))
 }
 
-/// The axial vector of a matrix that contains only symmetric matrices and hats; nothing for other matrices.
+/// The axial vector of a matrix that contains only symmetric matrices and hats; None for other matrices.
 fn axial(symbols: &Symbols, e: &Expr) -> Option<Expr> {
     let vector = Shape::vector(shape::Dim::Fixed(3));
     match e.node() {
@@ -240,7 +240,7 @@ fn of_sum(symbols: &Symbols, terms: &[Expr], shape: Shape) -> Expr {
         let partner = differences(symbols, &left[i])
             .into_iter()
             .find_map(|(rest, moved)| {
-                // A bare difference is a sum already.
+                // A difference without a factor is a sum already.
                 let open = matches!(moved.node(), Node::Sum(_));
                 let opposite = neg(rest);
                 let at = left.iter().position(|t| !open && *t == opposite)?;
@@ -259,7 +259,7 @@ fn of_sum(symbols: &Symbols, terms: &[Expr], shape: Shape) -> Expr {
     sum(left.into_iter().chain(found), shape)
 }
 
-/// With one velocity of the term set to rest: the term at rest, and the term with the difference in place of the
+/// For each velocity of the term: the term at zero velocity, and the term with the difference in place of the
 /// velocity.
 fn differences(symbols: &Symbols, e: &Expr) -> Vec<(Expr, Expr)> {
     if !moves(symbols, e) {
@@ -298,8 +298,8 @@ fn differences(symbols: &Symbols, e: &Expr) -> Vec<(Expr, Expr)> {
     }
 }
 
-/// The same expression with `re(q) - 1` as `-|im(q)|²/(1 + re(q))`, if quaternions are split. The trace of their
-/// matrix is `4 re(q)`.
+/// The expression with `re(q) - 1` as `-|im(q)|²/(1 + re(q))`, if quaternions are split. The trace of their matrix is
+/// `4 re(q)`.
 pub fn by_imaginary(symbols: &Symbols, e: &Expr) -> Expr {
     if !symbols.differences() {
         return e.clone();
@@ -344,7 +344,7 @@ pub fn by_imaginary(symbols: &Symbols, e: &Expr) -> Expr {
     }
 }
 
-/// The sign of a term and the rest of it.
+/// The sign of a term, and the term without it.
 fn signed(e: &Expr) -> (i64, &Expr) {
     match e.node() {
         Node::Neg(a) => (-1, a),
@@ -364,7 +364,7 @@ mod tests {
     use crate::interpret::{Assignment, evaluate};
     use crate::pipeline::derive_source;
 
-    /// Whether a step of this Lagrangian keeps the digits of differences.
+    /// Whether the step of this Lagrangian preserves the digits of differences.
     fn kept(lagrangian: &str) -> bool {
         let text = format!(
             "model M {{ param J: Sym<3>; param d: Vec<3>; param k: Real; group A: SO<3> velocity u; \
@@ -413,7 +413,7 @@ mod tests {
             let many = sub(mul(q.clone(), of(f, &v)), q.clone());
             for (e, wanted) in [(one, wanted), (many, 3.0 * wanted)] {
                 let made = evaluate(&s, &displaced(&s, &e), &at).unwrap().data[0];
-                // The next terms of the series are a part of 1e-16 of these.
+                // The next terms of the series are smaller by a factor of 1e-16.
                 assert!(
                     (made - wanted).abs() <= 1e-15 * wanted.abs(),
                     "{e:?}: {made:e}"

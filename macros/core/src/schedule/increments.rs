@@ -1,7 +1,6 @@
-//! Velocities of linear maps by what they differ from the identity: `S G - S` as `S (G - Id)`, and
-//! `tr(G S G^T) - 2 tr(G S) + tr(S)` as `tr((G - Id) S (G - Id)^T)`. For small steps a velocity is near the identity, and
-//! the terms of a momentum cancel to the part of the step.
-//! Takes an expression; gives an equal one whose terms do not.
+//! Velocities of linear maps by their difference from the identity: `S G - S` as `S (G - Id)`, and `tr(G S G^T) - 2
+//! tr(G S) + tr(S)` as `tr((G - Id) S (G - Id)^T)`. For small steps a velocity is near the identity, and the terms of
+//! a momentum cancel to the size of the step. Takes an expression; gives an equal one without this cancellation.
 
 use crate::algebra::Algebra;
 use crate::expr::shape::{Dim, Structure};
@@ -15,7 +14,7 @@ use crate::expr::{
 /// of a step is read and compiled.
 const MOST_TERMS: u64 = 64;
 
-/// Whether the letter is such a velocity.
+/// Whether the letter is the velocity of a linear map.
 fn is_velocity(symbols: &Symbols, l: &Letter) -> bool {
     let symbol = symbols.get(l.symbol);
     let by_matrix = match symbol.structure {
@@ -26,7 +25,7 @@ fn is_velocity(symbols: &Symbols, l: &Letter) -> bool {
     symbol.role == Role::Velocity && by_matrix
 }
 
-/// Whether the expression is such a velocity, or its transpose, minus the identity.
+/// Whether the expression is such a velocity or its transpose, minus the identity.
 pub(super) fn is_increment(symbols: &Symbols, e: &Expr) -> bool {
     let velocity = |x: &Expr| match x.node() {
         Node::Letter(l) => is_velocity(symbols, l),
@@ -43,8 +42,8 @@ pub(super) fn is_increment(symbols: &Symbols, e: &Expr) -> bool {
     }
 }
 
-/// The same expression, expanded in the differences of such velocities from the identity. Differences of positions, and
-/// terms with which nothing cancels, stay as they are.
+/// The expression, expanded in the differences of such velocities from the identity. Differences of positions, and
+/// terms without cancellation, are unchanged.
 pub(super) fn by_increments(symbols: &Symbols, e: &Expr) -> Expr {
     let mut velocities = letters(e);
     velocities.retain(|l| is_velocity(symbols, l));
@@ -105,7 +104,7 @@ fn terms(e: &Expr) -> Vec<Expr> {
     }
 }
 
-/// How many terms it has once it is multiplied out.
+/// The number of terms after expansion.
 fn count(symbols: &Symbols, e: &Expr) -> u64 {
     let of = |x: &Expr| count(symbols, x);
     match e.node() {
@@ -119,13 +118,13 @@ fn count(symbols: &Symbols, e: &Expr) -> u64 {
         },
         Node::Quotient(a, _) => of(a),
         node if is_opaque(node) => 1,
-        // Entry by entry.
+        // Computed entry by entry.
         Node::Map(Map::Diagonal | Map::DiagonalOf, _) => u64::MAX,
         _ => e.children().into_iter().map(of).fold(1, u64::max),
     }
 }
 
-/// Whether a velocity inside this node stays as it is, because the node is not a polynomial in it.
+/// Whether a velocity inside this node is unchanged, because the node is not a polynomial in it.
 fn is_opaque(node: &Node) -> bool {
     match node {
         Node::Power(_, q) => q.as_integer().is_none_or(|n| n < 0),
@@ -215,7 +214,7 @@ mod tests {
         let mut at = Assignment::new();
         at.set("G", 0, 2, 2, &[1.0, 0.0, 0.0, 1.0]);
         at.set("S", 0, 2, 2, &[1.0, 0.0, 0.0, 1.0]);
-        // Far from the origin, and near each other.
+        // Far from the origin, and close to each other.
         at.set("x", 0, 2, 1, &[1e8 + 1.0, 1e8]);
         at.set("y", 0, 2, 1, &[1e8, 1e8]);
         assert_eq!(evaluate(&s, &made, &at).unwrap().data[0], 2.0);

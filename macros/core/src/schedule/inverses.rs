@@ -1,13 +1,13 @@
-//! The inverse of a matrix of which the adjugate is computed as well is the adjugate over the determinant: of fields of
-//! matrices with a logarithm and a power of the determinant in their energy.
-//! Takes expressions that are computed together; gives equal ones.
+//! If the adjugate of a matrix is computed too, its inverse is the adjugate over the determinant. This occurs for
+//! matrix fields whose energy contains a logarithm and a power of the determinant. Takes expressions that are
+//! computed together; gives equal ones.
 
 use crate::algebra::Rational;
 use crate::expr::shape::Shape;
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Exprs, Hashed, Node};
 
-/// The same expressions without inverses beside adjugates.
+/// The expressions without inverses of matrices whose adjugates occur.
 pub fn by_adjugates(symbols: &Symbols, results: &[Expr]) -> Vec<Expr> {
     let mut adjugates = Exprs::default();
     let mut seen = Exprs::default();
@@ -68,7 +68,7 @@ impl Adjugates<'_> {
         out
     }
 
-    /// The same sum with multiples of one adjugate added as numbers.
+    /// The sum, with the scalar coefficients of one adjugate added.
     fn sum(&self, e: &Expr, terms: &[Expr]) -> Expr {
         let mut list: Vec<(Option<Expr>, Vec<Expr>)> = Vec::new();
         for term in terms {
@@ -98,7 +98,7 @@ impl Adjugates<'_> {
         expr::sum(added.collect::<Vec<_>>(), e.shape())
     }
 
-    /// The adjugate of a matrix, where that or its transpose is known.
+    /// The adjugate of a matrix, if it or its transpose is known.
     fn adjugate_of(&self, a: &Expr) -> Option<Expr> {
         let s = self.symbols;
         let turned = expr::transpose(s, a.clone());
@@ -110,7 +110,7 @@ impl Adjugates<'_> {
     }
 }
 
-/// An adjugate and the number that it is multiplied by.
+/// An adjugate and its scalar coefficient.
 fn multiple(e: &Expr) -> Option<(Expr, Expr)> {
     let is_adjugate = |e: &Expr| match e.node() {
         Node::Adjugate(_) => true,
@@ -156,14 +156,14 @@ mod tests {
         let both = expr::sum([of(&a, &adjugate), expr::neg(of(&b, &inverse))], three);
         let times = expr::sub(a.clone(), expr::product([b.clone(), over.clone()]));
         assert_eq!(by_adjugates(&s, &[both]), [of(&times, &adjugate)]);
-        // In another expression that is computed beside.
+        // In another expression that is computed together with this one.
         let apart = [adjugate.clone(), of(&b, &inverse)];
         let expected = [
             adjugate.clone(),
             of(&expr::product([b.clone(), over]), &adjugate),
         ];
         assert_eq!(by_adjugates(&s, &apart), expected);
-        // Alone it stays.
+        // An inverse without an adjugate is unchanged.
         let alone = [of(&b, &inverse)];
         assert_eq!(by_adjugates(&s, &alone), alone);
     }

@@ -1,13 +1,12 @@
-//! Parts of an equation that stay the same while it is solved, because they do not depend on the unknowns: they are
-//! computed once, before. Takes expressions and the letters that vary; gives names for the constant parts, and the
-//! expressions in these names.
+//! Parts of an equation that do not depend on the unknowns: they are computed once, before the solution. Takes
+//! expressions and the letters that vary; gives names for the constant parts, and the expressions in these names.
 
 use crate::algebra::Rational;
 use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node};
 
-/// Names and values of what is known, in the order in which they were met.
+/// Names and values of the constant parts, in order of occurrence.
 pub struct LoopInvariants<'a> {
     /// The symbols, including the names.
     pub symbols: Symbols,
@@ -18,7 +17,7 @@ pub struct LoopInvariants<'a> {
 }
 
 impl<'a> LoopInvariants<'a> {
-    /// Nothing yet. `prefix` starts the names.
+    /// No names yet. `prefix` starts the names.
     pub fn new(symbols: &Symbols, varies: &'a dyn Fn(Letter) -> bool, prefix: &'a str) -> Self {
         LoopInvariants {
             symbols: symbols.clone(),
@@ -32,7 +31,7 @@ impl<'a> LoopInvariants<'a> {
         expr::letters(e).iter().all(|l| !(self.varies)(*l))
     }
 
-    /// The expression with its known parts under names.
+    /// The expression with its constant parts replaced by names.
     pub fn apart(&mut self, e: &Expr) -> Expr {
         if self.is_known(e) {
             return self.named(e);
@@ -64,7 +63,7 @@ impl<'a> LoopInvariants<'a> {
         })
     }
 
-    /// Numbers together, neighbouring matrices together.
+    /// Combines scalars, and adjacent matrices.
     fn product(&mut self, factors: &[Expr]) -> Expr {
         let mut numbers = Vec::new();
         let mut rest = Vec::new();
@@ -80,7 +79,7 @@ impl<'a> LoopInvariants<'a> {
             }
         }
         self.close(&mut word, &mut rest);
-        // Twice an axial vector is the axial vector of a difference, and costs less than a single one.
+        // Twice an axial vector is the axial vector of a difference, which costs less than the axial vector itself.
         let axial = rest.len() == 1 && matches!(rest[0].node(), Node::Vee(_));
         if axial && !numbers.is_empty() {
             numbers.push(expr::number(Rational::HALF));
@@ -116,7 +115,7 @@ impl<'a> LoopInvariants<'a> {
         }
         match e.node() {
             Node::Neg(a) => return expr::neg(self.named(a)),
-            // Products with it are vector products.
+            // Products with a hat are vector products.
             Node::Hat(v) => return expr::hat(self.named(v)),
             _ => {}
         }

@@ -1,5 +1,5 @@
-//! From expressions to programs near Rust's operations: common sub-expressions become named
-//! temporaries, computed once, in an order in which each uses only those before it.
+//! From expressions to programs close to Rust's operations. Common subexpressions become named temporaries, which are
+//! computed once and use earlier temporaries only.
 
 mod chain;
 mod collected;

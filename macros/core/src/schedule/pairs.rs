@@ -1,5 +1,5 @@
-//! Products of two matrices that occur in several other products: if they are computed once, all of these get shorter.
-//! Takes expressions that are computed together; gives names for such pairs and what is left.
+//! Products of two matrices that occur in several other products: computed once, they shorten all of these. Takes
+//! expressions that are computed together; gives names for such pairs and the remaining expressions.
 
 use super::program::{Program, scheduled};
 use super::work;
@@ -8,10 +8,10 @@ use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Exprs, Hashed, Node};
 use std::collections::{HashMap, HashSet};
 
-/// Most pairs that are tried.
+/// The largest number of pairs that are tried.
 const TRIED: usize = 12;
 
-/// The program with the pairs that make it less work.
+/// The program with the pairs that reduce the work.
 pub(super) fn paired(symbols: &Symbols, results: &[Expr], prefix: &str) -> Program {
     let mut best = Pairs {
         symbols: symbols.clone(),
@@ -36,7 +36,7 @@ pub(super) fn paired(symbols: &Symbols, results: &[Expr], prefix: &str) -> Progr
     program
 }
 
-/// Pairs under names, in the order in which they are computed, and what is written in these.
+/// Named pairs in order of computation, and the expressions in these names.
 struct Pairs {
     symbols: Symbols,
     list: Vec<(SymbolId, Expr)>,
@@ -48,7 +48,7 @@ impl Pairs {
         self.list.iter().map(|(_, e)| e).chain(&self.results)
     }
 
-    /// The pair that occurs most often, the first of equals.
+    /// The most frequent pair; the first one of several.
     fn most_frequent(&self, refused: &HashSet<[Expr; 2]>) -> Option<[Expr; 2]> {
         let mut found = Found {
             symbols: &self.symbols,
@@ -106,7 +106,7 @@ fn turned(symbols: &Symbols, [left, right]: &[Expr; 2]) -> [Expr; 2] {
     [right, left].map(|e| expr::transpose(symbols, e.clone()))
 }
 
-/// Whether it is a square matrix that has a name.
+/// Whether it is a square matrix with a name.
 fn is_named(e: &Expr) -> bool {
     let letter = |e: &Expr| matches!(e.node(), Node::Letter(_));
     let plain = match e.node() {
@@ -237,15 +237,15 @@ mod tests {
         let force = expr::product([c.clone(), q.clone(), metric.clone()]);
         // C Q, then Q^T C Q, its square, and C Q (Q^T C Q): four products instead of eleven.
         assert_eq!(of(&[metric.clone(), square, force]), 4 * 45);
-        // Within itself, too.
+        // Repeated within a single expression.
         assert_eq!(
             of(&[expr::product([q.clone(), c.clone(), q.clone(), c.clone()])]),
             2 * 45
         );
-        // Vectors are multiplied one matrix after the other.
+        // For vectors, one matrix after the other is multiplied.
         let images = [u, v].map(|x| expr::product([c.clone(), q.clone(), x]));
         assert_eq!(of(&images), 4 * 15);
-        // The transpose of a pair is that pair.
+        // The transpose of a pair counts as that pair.
         let both = [
             expr::product([c.clone(), q.clone(), c.clone()]),
             expr::product([turn(&q), turn(&c), q.clone()]),

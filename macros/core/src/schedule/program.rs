@@ -16,7 +16,7 @@ pub struct Program {
 }
 
 impl Program {
-    /// Nothing.
+    /// An empty program.
     pub fn none(symbols: &Symbols) -> Program {
         Program {
             symbols: symbols.clone(),
@@ -28,8 +28,8 @@ impl Program {
 
 /// Schedules several results together. `prefix` starts the names of temporaries.
 pub fn program(symbols: &Symbols, results: &[Expr], prefix: &str) -> Program {
-    // Results are written in increment form, so that they keep their digits near rest. The determinant of a product is
-    // written by the determinants of its factors.
+    // Results are in increment form, so that they lose no digits at small velocities. The determinant of a product is
+    // expressed by the determinants of its factors.
     let results: Vec<Expr> = results
         .iter()
         .map(|r| {
@@ -42,7 +42,7 @@ pub fn program(symbols: &Symbols, results: &[Expr], prefix: &str) -> Program {
     super::pairs::paired(symbols, &results, prefix)
 }
 
-/// Schedules results where what an earlier program has computed is known: it is not computed once more.
+/// Schedules results that may use the temporaries of an earlier program, which are not computed again.
 pub fn program_after(earlier: &Program, results: &[Expr], prefix: &str) -> Program {
     let symbols = &earlier.symbols;
     let mut program = program(symbols, results, prefix);
@@ -110,7 +110,7 @@ pub(super) fn scheduled(
     }
 }
 
-/// Counts how often each sub-expression is met when every one is visited once per parent.
+/// Counts the occurrences of each subexpression, visiting it once per parent.
 fn count(symbols: &Symbols, e: &Expr, uses: &mut Hashed<usize>) {
     let n = uses.entry(e.clone()).or_insert(0);
     *n += 1;
@@ -152,8 +152,8 @@ fn is_work(e: &Expr) -> bool {
     }
 }
 
-/// Whether it is a stage of its own: a functional is computed once for its arguments, and its name is
-/// what the rest is written in.
+/// Whether it needs a temporary of its own: a functional is computed once per arguments, and other expressions use
+/// its name.
 fn is_stage(e: &Expr) -> bool {
     matches!(e.node(), Node::Given(_) | Node::PullBack(..))
 }
@@ -163,7 +163,7 @@ struct Build<'a> {
     uses: Hashed<usize>,
     done: Hashed<Expr>,
     temporaries: Vec<(SymbolId, Expr)>,
-    /// How many names have been given.
+    /// The number of names so far.
     named: usize,
     prefix: &'a str,
 }
@@ -227,7 +227,7 @@ mod tests {
         assert_eq!(first.temporaries.len(), 1);
         let other = expr::sum([expr::mul(product.clone(), a), product.clone(), b], three);
         let second = program_after(&first, std::slice::from_ref(&other), "t");
-        // A B has its name from the first; alone it has one of its own.
+        // A B has its name from the first program; on its own it would get a name of its own.
         assert!(second.temporaries.is_empty());
         assert_eq!(program(&symbols, &[other], "t").temporaries.len(), 1);
         let [(known, _)] = first.temporaries.as_slice() else {

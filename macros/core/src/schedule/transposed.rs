@@ -6,7 +6,8 @@ use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Hashed, Node};
 use std::collections::HashMap;
 
-/// The same expressions with products of matrices, and sums of such, that were met transposed.
+/// The expressions, in which products of matrices and sums of them are written as transposes if their transposes
+/// occurred earlier.
 pub fn aligned(symbols: &Symbols, results: &[Expr]) -> Vec<Expr> {
     let mut met = Met {
         symbols,
@@ -19,9 +20,9 @@ pub fn aligned(symbols: &Symbols, results: &[Expr]) -> Vec<Expr> {
 
 struct Met<'a> {
     symbols: &'a Symbols,
-    /// A number for each term, in the order in which they were met.
+    /// A number per term, in order of occurrence.
     numbers: Hashed<usize>,
-    /// The sum that was met first, by the numbers of its terms in rising order.
+    /// The first occurrence of a sum, by the sorted numbers of its terms.
     first: HashMap<Vec<usize>, Expr>,
     done: Hashed<Expr>,
 }
@@ -33,7 +34,7 @@ impl Met<'_> {
         }
         let inner = super::increment_form::rebuilt(self.symbols, e, &mut |c| self.align(c));
         let out = match (inner.node(), multiplies(&inner)) {
-            // That of a transpose is the transpose of that which is used elsewhere.
+            // The inverse of a transpose is the transpose of the inverse that occurs elsewhere.
             (Node::Inverse(a), _) => match a.node() {
                 Node::Transpose(b) => expr::transposed(expr::inverse(self.symbols, b.clone())),
                 _ => inner,
@@ -45,8 +46,8 @@ impl Met<'_> {
         out
     }
 
-    /// The transpose of what was met first, where this is that; else this. A sum of which all products were
-    /// met transposed is formed anew.
+    /// The transpose of an earlier expression if this is one; otherwise the expression. A sum whose products all
+    /// occurred transposed is formed anew.
     fn known(&mut self, e: Expr) -> Expr {
         if let Some(found) = self.met_transposed(&e) {
             return found;
@@ -98,7 +99,7 @@ impl Met<'_> {
     }
 }
 
-/// Whether this is a matrix that is computed as a product of matrices, or a sum with such a product.
+/// Whether this is computed as a product of matrices, or a sum with such a product.
 fn multiplies(e: &Expr) -> bool {
     let is_matrix = |e: &Expr| !e.shape().is_scalar() && !e.shape().is_vector();
     let product = |e: &Expr| match e.node() {
@@ -135,12 +136,12 @@ mod tests {
         let turned = |e: &Expr| expr::transpose(&symbols, e.clone());
         let work = |list: &[Expr]| super::super::work(&super::super::program(&symbols, list, "t"));
         let sum = expr::add(expr::mul(a.clone(), b.clone()), c.clone());
-        // The same in another order.
+        // The same sum in another order.
         let back = expr::add(turned(&c), expr::mul(turned(&b), turned(&a)));
         assert_eq!(work(std::slice::from_ref(&sum)), 45 + 9);
         let product = expr::mul(a.clone(), b.clone());
         assert_eq!(work(&[product.clone(), turned(&product)]), 45);
-        // The product once, the sums by themselves.
+        // The product is computed once, the sums separately.
         assert_eq!(work(&[sum.clone(), back]), 45 + 9 + 9);
         // Another sum is not the transpose.
         let other = expr::add(turned(&c), expr::mul(turned(&a), turned(&b)));

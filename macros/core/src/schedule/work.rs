@@ -56,8 +56,7 @@ fn of(e: &Expr) -> u64 {
     own + e.children().into_iter().map(of).sum::<u64>()
 }
 
-/// Numbers among themselves and times the matrix, the matrices in the order in which they are
-/// multiplied.
+/// The cost of the scalars, of scaling the matrix, and of the matrix products in their bracketing.
 fn product(factors: &[Expr]) -> u64 {
     let (numbers, matrices): (Vec<Expr>, Vec<Expr>) =
         factors.iter().cloned().partition(|f| f.shape().is_scalar());

@@ -1,10 +1,10 @@
-//! Matrices over the field of the integers modulo a prime, row by row, at exact random points. Plain loops: the macro's engine is
-//! not optimised, and an iterator costs ten times what it gives.
+//! Matrices over the integers modulo a prime, stored by rows, for exact random points. Plain loops: the macro's
+//! engine is compiled without optimization, and iterators would cost ten times as much.
 
 use super::{add, inverse, mul, negate};
 use crate::work;
 
-/// A matrix over the field, row by row.
+/// A matrix over the field, stored by rows.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct Matrix {
     pub(crate) rows: usize,
@@ -72,7 +72,7 @@ impl Matrix {
         self
     }
 
-    /// The product, of as many columns and rows as both have.
+    /// The product over the common number of columns and rows.
     pub(crate) fn times(&self, b: &Matrix) -> Matrix {
         if self.data.len() == 1 {
             return b.clone().scaled(self.data[0]);
@@ -162,20 +162,20 @@ impl Matrix {
         self.data.iter().all(|x| *x == 0)
     }
 
-    /// `tr(self^T b)`, for matrices of one shape.
+    /// `tr(self^T b)`, for matrices of equal shape.
     pub(crate) fn pairing(&self, b: &Matrix) -> u64 {
         let pairs = self.data.iter().zip(&b.data);
         pairs.fold(0, |s, (x, y)| add(s, mul(*x, *y)))
     }
 
-    /// `tr(self^T b)` with the entries of `b` that are not zero, 1 or -1: as many terms as entries, however
-    /// large the matrix is.
+    /// `tr(self^T b)`, where `b` is given by its nonzero entries, which are 1 or -1. The cost is the number of these
+    /// entries, for any size of the matrix.
     pub(crate) fn paired(&self, b: &[(usize, usize, i64)]) -> u64 {
         paired(&self.data, self.cols, b)
     }
 }
 
-/// The same of entries row by row with so many columns.
+/// Like [`Matrix::paired`], for entries stored by rows with `cols` columns.
 pub(crate) fn paired(data: &[u64], cols: usize, b: &[(usize, usize, i64)]) -> u64 {
     b.iter().fold(0, |sum, (i, j, x)| {
         let own = data.get(i * cols + j).copied().unwrap_or(0);

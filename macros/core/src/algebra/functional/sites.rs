@@ -1,17 +1,17 @@
-//! Numbers that are summed over all sites: `s D A(X)[u]` and `<u, (D A(X))^T[s]>` differ at a site and have one
-//! sum. Which of two such numbers are one is decided on the second form. Identities of an action, its variation and
-//! energies are of this kind; equations of a site hold no derivative along a direction.
+//! Scalars summed over all sites: `s D A(X)[u]` and `<u, (D A(X))^T[s]>` differ at a site but have the same sum. The
+//! second form decides whether two such scalars are equal. Identities of an action, its variation and energies are of
+//! this kind; the equations of a site contain no derivative along a direction.
 
 use crate::algebra::monomial::{Atom, Monomial};
 use crate::algebra::poly::{Poly, Term};
 use crate::algebra::{Algebra, Rational};
 use crate::expr::{self, Expr, Node, Reach};
 
-/// Most rounds: each takes one derivative along a direction away.
+/// The largest number of rounds; each removes one derivative along a direction.
 const MOST: usize = 16;
 
 impl Algebra<'_> {
-    /// The number with every derivative of a functional of all sites as a pull-back; `None` if it contains no such
+    /// The scalar with every derivative of a functional of all sites as a pull-back; `None` if it contains no such
     /// derivative.
     pub(in crate::algebra) fn by_parts(&self, number: &Poly) -> Option<Poly> {
         let functionals = self.symbols.functionals();

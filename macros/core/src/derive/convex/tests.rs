@@ -121,7 +121,7 @@ fn what_is_not_convex_by_its_form_is_left_to_the_proof() {
             "{more}"
         );
     }
-    // The velocity of Y has no square of its own, so its coefficient is not bounded from below.
+    // There is no square term in the velocity of Y alone.
     let body = "field X, Y: Vec<3>; let d = next(X) - X; let e = next(Y) - Y; \
          lagrangian = m*dot(d, d)/(2*h) + (n/h^3)*dot(d + e, d + e)^2;";
     assert!(signs(&derived(body)).is_none());

@@ -9,7 +9,7 @@ use crate::derive::Letters;
 use crate::expr::symbol::{Role, SymbolId};
 use crate::expr::{self, Expr, Letter, Node};
 
-/// Letters that the constraints determine, written by the remaining letters.
+/// Letters that the constraints determine, expressed by the remaining letters.
 pub(crate) struct Solved(Vec<(Letter, Expr)>);
 
 impl Solved {
@@ -34,7 +34,7 @@ impl Solved {
         Solved(all)
     }
 
-    /// Those letters, each with its value.
+    /// The determined letters with their values.
     pub(crate) fn list(&self) -> &[(Letter, Expr)] {
         &self.0
     }
@@ -48,8 +48,8 @@ impl Solved {
     }
 }
 
-/// Letters of a constraint's shape that occur in it and may take any value: additive configurations, then
-/// parameters; in each group the last declared comes first.
+/// Letters in a constraint that have its shape and may take any value: additive configurations, then parameters; in
+/// each group, the last declared comes first.
 fn candidates(spec: &Spec, letters: &Letters, hold: &Hold) -> impl Iterator<Item = Letter> {
     let s = &letters.symbols;
     let found = expr::letters(&hold.value);
@@ -67,8 +67,8 @@ fn candidates(spec: &Spec, letters: &Letters, hold: &Hold) -> impl Iterator<Item
     all.into_iter()
 }
 
-/// The value of the letter at which `value` vanishes, if the letter occurs once, behind invertible factors.
-/// `direction` is a letter of the same shape that occurs nowhere else.
+/// The value of the letter at which `value` vanishes, if the letter occurs once, multiplied by invertible factors.
+/// `direction` is an unused letter of the same shape.
 fn solution(
     letters: &Letters,
     value: &Expr,

@@ -1,6 +1,6 @@
-//! Casimirs of the bracket: candidates whose differential the bracket annihilates and which the
-//! step keeps, independent of one another, until there are as many as the corank. Takes the bracket
-//! and exact steps; gives invariants that hold for every Lagrangian.
+//! Casimirs of the bracket: candidates whose differential the bracket annihilates and that the step preserves,
+//! independent of one another, until their number equals the corank. Takes the bracket and exact steps; gives
+//! quantities that are conserved for every Lagrangian.
 
 use super::independence::tangents;
 use super::passage::RandomStep;
@@ -14,7 +14,7 @@ use crate::expr::{self, Expr, Letter};
 /// The number of Casimirs at one size of the model.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Count {
-    /// The size, where it has only a name.
+    /// The size, if it is named.
     pub size: Option<usize>,
     /// The dimension of the reduced space.
     pub dimension: usize,
@@ -22,12 +22,12 @@ pub struct Count {
     pub rank: usize,
     /// The number of independent Casimirs among those found.
     pub found: usize,
-    /// How many of those are the same number for every state, which are not listed.
+    /// The number of these that have the same value in every state, which are not listed.
     pub same: usize,
 }
 
 impl Count {
-    /// How many there are.
+    /// Their total number.
     pub fn all(&self) -> usize {
         self.dimension - self.rank
     }
@@ -37,7 +37,7 @@ impl Count {
 #[derive(Default)]
 pub(super) struct Casimirs {
     pub(super) list: Vec<Invariant>,
-    /// Size by size; one entry where no size has only a name.
+    /// One entry per size; a single entry if no size is named.
     pub(super) counts: Vec<Count>,
 }
 
@@ -52,7 +52,7 @@ struct General<'a> {
 
 /// The Casimirs.
 pub(super) fn casimirs(x: &Inputs, equations: &[Expr], passages: &[RandomStep]) -> Casimirs {
-    // Odd attempts take the largest size for a dimension that has only a name.
+    // Odd attempts use the largest size of a named dimension.
     let attempts = (0..ATTEMPTS).filter(|a| a % 2 == 1);
     let found = attempts.filter_map(|attempt| general(x, equations, attempt));
     let points: Vec<General> = found.take(POINTS).collect();
@@ -67,7 +67,7 @@ pub(super) fn casimirs(x: &Inputs, equations: &[Expr], passages: &[RandomStep]) 
             break;
         }
         debug_assert!(words::is_reduced(x, &c.value));
-        // The cheapest test first: most candidates fail it.
+        // The cheapest test first, because most candidates fail it.
         if !passages.first().is_some_and(|p| p.keeps(&c.value)) {
             continue;
         }
@@ -122,7 +122,7 @@ pub(super) fn casimirs(x: &Inputs, equations: &[Expr], passages: &[RandomStep]) 
     out
 }
 
-/// How many Casimirs there are at one size, and how many of those found are independent there.
+/// The number of Casimirs at one size, and the number of independent ones among those found.
 fn count(x: &Inputs, equations: &[Expr], size: usize, found: &Casimirs) -> Option<Count> {
     let general = (0..ATTEMPTS).find_map(|attempt| {
         let point = assumed::point_of_size(&x.letters.symbols, attempt, equations, size)?;

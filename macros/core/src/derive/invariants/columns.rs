@@ -1,7 +1,7 @@
-//! Which motions are combined into one. With few configurations, each is moved separately; with many, the
+//! Selects the motions that are combined. With few configurations, each is moved separately; with many, the
 //! configurations that the action couples are moved together. On a chain, the copies of one configuration are moved
-//! together at all sites, or separately if part of every single momentum is conserved. Takes the motions; gives
-//! lists of them, of which combinations are sought.
+//! together at all sites, or separately if part of every single momentum is conserved. Takes the motions; gives lists
+//! of them, whose combinations are searched.
 
 use super::Inputs;
 use super::mixed::Component;
@@ -10,10 +10,11 @@ use super::noether::components;
 use super::passage::RandomStep;
 use crate::check::spec::CopyOf;
 
-/// Most configurations whose momenta are combined one by one; of more, all that the action couples.
+/// The largest number of configurations whose momenta are combined individually; otherwise, all coupled ones
+/// together.
 const FEW: usize = 4;
 
-/// Most numbers of one set whose shifts are combined one by one.
+/// The largest number of scalars in one set whose translations are combined individually.
 const SINGLES: usize = 32;
 
 /// A list of motions that are made together.
@@ -22,7 +23,7 @@ pub(super) type Column<'s> = Vec<&'s Motion>;
 /// Identifies what a motion moves, and how.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Key {
-    /// The configuration as stated, for motions that are listed per configuration; else none.
+    /// The configuration as stated, for motions that are listed per configuration; otherwise None.
     family: Option<usize>,
     way: Way,
 }
@@ -33,11 +34,11 @@ pub(super) struct Columns<'s>(Vec<OfSort<'s>>);
 /// The columns of one sort.
 struct OfSort<'s> {
     sort: Sort,
-    /// The motions that may be combined, for each set of configurations that the action couples.
+    /// The motions that may be combined, for each set of coupled configurations.
     combined: Vec<Vec<Column<'s>>>,
     /// Single motions that are reported first.
     single: Vec<Column<'s>>,
-    /// The columns of which all others are combinations.
+    /// The columns that span all others.
     basis: Vec<Column<'s>>,
 }
 
@@ -75,13 +76,13 @@ impl<'s> Columns<'s> {
         self.own(sort).map_or(&[], |own| &own.combined)
     }
 
-    /// Motions of a sort of single copies, where something of every single momentum is conserved, and of single bodies
-    /// that constraints hold.
+    /// Motions of single copies, if part of every single momentum is conserved, and motions of single constrained
+    /// bodies.
     pub(super) fn of_every_site(&self, sort: Sort) -> &[Column<'s>] {
         self.own(sort).map_or(&[], |own| &own.single)
     }
 
-    /// The columns of all sorts of which all others are combinations.
+    /// The columns that span all others, for all sorts.
     pub(super) fn basis(&self) -> impl Iterator<Item = &Column<'s>> {
         self.0.iter().flat_map(|own| &own.basis)
     }
@@ -139,8 +140,8 @@ impl Coupled<'_, '_> {
         }
     }
 
-    /// A turn about a position, or about the body's own origin, is combined with the turns of the members of the set
-    /// that are without a position.
+    /// Rotations about a position, or about the body's own origin, are combined with the rotations of the members of
+    /// the set that have no position.
     fn with_wholes<'s>(
         &self,
         own: &[&'s Motion],
@@ -165,7 +166,7 @@ impl Coupled<'_, '_> {
         columns
     }
 
-    /// Motions by what is moved and how, for each set.
+    /// Motions grouped by what they move and how, for each set.
     fn by_key<'s>(&self, own: &[&'s Motion]) -> Vec<Vec<Column<'s>>> {
         let mut out: Vec<Vec<(Key, Column)>> = vec![Vec::new(); self.sets.len()];
         for m in own.iter().copied() {
@@ -216,10 +217,10 @@ impl Coupled<'_, '_> {
         self.x.spec.configurations[configuration].copy
     }
 
-    /// Whether these motions are reported for each copy: some component of the momentum of every single copy is
+    /// Whether these motions are reported for each copy: a component of the momentum of every single copy is
     /// conserved.
     fn is_told_of_each(&self, key: Key, list: &Column) -> bool {
-        // Numbers that are listed one by one may be coordinates along several axes.
+        // Scalars listed individually may be coordinates along several axes.
         let number = |m: &&Motion| m.direction().0.is_scalar() && m.way == Way::Space;
         if list.iter().all(number) && !self.is_lattice {
             return list.len() <= SINGLES;
@@ -235,7 +236,7 @@ impl Coupled<'_, '_> {
             else {
                 return false;
             };
-            // An entry that is zero does not count as conserved.
+            // A zero entry does not count as conserved.
             let same = before.data.iter().zip(&after.data);
             let same = same.map(|(a, b)| a == b && *a != 0);
             kept = Some(match kept {

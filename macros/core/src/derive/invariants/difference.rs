@@ -1,6 +1,6 @@
-//! Total differences: the action of a step may change under a symmetry by `F(end) - F(start)`, as terms
-//! linear in the velocity do; then the momentum less `F` is conserved. `F` is the change of the action
-//! of a step that starts at the identity. Takes a combination of motions; gives `F`.
+//! Total differences: a symmetry may change the action of a step by `F(end) - F(start)`, for example through terms
+//! that are linear in the velocity. Then the momentum minus `F` is conserved. `F` is the change of the action of a
+//! step that starts at the identity. Takes a combination of motions; gives `F`.
 
 use super::motions::Motion;
 use super::noether::{Term, combined};
@@ -17,12 +17,13 @@ use crate::expr::{self, Expr, Letter, Shift};
 /// The shape and the structure of the direction of a motion.
 type Kind = (Shape, Structure);
 
-/// Largest derivative that is taken.
+/// The size of the largest derivative that is computed.
 const LARGEST: u32 = 5_000;
 
 /// The expression to subtract from the momentum of a combination of motions, up to constants.
 pub(super) fn difference(x: &Inputs, passages: &[RandomStep], terms: &[Term]) -> Option<Expr> {
-    // One table with a direction of each kind: on a chain, copying the table for every term would be most of the work.
+    // One table with a direction of each kind: on a chain, most of the work would be copies of the table for every
+    // term.
     let mut symbols = x.letters.symbols.clone();
     let mut kinds: Vec<(Kind, Letter)> = Vec::new();
     for kind in terms.iter().map(|t| t.motion.direction()) {
@@ -47,7 +48,7 @@ pub(super) fn difference(x: &Inputs, passages: &[RandomStep], terms: &[Term]) ->
         if change.size() > LARGEST {
             return None;
         }
-        // Invariant terms, the kinetic energy among them, add nothing.
+        // Invariant terms, such as the kinetic energy, add nothing.
         let nothing = |p: &RandomStep| p.before.value(&change).is_some_and(|v| v.vanishes());
         if !passages.iter().all(nothing) {
             parts.push(change);
@@ -66,8 +67,8 @@ pub(super) fn difference(x: &Inputs, passages: &[RandomStep], terms: &[Term]) ->
     Some(expr::sum(list.into_iter().filter(moves), shape))
 }
 
-/// The change of a term of the action along a motion, over a step from the identity to the node: a
-/// covector, paired with the direction of the motion.
+/// The change of a term of the action along a motion, over a step from the identity to the node, as a covector paired
+/// with the direction of the motion.
 fn of_term(x: &Inputs, s: &Symbols, direction: Letter, m: &Motion, term: &Expr) -> Expr {
     let v = expr::here(s, direction.symbol);
     let c = &x.spec.configurations[m.configuration];

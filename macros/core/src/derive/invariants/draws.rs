@@ -63,7 +63,7 @@ impl Roots {
         }
     }
 
-    /// Whether every node at which steps end lies on the constraints that could be solved: not where these single out
+    /// Whether the end of every step satisfies the constraints that could be solved. False if these determine
     /// parameters, which all nodes share.
     pub(super) fn hold_everywhere(&self, x: &Inputs) -> bool {
         let role = |l: &Letter| x.letters.symbols.get(l.symbol).role;
@@ -90,7 +90,7 @@ impl Roots {
             .then_some(())
     }
 
-    /// Draws the elements of a node again, as far as roots are missing there.
+    /// Draws the elements of a node again, if roots do not exist there.
     pub(super) fn placed(&self, x: &Inputs, node: &mut Point, attempt: u64) -> Option<()> {
         for (i, c) in x.spec.configurations.iter().enumerate() {
             let drawn = (0..TRIES).any(|turn| {
@@ -106,7 +106,7 @@ impl Roots {
         self.held(node)
     }
 
-    /// Draws the velocities of a step again, as far as roots are missing where it ends.
+    /// Draws the velocities of a step again, if roots do not exist at its end.
     pub(super) fn led(&self, x: &Inputs, node: &mut Point, attempt: u64) -> Option<()> {
         if self.list.is_empty() && self.solved.list().is_empty() {
             return Some(());

@@ -1,6 +1,6 @@
-//! Energies. The physical one at a node: kinetic energy of the limit of small steps, inverted for
-//! the momentum, plus the potential. The discrete one on an edge: how the action of the step falls
-//! when the step grows. Both are bounded, as for every symplectic step, or exact where that is proved.
+//! Energies. The physical energy at a node is the kinetic energy of the limit of small steps as a function of the
+//! momentum, plus the potential. The discrete energy on an edge is the negative derivative of the action of the step
+//! with respect to the step size. Both are bounded, as for every symplectic step, or exact if that is proved.
 
 use super::passage::RandomStep;
 use super::{Family, Inputs, Invariant, Kind, Lax, here, is_conserved};
@@ -36,20 +36,20 @@ pub(super) fn energy(x: &Inputs, passages: &[RandomStep]) -> Option<Invariant> {
     })
 }
 
-/// The discrete energy of an edge, `-∂L_d/∂h`, minus its value at rest.
+/// The discrete energy of an edge, `-∂L_d/∂h`, minus its value at zero velocity.
 #[derive(Clone, Debug)]
 pub struct DiscreteEnergy {
-    /// Its value by letters at both ends of the edge and the velocity.
+    /// Its value, expressed by letters at both ends of the edge and the velocity.
     pub value: Expr,
-    /// Whether every edge of a motion has the same.
+    /// Whether it has the same value on every edge of a motion.
     pub exact: bool,
-    /// Why.
+    /// The reason.
     pub reason: String,
 }
 
 impl Derivation {
-    /// Whether the discrete energy of an edge is conserved, and why. Where the kinetic energy is degenerate, a
-    /// symplectic step bounds nothing.
+    /// Whether the discrete energy of an edge is conserved, and the reason. If the kinetic energy is degenerate, a
+    /// symplectic step does not bound it.
     pub fn discrete_energy(&self) -> (&'static str, &str) {
         let energy = &self.integrability.discrete_energy;
         if self.limit.as_ref().is_err_and(|why| why == DRIVEN) {
@@ -76,8 +76,8 @@ impl Derivation {
 pub(super) fn discrete(x: &Inputs, passages: &[RandomStep], lax: Option<&Lax>) -> DiscreteEnergy {
     let s = &x.letters.symbols;
     let h = here(x.spec.step);
-    // A constant of the action would weigh h^-2: the value of the edge at rest is subtracted if it is constant along
-    // the motion.
+    // A constant of the action would contribute h^-2. The value of the edge at zero velocity is subtracted if it is
+    // constant along the motion.
     let still: Vec<(expr::Letter, Expr)> = x
         .spec
         .configurations
@@ -128,7 +128,7 @@ fn value(x: &Inputs, point: &Point) -> Option<u64> {
             bases.push((i, m));
         }
     }
-    // Gradients of the kinetic energy and of the linear part in each velocity.
+    // Gradients of the kinetic energy and of the linear part with respect to each velocity.
     let variation = |i: usize| here(x.letters.variation[i]);
     let gradients = |e: &Expr| -> Vec<Expr> {
         let all = 0..x.letters.variation.len();
@@ -149,7 +149,7 @@ fn value(x: &Inputs, point: &Point) -> Option<u64> {
     for (i, zero) in zeros.iter().enumerate() {
         rest.set(variation(i), zero.clone());
     }
-    // Gradients are linear in the velocities: one without a velocity does not answer to it.
+    // Gradients are linear in the velocities; a gradient does not depend on velocities that it does not contain.
     let answers: Vec<Vec<usize>> = (0..zeros.len())
         .map(|i| {
             let all = 0..kinetic.len();
@@ -200,11 +200,11 @@ fn element(entries: &[(usize, usize, i64)], rows: usize, cols: usize) -> Matrix 
     m
 }
 
-/// The coordinate of a covector along a basis element: a vector holds it at the axis, a matrix at
-/// the element's first entry.
+/// The coordinate of a covector along a basis element: the component of a vector at the axis, or the entry of a
+/// matrix at the element's first entry.
 fn coordinate(mu: &Matrix, e: &Matrix, entries: &[(usize, usize, i64)]) -> u64 {
     if mu.cols == 1 && e.cols > 1 {
-        // hat(axis) has its positive entry at the row after the next.
+        // hat(axis) has its positive entry two rows after the axis, cyclically.
         let axis = match entries.first() {
             Some((2, 1, _)) => 0,
             Some((0, 2, _)) => 1,

@@ -1,4 +1,4 @@
-//! Homogeneous vectors, planes and points that rigid motions carry: what can be read from them. Takes
+//! Homogeneous vectors, planes and points that rigid motions advect, and the quantities that they determine. Takes
 //! the advected vectors of a model; gives parts of candidates for invariants.
 
 use super::motions::space_of;
@@ -8,8 +8,8 @@ use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, last_axis, within};
 use crate::groups::Euclidean;
 
-/// All but the last component of a homogeneous vector: the normal of a plane, the place of a point
-/// times its weight.
+/// A homogeneous vector without its last component: the normal of a plane, or the position of a point times its
+/// weight.
 pub(super) fn spatial_part(s: &Symbols, v: &Expr) -> Expr {
     expr::rows_of(s, v, 0, within(v.shape().rows))
 }

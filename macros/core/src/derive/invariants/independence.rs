@@ -1,5 +1,5 @@
-//! Whether a momentum is independent of others as a function on the phase space. Takes invariants and
-//! a general point; compares ranks of differentials in exact arithmetic.
+//! Decides whether a momentum is independent of others as a function on the phase space. Takes invariants and a
+//! general point; compares ranks of differentials in exact arithmetic.
 
 use super::passage::RandomStep;
 use super::{Family, Inputs, Invariant, here};
@@ -10,7 +10,7 @@ use crate::expr::shape::Structure;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
 
-/// Whether a momentum is independent of those found, all read on the phase space.
+/// Whether a momentum is independent of those found, all as functions on the phase space.
 pub(super) fn is_new(
     x: &Inputs,
     passages: &[RandomStep],
@@ -37,7 +37,7 @@ pub(super) fn is_new(
 }
 
 fn is_linear(x: &Inputs, e: &Expr) -> bool {
-    // A number with one momentum in it, as a bracket `μ·a`.
+    // A scalar that contains one momentum, such as a bracket `μ·a`.
     let momenta = &x.letters.node_momentum;
     fn count(e: &Expr, momenta: &[crate::expr::symbol::SymbolId]) -> usize {
         match e.node() {
@@ -55,8 +55,8 @@ fn is_linear(x: &Inputs, e: &Expr) -> bool {
         })
 }
 
-/// Whether a Casimir is the same number for every state and all parameters: zero, or a combination of advected
-/// quantities such as `tr(A B)`, where `B` is the inverse of `A`. A length that is always the same is kept, as a
+/// Whether a Casimir has the same value in every state and for all parameters: zero, or a combination of advected
+/// quantities such as `tr(A B)`, where `B` is the inverse of `A`. A length that is always the same is listed, as a
 /// Casimir whose drift is checked.
 pub(super) fn is_same_for_all(x: &Inputs, passages: &[RandomStep], v: &Invariant) -> bool {
     let Some(value) = &v.value else {
@@ -67,7 +67,7 @@ pub(super) fn is_same_for_all(x: &Inputs, passages: &[RandomStep], v: &Invariant
     let Some(first) = passages.first() else {
         return false;
     };
-    // Dimensions that have only a name differ from step to step, and the number with them.
+    // Named dimensions vary from step to step, and such a scalar varies with them.
     let alike: Vec<Option<Matrix>> = passages
         .iter()
         .filter(|p| size(p) == size(first))
@@ -119,10 +119,10 @@ fn differentials(x: &Inputs, point: &Point, v: &Invariant) -> Option<Vec<Vec<u64
             }
         }
     }
-    // Entry (i, j) is the pairing with a constant matrix: it is linear in the matrix, so that one derivative is enough.
+    // Entry (i, j) is the pairing with a constant matrix. It is linear in the matrix, so one derivative is enough.
     let mut out = vec![vec![0; coordinates.len()]; rows * cols];
     let mut derivative: Option<(Letter, Expr)> = None;
-    // The change of a letter is a letter of its shape: itself, at a label that nothing else has.
+    // The change of a letter is a letter of its shape: the letter itself, at an unused label.
     let marker = |l: Letter| Letter {
         symbol: l.symbol,
         shift: Shift {
@@ -150,7 +150,7 @@ fn differentials(x: &Inputs, point: &Point, v: &Invariant) -> Option<Vec<Vec<u64
     Some(out)
 }
 
-/// Tangent directions at a letter's value that keep its structure, one for each coordinate.
+/// Tangent directions at a letter's value that preserve its structure, one per coordinate.
 pub(super) fn tangents(point: &Point, l: Letter, structure: Structure) -> Option<Vec<Matrix>> {
     let value = point.letter(l)?;
     let (rows, cols) = (value.rows, value.cols);
@@ -164,7 +164,7 @@ pub(super) fn tangents(point: &Point, l: Letter, structure: Structure) -> Option
         m
     };
     let minus = Some(crate::algebra::exact::negate(1));
-    // A turn has a mirrored entry of opposite sign; a translation does not.
+    // A rotation has a mirrored entry of opposite sign; a translation does not.
     let turn = |i: usize, j: usize| {
         unit(
             i,

@@ -1,6 +1,6 @@
-//! The free body in any dimension: the step has a Lax form, proved by normal form, whose
-//! eigenvalues are Manakov's integrals, the coefficients of `det(ν + M + λ C²)`. Takes the Riccati
-//! factor and the balance; gives the Lax pair and the integrals.
+//! The free body in any dimension. The step has a Lax form, proved by normal form, whose eigenvalues are Manakov's
+//! integrals, the coefficients of `det(ν + M + λ C²)`. Takes the Riccati factor and the balance; gives the Lax pair
+//! and the integrals.
 
 use super::passage::RandomStep;
 use super::{Family, Inputs, Invariant, Kind, here, is_conserved, length};
@@ -11,7 +11,7 @@ use crate::expr::shape::Dim;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter};
 
-/// `L' K = K L`: the matrix `L` after the step is similar to the one before.
+/// `L' K = K L`: the matrices `L` before and after the step are similar.
 #[derive(Clone, Debug)]
 pub struct Lax {
     /// `C² + λ h M - λ²` at a node.
@@ -126,7 +126,7 @@ pub(super) fn integrals(x: &Inputs, lax: Option<&Lax>, passages: &[RandomStep]) 
             .into_iter()
             .collect();
     }
-    // The determinant agrees for general ν and λ, hence every coefficient.
+    // The determinant is equal for general ν and λ, so every coefficient is.
     let agree = |p: &RandomStep| {
         (1..=3).all(|k| {
             let (a, b) = (

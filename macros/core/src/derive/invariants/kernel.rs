@@ -1,6 +1,6 @@
-//! Symmetries as a linear problem: the momenta of some motions, with coefficients that are sought,
-//! change over no step. Takes random steps in exact arithmetic; gives all solutions in small whole
-//! numbers, and for fixed parameters how many there are in any numbers.
+//! Symmetries as a linear problem: find coefficients for the momenta of some motions such that no step changes the
+//! combination. Takes random steps in exact arithmetic; gives all solutions in small integers, and for fixed
+//! parameters the number of solutions in any numbers.
 
 use super::columns::Columns;
 use super::draws::Roots;
@@ -11,23 +11,23 @@ use crate::algebra::assumed::{Independent, eliminate, rank};
 use crate::algebra::exact::{Matrix, Point, add, mul, negate, rational};
 use crate::expr::{self, Expr, Letter, Shift};
 
-/// Rows beyond the unknowns: that one more is dependent by chance has a probability of 1e-18.
+/// Rows beyond the number of unknowns. With probability 1e-18, one more row is dependent by chance.
 const MORE: usize = 2;
 
-/// Most unknowns.
+/// The largest number of unknowns.
 const WIDEST: usize = 64;
 
-/// Largest numerator and denominator of a coefficient.
+/// The largest numerator and denominator of a coefficient.
 const LARGEST: u64 = 1000;
 
-/// Most evaluations, in entries of matrices times nodes of expressions, of one search.
+/// The largest number of evaluations in one search, in entries of matrices times nodes of expressions.
 const WORK: usize = 40_000_000;
 
 /// Steps whose differences are added with signs.
 pub(super) struct Sample<'a>(Vec<(bool, RandomStep<'a>)>);
 
 impl Sample<'_> {
-    /// The change of a quantity, added up.
+    /// The sum of the changes of a quantity.
     fn change(&self, e: &Expr) -> Option<Vec<u64>> {
         let mut out: Option<Vec<u64>> = None;
         for (minus, p) in &self.0 {
@@ -46,18 +46,18 @@ impl Sample<'_> {
     }
 }
 
-/// Samples, made as they are needed.
+/// Samples, computed on demand.
 pub(super) struct Samples<'a, 'x> {
     x: &'x Inputs<'a>,
     roots: &'x Roots,
     list: Vec<Sample<'a>>,
-    /// Whether what changes as a total difference counts as unchanged.
+    /// Whether a change by a total difference counts as no change.
     differences: bool,
     attempt: u64,
 }
 
 impl<'a, 'x> Samples<'a, 'x> {
-    /// Samples of steps, these first.
+    /// Samples of steps, starting with the given ones.
     pub(super) fn of_steps(
         x: &'x Inputs<'a>,
         roots: &'x Roots,
@@ -73,7 +73,7 @@ impl<'a, 'x> Samples<'a, 'x> {
         }
     }
 
-    /// Samples of steps less total differences.
+    /// Samples of steps, without total differences.
     pub(super) fn of_differences(x: &'x Inputs<'a>, roots: &'x Roots) -> Self {
         Samples {
             x,
@@ -89,7 +89,7 @@ impl<'a, 'x> Samples<'a, 'x> {
             if self.attempt > 8 * index as u64 + 200 {
                 return None;
             }
-            // Even ones take the smallest size where it has only a name.
+            // Even attempts use the smallest size of a named dimension.
             self.attempt += 2;
             let made =
                 start(self.x, self.roots, self.x.assumed, self.attempt).and_then(
@@ -107,7 +107,7 @@ impl<'a, 'x> Samples<'a, 'x> {
         self.list.get(index)
     }
 
-    /// Coefficients, as few as span them all, for which the sum of the quantities does not change.
+    /// Coefficients for which the sum of the quantities does not change: a basis of all such coefficients.
     pub(super) fn combinations(&mut self, values: &[Expr]) -> Vec<Vec<i64>> {
         let n = values.len();
         if n == 0 {
@@ -116,7 +116,7 @@ impl<'a, 'x> Samples<'a, 'x> {
         let mut rows: Vec<Vec<u64>> = Vec::new();
         let mut independent = Independent::default();
         let mut index = 0;
-        // At least four steps; branches of assumptions take turns.
+        // At least four steps; with assumptions more, because their branches alternate.
         let least = if self.x.assumed.is_empty() { 4 } else { 8 };
         while rows.len() < n + MORE || index < least {
             if index > n + least + 4 {
@@ -160,7 +160,7 @@ fn null_space(mut rows: Vec<Vec<u64>>, n: usize) -> Vec<Vec<u64>> {
     .collect()
 }
 
-/// The same in whole numbers without a common factor, the first one positive.
+/// The vector in integers without a common factor, with a positive first entry.
 fn whole_numbers(v: &[u64]) -> Option<Vec<i64>> {
     let parts: Vec<(i64, i64)> = v
         .iter()
@@ -191,14 +191,15 @@ pub(super) struct Kernel<'a> {
 }
 
 impl<'a> Kernel<'a> {
-    /// Solves for the coefficients of all columns at once, ignoring total differences; `None` if that is too much work.
+    /// Solves for the coefficients of all columns at once, ignoring total differences; `None` if that exceeds the
+    /// work limit.
     pub(super) fn new(
         x: &Inputs<'a>,
         roots: &Roots,
         columns: &Columns,
         attempt: u64,
     ) -> Option<Kernel<'a>> {
-        // Each with what its motions have together.
+        // Each with the part that its motions share.
         let own = columns.basis().filter_map(|list| {
             let first = list.first()?;
             let values = list.iter().map(|m| m.value.clone());
@@ -253,7 +254,7 @@ impl<'a> Kernel<'a> {
         })
     }
 
-    /// How many of these quantities are linearly independent, constants left out.
+    /// The number of linearly independent quantities, without constants.
     pub(super) fn spanned<'e>(&self, found: impl Iterator<Item = &'e Expr>) -> usize {
         let mut rows: Vec<Vec<u64>> = vec![vec![1; self.nodes.len()]];
         for e in found {
@@ -266,7 +267,7 @@ impl<'a> Kernel<'a> {
     }
 }
 
-/// How many independent entries a momentum has.
+/// The number of independent entries of a momentum.
 fn coordinates(point: &Point, m: &Motion) -> usize {
     match m.sort {
         Sort::Angular | Sort::Linear => 3,
@@ -290,7 +291,7 @@ fn independent_entries(sort: Sort, value: &Matrix) -> Vec<u64> {
     }
 }
 
-/// About how much one step costs.
+/// The approximate cost of one step.
 fn work(x: &Inputs, point: &Point) -> usize {
     let nodes: usize = x
         .balances
@@ -306,9 +307,9 @@ fn work(x: &Inputs, point: &Point) -> usize {
     nodes.saturating_mul(n * n * n)
 }
 
-/// Steps between random nodes with the parameters of a point, each with the steps that lead from
-/// one origin to its ends, the identity of groups: a quantity that changes by `F(end) - F(start)`
-/// changes by `F` of its end over a step that starts at the origin, up to a constant.
+/// Steps between random nodes with the parameters of a point. Each comes with the steps from one origin, the identity
+/// of the groups, to its ends. A quantity that changes by `F(end) - F(start)` changes by `F` of the end over a step
+/// that starts at the origin, up to a constant.
 fn chain<'a>(
     x: &Inputs<'a>,
     roots: &Roots,
@@ -317,7 +318,7 @@ fn chain<'a>(
 ) -> Option<Vec<Sample<'a>>> {
     let mut origin = base.clone();
     for c in &x.spec.configurations {
-        // Fields stay where they were drawn: a potential may be singular where they vanish or meet.
+        // Fields keep their drawn values: a potential may be singular at zero or where fields coincide.
         if !c.group.is_additive() {
             origin.set(here(c.element), base.value(&c.group.identity())?);
         }
@@ -331,7 +332,7 @@ fn chain<'a>(
     }
     let mut out = Vec::new();
     let mut from: Option<RandomStep> = None;
-    // Roots that do not exist cost a part of the draws.
+    // Some draws fail because roots do not exist.
     for attempt in 0..8 * (count as u64 + 10) {
         if out.len() == count {
             return Some(out);

@@ -1,24 +1,24 @@
-//! Motions that mix the components of fields: each in proportion to each, of which turns of space stated
-//! by its coordinates, turns about any axis and other linear maps are combinations.
-//! Takes the fields; gives such motions and their momenta.
+//! Motions that mix the components of fields: each component moves in proportion to another. Rotations of space
+//! stated by coordinates, rotations about any axis and other linear maps are combinations of these. Takes the fields;
+//! gives such motions and their momenta.
 
 use super::motions::{Motion, Sort, Way, in_space};
 use super::{Inputs, length};
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::{self, Expr};
 
-/// Most components of fields, all together, that are moved in proportion to each other.
+/// The largest number of components of all fields that are moved in proportion to each other.
 const MIXED: usize = 6;
 
-/// A component of a field, counted from 0; of a number the only one.
+/// A component of a field, counted from 0; a scalar has a single one.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct Component {
     pub(super) configuration: usize,
     pub(super) entry: u8,
 }
 
-/// Every component of a field in proportion to every one, where there are few of them. On a chain, both components
-/// belong to one site, and the motion is the same at all sites.
+/// Every component of a field in proportion to every other, if there are few. On a chain, both components belong to
+/// one site, and the motion is the same at all sites.
 pub(super) fn motions(x: &Inputs) -> Vec<Motion> {
     let components = components(x);
     let copy = |c: &Component| x.spec.configurations[c.configuration].copy;
@@ -33,7 +33,7 @@ pub(super) fn motions(x: &Inputs) -> Vec<Motion> {
             .shape()
             .is_scalar()
     };
-    // Turns then come out as a paper writes them, x p_y - y p_x.
+    // Rotations then have the usual form, x p_y - y p_x.
     let pairs = components
         .iter()
         .flat_map(|by| components.iter().map(move |to| (by, to)));
@@ -53,8 +53,8 @@ pub(super) fn motions(x: &Inputs) -> Vec<Motion> {
             spanned: false,
         }
     };
-    // Vectors turn together in their angular momenta; other mixtures mostly describe the centre of mass, which moves
-    // along the total momentum.
+    // The angular momenta of vectors contain their common rotations; other mixtures mostly describe the centre of
+    // mass, which moves along the total momentum.
     let told = |(by, to): &(&Component, &Component)| {
         let at_one_site = copy(by).map(|c| c.site) == copy(to).map(|c| c.site);
         at_one_site && (by.configuration == to.configuration || number(by) || number(to))
@@ -62,7 +62,7 @@ pub(super) fn motions(x: &Inputs) -> Vec<Motion> {
     pairs.filter(told).map(of_pair).collect()
 }
 
-/// The components of all fields that are numbers or vectors.
+/// The components of all scalar and vector fields.
 fn components(x: &Inputs) -> Vec<Component> {
     let list = x.spec.configurations.iter().enumerate();
     let single = |shape: Shape| shape.is_vector() || shape.is_scalar();

@@ -1,7 +1,7 @@
-//! Conserved quantities: candidates built from momenta, advected quantities, group elements and
-//! parameters, each kept only if it is proved constant over one step. Casimirs are sought until
-//! there are as many as the bracket has; Noether momenta for every group, frame and axis; Manakov
-//! integrals where the step has a Lax form; the energy is exact where that is proved, else bounded.
+//! Conserved quantities: candidates built from momenta, advected quantities, group elements and parameters, each
+//! listed only if it is proved constant over one step. clebsch searches for Casimirs up to the corank of the bracket,
+//! for Noether momenta of every group, frame and axis, and for Manakov integrals if the step has a Lax form. The
+//! energy is exact if that is proved, otherwise bounded.
 
 mod casimirs;
 mod columns;
@@ -44,9 +44,9 @@ pub use isospectral::Lax;
 /// Where an invariant comes from.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Family {
-    /// A symmetry of the action moves configurations: a momentum.
+    /// A momentum, from a symmetry of the action that moves configurations.
     Noether,
-    /// A function that commutes with everything: constant whatever the Lagrangian.
+    /// A function that commutes with every other, so that it is constant for every Lagrangian.
     Casimir,
     /// Eigenvalues of a Lax matrix.
     Manakov,
@@ -59,17 +59,17 @@ pub enum Family {
 /// The kind of an invariant.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Kind {
-    /// The spatial momentum of the only configuration, kept by a symmetry: the state holds it.
+    /// The spatial momentum of the only configuration, conserved by a symmetry and stored in the state.
     SpatialMomentum(usize),
     /// The sum of the spatial momenta of several configurations.
     TotalMomentum(Vec<usize>),
-    /// A number, vector or matrix made of node quantities.
+    /// A scalar, vector or matrix computed from quantities at a node.
     Value,
     /// The coefficients of `det(ν + M + λ C²)` in which the momentum occurs.
     Spectrum,
     /// The physical energy.
     Energy,
-    /// The rate of change of a constraint, by the number of the constraint.
+    /// The rate of change of a constraint, by its index.
     ConstraintRate(usize),
 }
 
@@ -82,13 +82,13 @@ pub struct Invariant {
     pub kind: Kind,
     /// Where it comes from.
     pub family: Family,
-    /// Its value by node momenta, advected quantities, group elements and parameters. The energy
-    /// has none: it is evaluated from the limit.
+    /// Its value, expressed by node momenta, advected quantities, group elements and parameters. None for the energy,
+    /// which is evaluated from the limit.
     pub value: Option<Expr>,
-    /// The sum of the absolute values of its terms, or a bound of it: a number, or a vector of the
-    /// shape of its value where components are of different units. The energy has none, see `value`.
+    /// The sum of the absolute values of its terms, or a bound of it: a number, or a vector of the shape of its value
+    /// if components have different units. None for the energy, see `value`.
     pub scale: Option<Expr>,
-    /// Whether it is conserved exactly, or only oscillates.
+    /// Whether it is conserved exactly or only oscillates.
     pub exact: bool,
     /// Why it is conserved, in a few words.
     pub reason: String,
@@ -108,15 +108,15 @@ pub struct Integrability {
 /// The result of the search for the Casimirs of a model.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Known {
-    /// How many there are and how many were found, at each size that was looked at.
+    /// The numbers of existing and of found Casimirs, at each size that was searched.
     Counted(Vec<Count>),
-    /// None was looked for, with the reason.
+    /// No search, with the reason.
     NotSought(String),
 }
 
 impl Integrability {
-    /// The dimension of the reduced space and the rank of its bracket at a general point, for a
-    /// model of one size that was looked at.
+    /// The dimension of the reduced space and the rank of its bracket at a general point, for a model of one size
+    /// that was searched.
     pub fn rank(&self) -> Option<(usize, usize)> {
         match &self.casimirs {
             Known::Counted(counts) => match counts.as_slice() {
@@ -141,7 +141,7 @@ pub struct Inputs<'a> {
     /// The balances.
     pub balances: &'a [Balance],
     /// The action and the balances with constraint forces, if there are constraints; `action` and `balances` are
-    /// without.
+    /// without them.
     pub held: Option<(&'a Action, &'a [Balance])>,
     /// The bracket.
     pub bracket: &'a Bracket,
@@ -200,7 +200,7 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
     let fresh = |v: &Invariant| casimirs::is_new(x, &passages, &out, v);
     let spectrum: Vec<Invariant> = spectrum.into_iter().filter(fresh).collect();
     out.extend(spectrum);
-    // A momentum about an axis may be a Casimir already, written by advected quantities.
+    // A momentum about an axis may be a Casimir already, expressed by advected quantities.
     let mut linear: Vec<Invariant> = out.clone();
     for v in about_axes.into_iter().chain(momenta.body) {
         if independence::is_new(x, &passages, &linear, &v) {
@@ -236,12 +236,11 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
     (out, known)
 }
 
-/// Most products of numbers that one matrix of the bracket may take. Up to eight dimensions it is
-/// a tenth of that.
+/// The largest number of scalar products for one bracket matrix. Matrices of up to eight dimensions need a tenth of
+/// that.
 const LARGEST: usize = 4_000_000;
 
-/// Why the spaces of the model are too large to be searched, if they are: what is not searched is
-/// not listed.
+/// The reason why the spaces of the model are too large to search, if they are. Without a search, nothing is listed.
 fn too_large(x: &Inputs) -> Option<String> {
     let s = &x.letters.symbols;
     let number = |d: Dim| s.sizes(d).1;
@@ -256,7 +255,7 @@ fn too_large(x: &Inputs) -> Option<String> {
             number(shape.rows) * number(shape.cols)
         })
         .sum();
-    // Elimination of a matrix with this many rows.
+    // The cost of eliminating a matrix with this many rows.
     if work > 4 * LARGEST {
         return Some("the Lie algebra of the configuration has too many dimensions".to_owned());
     }

@@ -1,7 +1,6 @@
-//! Motions of one configuration that may be symmetries, and their momenta: turns and shifts seen from
-//! space and from the body, turns about the body's own origin, and shifts of matrices entry by entry.
-//! Takes the configurations; gives momenta in the letters of a node, and the variation that a motion
-//! is.
+//! Motions of one configuration that may be symmetries, and their momenta: rotations and translations in space and in
+//! the body, rotations about the body's own origin, and translations of matrix entries. Takes the configurations;
+//! gives momenta in the letters of a node, and the variation of each motion.
 
 use super::mixed::{self, Component};
 use super::{Inputs, length};
@@ -13,41 +12,41 @@ use crate::groups::{Additive, Euclidean, GeneralLinear, SpecialOrthogonal};
 
 const THREE: Dim = Dim::Fixed(3);
 
-/// The coordinates of the momentum of a motion: momenta of one sort may be added.
+/// The coordinates of the momentum of a motion. Momenta of one sort may be added.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Sort {
-    /// Turns of three dimensions, by their axis.
+    /// Rotations of three dimensions, by their axis.
     Angular,
-    /// Shifts of three dimensions.
+    /// Translations of three dimensions.
     Linear,
-    /// Both of them, in so many coordinates.
+    /// Both of these, with this number of coordinates.
     Rigid(Dim),
-    /// Turns of n dimensions, by their planes.
+    /// Rotations of n dimensions, by their planes.
     Planes(Dim),
     /// Linear maps of n dimensions.
     Affine(Dim),
-    /// Shifts of square matrices.
+    /// Translations of square matrices.
     Entries(Dim),
-    /// Shifts of other arrays.
+    /// Translations of other arrays.
     Shifts(Shape),
-    /// One component of a field moved in proportion to another, of any field.
+    /// One component of a field in proportion to another, of any field.
     Mixed,
 }
 
-/// From where a motion is seen.
+/// The frame of a motion.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Way {
     /// `δg = ζ g`.
     Space,
     /// `δg = g ζ`.
     Body,
-    /// A rigid motion turns as seen from space, and its origin stays.
+    /// A rigid motion rotates in space, and its origin is fixed.
     Spin,
-    /// A rigid motion turns as seen from space, about a place that a parameter is.
+    /// A rigid motion rotates in space about a position that is a parameter.
     About(SymbolId),
     /// `δQ` is a constant matrix.
     Shift,
-    /// `δX_entry = by`, components of fields: combinations of such motions are linear maps of all fields together.
+    /// `δX_entry = by` for components of fields. Combinations of such motions are linear maps of all fields together.
     Mixing { entry: u8, by: Component },
 }
 
@@ -61,13 +60,13 @@ pub(super) struct Motion {
     pub(super) value: Expr,
     /// The size of its terms.
     pub(super) scale: Expr,
-    /// The same component by component, where they are of different units.
+    /// The sizes by components, if the components have different units.
     pub(super) scales: Option<Expr>,
-    /// Whether the motions before span it.
+    /// Whether the previous motions span it.
     pub(super) spanned: bool,
 }
 
-/// Most places that turns are tried about.
+/// The largest number of positions about which rotations are tried.
 const PLACES: usize = 6;
 
 /// The node momentum in the space frame.
@@ -121,8 +120,8 @@ fn parts(x: &Inputs, i: usize, rigid: &dyn Euclidean, way: Way) -> (Expr, Expr) 
 }
 
 /// Sizes of the terms of the angular and of the linear momentum of a rigid motion. About the origin of space, the
-/// angular momentum is the sum of two terms: the angular momentum about the body's own origin, and the moment of
-/// the linear momentum. Both can grow when the body travels, although their sum is conserved.
+/// angular momentum is the sum of two terms: the angular momentum about the body's own origin, and the moment of the
+/// linear momentum. Both can grow with the displacement of the body, although their sum is conserved.
 fn sizes(x: &Inputs, i: usize, rigid: &dyn Euclidean, way: Way) -> [Expr; 2] {
     let s = &x.letters.symbols;
     let c = &x.spec.configurations[i];
@@ -137,7 +136,7 @@ fn sizes(x: &Inputs, i: usize, rigid: &dyn Euclidean, way: Way) -> [Expr; 2] {
     [expr::add(own, lever), linear]
 }
 
-/// A vector whose components are one; a number is one.
+/// A vector of ones; for a scalar, one.
 fn ones(shape: Shape) -> Expr {
     let units = match shape.rows {
         _ if shape.is_scalar() => return expr::integer(1),
@@ -148,7 +147,7 @@ fn ones(shape: Shape) -> Expr {
     expr::sum(units.collect::<Vec<_>>(), shape)
 }
 
-/// The sort of the momenta of turns of a space.
+/// The sort of the momenta of rotations of a space.
 fn turns(space: Dim) -> Sort {
     match space == THREE {
         true => Sort::Angular,
@@ -156,7 +155,7 @@ fn turns(space: Dim) -> Sort {
     }
 }
 
-/// All motions of all configurations; motions seen from space come first.
+/// All motions of all configurations; motions in space come first.
 pub(super) fn motions(x: &Inputs) -> Vec<Motion> {
     let mut out: Vec<Motion> = Vec::new();
     let ways = [Way::Space, Way::Spin, Way::Shift, Way::Body];
@@ -238,7 +237,7 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
         (Group::Additive(Additive(shape)), Way::Space) => {
             let place = expr::here(s, c.element);
             push(shifts(shape), m.clone(), None, false);
-            // Turns and linear maps of space, by which columns are moved.
+            // Rotations and linear maps of space, which act on columns.
             let outer = expr::mul(m.clone(), expr::transpose(s, place.clone()));
             let lever = expr::mul(length(x, &m), length(x, &place));
             let n = shape.rows;
@@ -251,7 +250,7 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
                 of_matrix(s, n, outer, lever, &mut push);
             }
         }
-        // By which rows are moved.
+        // Maps that act on rows.
         (Group::Additive(Additive(shape)), Way::Body)
             if !shape.is_vector() && !shape.is_scalar() =>
         {
@@ -277,7 +276,7 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
     }
 }
 
-/// The motions of a rigid motion, whose momentum as seen from this way is `m`.
+/// The motions of a rigid motion, whose momentum in this frame is `m`.
 fn of_rigid(
     x: &Inputs,
     i: usize,
@@ -307,7 +306,7 @@ fn of_rigid(
             } else {
                 expr::sub(angular, rigid.moment(s, expr::column(s, &g), linear))
             };
-            // The state keeps the moment about the origin of space, of which this is a part.
+            // The state stores the moment about the origin of space, of which this is a part.
             let [angular, _] = sizes(x, i, rigid, Way::Space);
             push(turns, rigid.as_turn(s, value), Some(angular), false);
         }
@@ -324,7 +323,7 @@ fn of_rigid(
     }
 }
 
-/// The sort of a shift of an array of this shape.
+/// The sort of a translation of an array of this shape.
 fn shifts(shape: Shape) -> Sort {
     match shape == Shape::vector(THREE) {
         true => Sort::Linear,
@@ -333,7 +332,7 @@ fn shifts(shape: Shape) -> Sort {
     }
 }
 
-/// The momenta of linear maps of n dimensions and of the turns among them, from the momentum of all maps.
+/// The momenta of linear maps of n dimensions and of the rotations among them, from the momentum of all maps.
 fn of_matrix(
     s: &Symbols,
     n: Dim,
@@ -350,7 +349,7 @@ fn of_matrix(
 }
 
 impl Motion {
-    /// Shape and structure of what the momentum is paired with.
+    /// Shape and structure of the direction of the motion.
     pub(super) fn direction(&self) -> (Shape, Structure) {
         match self.sort {
             Sort::Angular | Sort::Linear => (Shape::vector(THREE), Structure::General),
@@ -362,7 +361,7 @@ impl Motion {
         }
     }
 
-    /// The covector that a gradient with respect to the direction is.
+    /// The covector of a gradient with respect to the direction.
     pub(super) fn covector(&self, s: &Symbols, gradient: Expr) -> Expr {
         match self.sort {
             Sort::Planes(_) => expr::sub(gradient.clone(), expr::transpose(s, gradient)),
@@ -376,8 +375,8 @@ impl Motion {
         }
     }
 
-    /// The letter of variation `ξ` of the motion along `v`, `Λ^-1 δΛ` on the body side and
-    /// `δΛ Λ^-1` on the spatial side, by the element `g`.
+    /// The letter of variation `ξ` of the motion along `v`, `Λ^-1 δΛ` on the body side and `δΛ Λ^-1` on the spatial
+    /// side, for the element `g`.
     pub(super) fn variation(&self, x: &Inputs, s: &Symbols, g: &Expr, v: &Expr) -> Expr {
         let c = &x.spec.configurations[self.configuration];
         let v = v.clone();
@@ -463,8 +462,8 @@ impl Motion {
         let turning = |place: Option<Expr>| {
             let angular = rigid.of_turn(v.clone());
             let linear = match place {
-                // Its velocity at the origin is opposite to that which a turn about the origin gives
-                // the place.
+                // Its velocity at the origin is the negative of the velocity of the position under a rotation about
+                // the origin.
                 Some(place) => expr::neg(rigid.swept(s, angular.clone(), place)),
                 None => expr::zero(rigid.linear_shape()),
             };
@@ -480,8 +479,7 @@ impl Motion {
     }
 }
 
-/// The dimension of the space in whose homogeneous coordinates an expression of this shape is, if the
-/// model has rigid motions of it.
+/// The dimension of the space whose homogeneous coordinates have this shape, if the model has rigid motions of it.
 pub(super) fn space_of(x: &Inputs, shape: Shape) -> Option<Dim> {
     let mut list = x.spec.configurations.iter();
     let whole = list.find(|c| c.group.rigid().is_some() && Shape::vector(c.group.size()) == shape);

@@ -1,7 +1,6 @@
-//! Noether momenta: combinations of the momenta of all configurations, from space and from the bodies,
-//! that no step changes, or that change by a total difference. How many there are at fixed parameters
-//! is a linear problem; they are then sought by what the parameters and the basis single out. That
-//! each one is conserved is proved itself.
+//! Noether momenta: combinations of the momenta of all configurations, in space and in the bodies, that no step
+//! changes, or that change by a total difference. Their number at fixed parameters is a linear problem. The search
+//! then uses the directions of the parameters and of the basis, and each result is proved to be conserved.
 
 use super::columns::{Column, Columns};
 use super::difference;
@@ -19,7 +18,7 @@ use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Most single numbers that are combined.
+/// The largest number of single scalars that are combined.
 const NUMBERS: usize = 48;
 
 /// The limit for this model: an expanded chain has a larger one.
@@ -63,7 +62,7 @@ pub(super) fn components(x: &Inputs) -> Vec<Vec<usize>> {
     out
 }
 
-/// For each symbol the configurations that move it: its own configuration, or the configurations in its constraint.
+/// For each symbol, the configurations that move it: its own configuration, or the configurations in its constraint.
 fn touched(x: &Inputs) -> BTreeMap<SymbolId, Vec<usize>> {
     let mut out: BTreeMap<SymbolId, Vec<usize>> = BTreeMap::new();
     for (i, c) in x.spec.configurations.iter().enumerate() {
@@ -85,9 +84,9 @@ fn touched(x: &Inputs) -> BTreeMap<SymbolId, Vec<usize>> {
 pub(super) struct Momenta {
     /// The invariants of single sites of a chain, and of single bodies without constraint forces.
     pub(super) of_sites: Vec<Invariant>,
-    /// The invariants seen from space.
+    /// The invariants in space.
     pub(super) space: Vec<Invariant>,
-    /// Those that bodies have a part in.
+    /// The invariants that involve the body frame.
     pub(super) body: Vec<Invariant>,
 }
 
@@ -133,10 +132,10 @@ pub(super) fn momenta(x: &Inputs, roots: &Roots, passages: &[RandomStep]) -> Mom
     }
 }
 
-/// The symmetries at fixed parameters; with assumptions at several, whose branches take turns.
+/// The symmetries at fixed parameters; with assumptions, at several points, whose branches alternate.
 fn kernels<'a>(x: &Inputs<'a>, roots: &Roots, columns: &Columns) -> Vec<Kernel<'a>> {
     let wanted = if x.assumed.is_empty() { 1 } else { 3 };
-    // Even attempts take the smallest size where it has only a name.
+    // Even attempts use the smallest size of a named dimension.
     let attempts = (0..20).map(|turn| 2 * turn);
     let found = attempts.filter_map(|attempt| Kernel::new(x, roots, columns, attempt));
     found.take(wanted).collect()
@@ -156,19 +155,19 @@ struct Search<'a, 's> {
     columns: &'s Columns<'s>,
     readings: &'s [MomentumComponent],
     kernels: &'s [Kernel<'a>],
-    /// Each with whether it is one of space alone.
+    /// Each invariant, with whether it involves space only.
     found: Vec<(bool, Invariant)>,
-    /// How many are independent at the parameters of each kernel.
+    /// The number of independent ones at the parameters of each kernel.
     spanned: Vec<usize>,
-    /// How many of them are of single sites or bodies: they come first.
+    /// The number of invariants of single sites or bodies, which come first.
     of_sites: usize,
     /// Motions whose whole momentum has been found.
     wholes: Vec<(usize, Way, Sort)>,
 }
 
 impl<'a, 's> Search<'a, 's> {
-    /// Whether the whole of it is known to be conserved, so that its parts are: with a count of all
-    /// that there are, that says it.
+    /// Whether the whole momentum is known to be conserved, so that its parts are. If all symmetries are counted, the
+    /// count decides this.
     fn is_covered(&self, column: &[&Motion]) -> bool {
         let whole = |m: &Motion| {
             self.wholes.iter().any(|(i, way, sort)| {
@@ -184,8 +183,8 @@ impl<'a, 's> Search<'a, 's> {
         !self.kernels.is_empty() && all.into_iter().all(|(k, n)| *n >= k.dimension)
     }
 
-    /// Removes columns that vanish or repeat an earlier column, such as a moment about a position, read along the axis
-    /// through it.
+    /// Removes columns that vanish or repeat an earlier column, such as a moment about a position, projected on the
+    /// axis through it.
     fn distinct(
         &self,
         columns: Vec<Column<'s>>,
@@ -209,12 +208,13 @@ impl<'a, 's> Search<'a, 's> {
         columns.into_iter().filter(fresh).collect()
     }
 
-    /// Finds what every single site of a chain conserves, before any sum over sites that is a combination of these.
+    /// Finds the momenta that every single site of a chain conserves, before any sum over sites that is a combination
+    /// of these.
     fn of_every_site(&mut self) {
         for reading in self.readings {
             for column in self.columns.of_every_site(reading.sort) {
                 let terms = terms_of(reading, column, 1);
-                // No total differences are taken here.
+                // Total differences are not used here.
                 let strict = || is_conserved(self.passages, &sum(self.x, &terms));
                 if !self.is_covered(column) && strict() {
                     self.accept(&terms);
@@ -224,7 +224,7 @@ impl<'a, 's> Search<'a, 's> {
         self.of_sites = self.found.len();
     }
 
-    /// Combinations of one reading of several motions.
+    /// Combinations of one component of several motions.
     fn of_one_reading(&mut self, samples: &mut Samples) {
         for reading in self.readings {
             if self.is_complete() {
@@ -237,7 +237,7 @@ impl<'a, 's> Search<'a, 's> {
         }
     }
 
-    /// Combinations of one reading of these.
+    /// Combinations of one component of these motions.
     fn combine(
         &mut self,
         columns: Vec<Column<'s>>,
@@ -262,7 +262,7 @@ impl<'a, 's> Search<'a, 's> {
         }
     }
 
-    /// Combinations of numbers that several readings give.
+    /// Combinations of scalars from several components.
     fn of_several_readings(&mut self, samples: &mut Samples) {
         if self.is_complete() {
             return;
@@ -292,7 +292,7 @@ impl<'a, 's> Search<'a, 's> {
         }
     }
 
-    /// Takes out what the others span: a part that was found before the whole.
+    /// Removes invariants that the others span: a part that was found before the whole.
     fn prune(&mut self) {
         let mut i = self.of_sites;
         while i < self.found.len() {
@@ -313,7 +313,7 @@ impl<'a, 's> Search<'a, 's> {
         sum(self.x, &terms_of(reading, column, 1))
     }
 
-    /// Adds an invariant if it is one, and if those before do not span it.
+    /// Adds a combination if it is conserved and the previous ones do not span it.
     fn accept(&mut self, terms: &[Term]) {
         let x = self.x;
         let mut value = sum(x, terms);
@@ -432,7 +432,7 @@ pub(super) fn combined(x: &Inputs, terms: &[Term], of: impl Fn(&Motion) -> Expr)
     expr::sum(parts, shape)
 }
 
-/// Sizes of the terms, component by component, of whole momenta that have them.
+/// Sizes of the terms by components, for whole momenta that have them.
 fn scales(terms: &[Term]) -> Option<Expr> {
     let parts = terms.iter().map(|t| {
         let own = t.motion.scales.clone().filter(|_| t.reading.is_whole())?;

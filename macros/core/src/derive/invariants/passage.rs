@@ -1,6 +1,6 @@
-//! One step in exact arithmetic: random parameters, elements and velocities, the momentum before
-//! by the outgoing edge and after by the incoming one. A quantity with the same value at both ends
-//! of a few such steps is conserved: anything else differs at one with probability above 1 - 1e-15.
+//! One step in exact arithmetic: random parameters, elements and velocities, the momentum at the start from the
+//! outgoing edge and at the end from the incoming one. A quantity with equal values at both ends of a few such steps
+//! is conserved. Any other quantity differs at one of them with probability above 1 - 1e-15.
 
 use super::draws::Roots;
 use super::{Inputs, here};
@@ -8,23 +8,23 @@ use crate::algebra::assumed;
 use crate::algebra::exact::{ATTEMPTS, Matrix, Point};
 use crate::expr::{Expr, Letter, Shift};
 
-/// Steps at which an invariant must hold.
+/// The number of steps that an invariant must pass.
 const STEPS: usize = 4;
 
-/// With assumptions more: their branches take turns.
+/// The number of steps with assumptions, whose branches alternate.
 const STEPS_ASSUMED: usize = 8;
 
 /// Both ends of one step.
 #[derive(Clone)]
 pub(crate) struct RandomStep<'a> {
-    /// Letters at the node where the step starts, the node momentum among them.
+    /// Letters at the node where the step starts, including the node momentum.
     pub(crate) before: Point<'a>,
     /// The same letters at the node where it ends.
     pub(crate) after: Point<'a>,
 }
 
 impl RandomStep<'_> {
-    /// Whether the value is the same at both ends.
+    /// Whether the value is equal at both ends.
     pub(crate) fn keeps(&self, value: &Expr) -> bool {
         match (self.before.value(value), self.after.value(value)) {
             (Some(a), Some(b)) => a == b,
@@ -33,7 +33,7 @@ impl RandomStep<'_> {
     }
 }
 
-/// A few steps, as far as there are points at which everything has a value.
+/// A few steps, as far as there are points at which all expressions are defined.
 pub(crate) fn passages<'a>(x: &Inputs<'a>, roots: &Roots, assumed: &[Expr]) -> Vec<RandomStep<'a>> {
     let wanted = if assumed.is_empty() {
         STEPS
@@ -55,7 +55,7 @@ fn passage<'a>(
     completed(x, before)
 }
 
-/// Everything a step starts from: parameters, elements, velocities, advected quantities.
+/// The data at the start of a step: parameters, elements, velocities, advected quantities.
 pub(super) fn start<'a>(
     x: &Inputs<'a>,
     roots: &Roots,
@@ -63,7 +63,7 @@ pub(super) fn start<'a>(
     attempt: u64,
 ) -> Option<Point<'a>> {
     let mut before = assumed::point(&x.letters.symbols, attempt, equations)?;
-    // Computed once: elements of orthogonal groups cost an inversion.
+    // Computed once, because elements of orthogonal groups cost an inversion.
     for c in &x.spec.configurations {
         for l in [here(c.element), here(c.velocity)] {
             let value = before.letter(l)?;
@@ -81,7 +81,7 @@ pub(super) fn start<'a>(
     Some(before)
 }
 
-/// The step from there.
+/// The step from this start.
 pub(super) fn completed<'a>(x: &Inputs<'a>, mut before: Point<'a>) -> Option<RandomStep<'a>> {
     let next = |l: Letter| Letter {
         symbol: l.symbol,

@@ -9,13 +9,13 @@ use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Part};
 
-/// Rows of a number.
+/// The number of rows of a scalar.
 const ONE: Dim = Dim::Fixed(1);
 
-/// Most parameters that are tried as axes or forms.
+/// The largest number of parameters that are tried as axes or forms.
 const AXES: usize = 12;
 
-/// Most parameters of which two have an axis across both.
+/// The largest number of parameters for which pairs give an axis across both.
 const PAIRED: usize = 4;
 
 /// A linear map of momenta of one sort.
@@ -24,7 +24,7 @@ pub(super) struct MomentumComponent {
     /// Its part of the name of a momentum; empty for the whole momentum.
     pub(super) name: String,
     what: What,
-    /// How much longer it makes them.
+    /// The factor by which it increases their length.
     pub(super) size: Expr,
 }
 
@@ -34,16 +34,16 @@ enum What {
     Across(Expr),
     /// The moment about a homogeneous point.
     About(Expr),
-    /// The component of turns that fix an axis a: `|a|² m` less its parts along a.
+    /// The component of rotations that fix an axis a: `|a|² m` minus its parts along a.
     Keeping(Expr),
     Plane(Expr, Expr),
-    /// A number in proportion to a parameter.
+    /// A scalar in proportion to a parameter.
     Times(Expr),
-    /// The component of maps that preserve a quadratic form: for `δQ = ζ Q` with `ζ^T P + P ζ = 0` the skew part of
+    /// The component of maps that preserve a quadratic form: for `δQ = ζ Q` with `ζ^T P + P ζ = 0`, the skew part of
     /// `P⁻¹ m`.
     Form(Expr),
     FormRight(Expr),
-    /// Shifts of one column, of one row.
+    /// Translations of one column, or of one row.
     Column(Expr),
     Row(Expr),
     /// The components of columns, or of rows, orthogonal to an axis a, times `|a|²`.
@@ -93,7 +93,7 @@ impl MomentumComponent {
         matches!(self.what, What::Whole)
     }
 
-    /// Whether it gives one number.
+    /// Whether it gives a scalar.
     pub(super) fn is_number(&self) -> bool {
         let of_number = matches!(self.sort, Sort::Mixed | Sort::Entries(ONE));
         matches!(self.what, What::Along(_) | What::Plane(..)) || of_number
@@ -117,7 +117,7 @@ struct Axis {
     length: Expr,
 }
 
-/// All readings of the sorts that occur, whole momenta first.
+/// All components for the given sorts, whole momenta first.
 pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<MomentumComponent> {
     let mut out = Vec::new();
     let order = |sort: &Sort| match sort {
@@ -258,7 +258,7 @@ fn ascii(x: &Inputs, id: SymbolId) -> String {
     x.letters.symbols.get(id).ascii.clone()
 }
 
-/// Axes of the basis, then parameters, then what homogeneous parameters have in space.
+/// Axes of the basis, then parameters, then axes from homogeneous parameters in space.
 fn axes(x: &Inputs, n: Dim) -> Vec<Axis> {
     let s = &x.letters.symbols;
     let count = match n {
@@ -290,7 +290,7 @@ fn axes(x: &Inputs, n: Dim) -> Vec<Axis> {
     out
 }
 
-/// Parameters that are numbers: of several fields one may move in proportion to such a one.
+/// Scalar parameters: one of several fields may move in proportion to such a parameter.
 fn numbers(x: &Inputs) -> Vec<Axis> {
     let s = &x.letters.symbols;
     let fields = x
@@ -312,10 +312,10 @@ fn numbers(x: &Inputs) -> Vec<Axis> {
     numbers.take(AXES).map(axis).collect()
 }
 
-/// Most parameters in proportion to which a component of a vector may move.
+/// The largest number of parameters in proportion to which a component of a vector may move.
 const PROPORTIONS: usize = 4;
 
-/// Axes of the basis in proportion to parameters, beside which a number moves: their names, values and lengths.
+/// Axes of the basis in proportion to parameters, for motions with a scalar: their names, values and lengths.
 fn proportional(x: &Inputs, axes: &[Axis]) -> Vec<(String, Expr, Expr)> {
     let units = axes
         .iter()

@@ -6,7 +6,7 @@ use super::mixed::Component;
 use super::motions::{Sort, Way};
 use super::noether::{Term, configurations, is_whole};
 
-/// How a linear map of components of fields moves each of them in proportion to others.
+/// A linear map of components of fields, as the proportions in which each moves.
 fn map(terms: &[Term]) -> Vec<(Component, Component, i64)> {
     let entries = terms.iter().filter_map(|t| match t.motion.way {
         Way::Mixing { entry, by } => {
@@ -21,13 +21,13 @@ fn map(terms: &[Term]) -> Vec<(Component, Component, i64)> {
     entries.collect()
 }
 
-/// Whether a linear map of components is a turn: skew in them.
+/// Whether a linear map of components is a rotation, that is, skew.
 fn is_turn(map: &[(Component, Component, i64)]) -> bool {
     let opposite = |(to, by, n): &(Component, Component, i64)| map.contains(&(*by, *to, -n));
     map.iter().all(opposite)
 }
 
-/// The name of the momentum of a linear map of components: the components that it moves.
+/// The name of the momentum of a linear map of components, from the components that it moves.
 fn name_of_map(x: &Inputs, map: &[(Component, Component, i64)]) -> String {
     let mut moved: Vec<Component> = map.iter().flat_map(|(to, by, _)| [*to, *by]).collect();
     moved.sort_by_key(|c| (c.configuration, c.entry));
@@ -47,7 +47,7 @@ fn name_of_map(x: &Inputs, map: &[(Component, Component, i64)]) -> String {
     stem.to_owned() + &labels.collect::<String>()
 }
 
-/// A name: whose momentum it is, of which bodies, and what is read of it.
+/// A name: the kind of momentum, its bodies, and its component.
 pub(super) fn name(x: &Inputs, terms: &[Term]) -> String {
     let s = &x.letters.symbols;
     let map = map(terms);

@@ -1,6 +1,6 @@
-//! Sums of the momenta of several bodies in the frame of one of them. Advected rotations carry momenta
-//! from frame to frame: what they join turns together, whatever the action couples besides. Takes the
-//! configurations and the constraints; gives vectors that Casimirs may be made of.
+//! Sums of the momenta of several bodies in the frame of one of them. Advected rotations transform momenta between
+//! frames: the bodies that they connect can be rotated together, for any other couplings of the action. Takes the
+//! configurations and the constraints; gives vectors for candidates for Casimirs.
 
 use super::Inputs;
 use super::noether::components;
@@ -18,14 +18,14 @@ struct Carrier {
     from: usize,
     to: usize,
     rotation: Expr,
-    /// Whether it joins a frame of a body to one of space: a turn of one is the opposite of the other.
+    /// Whether it connects a body frame to space: a rotation of one is the inverse of a rotation of the other.
     opposite: bool,
 }
 
-/// The momentum of a body in the frame of another one.
+/// The momentum of a body in the frame of another.
 struct Carried {
     body: usize,
-    /// The rotations on the way, the last one first.
+    /// The rotations on the path, the last one first.
     by: Vec<Expr>,
     opposite: bool,
 }
@@ -35,7 +35,7 @@ pub(super) fn totals(x: &Inputs, passages: &[RandomStep]) -> Vec<Piece> {
     let s = &x.letters.symbols;
     let carriers = carriers(x, passages);
     let mut sets = joined(x, &carriers);
-    // Momenta in space add up as they are.
+    // Momenta in space are added directly.
     let of_space = |set: &Vec<usize>| {
         set.len() > 1
             && set.iter().all(|i| turn(x, *i).is_some())
@@ -84,7 +84,7 @@ fn momentum(x: &Inputs, body: usize) -> Expr {
     expr::here(&x.letters.symbols, x.letters.node_momentum[body])
 }
 
-/// The rotation that an element or a velocity of three dimensions is, or that covers it.
+/// The rotation of a three-dimensional element or velocity, or the rotation that it covers.
 fn rotation(x: &Inputs, id: SymbolId) -> Option<Expr> {
     let s = &x.letters.symbols;
     let symbol = s.get(id);
@@ -95,13 +95,13 @@ fn rotation(x: &Inputs, id: SymbolId) -> Option<Expr> {
     }
 }
 
-/// How the frame of a body turns in a step.
+/// The rotation of the frame of a body in a step.
 fn turn(x: &Inputs, body: usize) -> Option<Expr> {
     rotation(x, x.spec.configurations[body].velocity)
 }
 
-/// All advected rotations that join two frames, both ways: only bodies that the constraint of one
-/// names can be joined by it.
+/// All advected rotations that connect two frames, in both directions. Only bodies whose velocities occur in the
+/// constraint of the rotation can be connected by it.
 fn carriers(x: &Inputs, passages: &[RandomStep]) -> Vec<Carrier> {
     let s = &x.letters.symbols;
     let mut out = Vec::new();
@@ -122,7 +122,7 @@ fn carriers(x: &Inputs, passages: &[RandomStep]) -> Vec<Carrier> {
                     continue;
                 };
                 let side = |i: usize| x.spec.configurations[i].side;
-                // A rotation seen from space is inverted at the start, and one seen from a body at the end.
+                // A rotation in space is inverted at the start, and one in a body at the end.
                 let start = if side(from).is_body() {
                     start
                 } else {
@@ -151,7 +151,7 @@ fn carriers(x: &Inputs, passages: &[RandomStep]) -> Vec<Carrier> {
     out
 }
 
-/// Sets of bodies that advected rotations join, in order of declaration.
+/// Sets of bodies that advected rotations connect, in order of declaration.
 fn joined(x: &Inputs, carriers: &[Carrier]) -> Vec<Vec<usize>> {
     let mut out: Vec<Vec<usize>> = Vec::new();
     for i in 0..x.spec.configurations.len() {

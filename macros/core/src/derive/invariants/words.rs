@@ -1,6 +1,6 @@
-//! Candidates for Casimirs: scalar products, traces and determinants of words in the momenta and advected
-//! quantities, simple ones first. Takes the momenta and advected quantities of a model; gives numbers that may or
-//! may not be Casimirs.
+//! Candidates for Casimirs: scalar products, traces and determinants of words in the momenta and advected quantities,
+//! simple ones first. Takes the momenta and advected quantities of a model; gives scalars that may or may not be
+//! Casimirs.
 
 use super::homogeneous;
 use super::passage::RandomStep;
@@ -10,7 +10,7 @@ use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Part};
 
-/// Most candidates that are looked at.
+/// The largest number of candidates that are tested.
 const MOST: usize = 400;
 
 /// A part of a word, with its name.
@@ -130,7 +130,7 @@ fn is_skew(x: &Inputs, e: &Expr) -> bool {
     }
 }
 
-/// Names in order, runs of one as powers: `J`, `J2`, `J_K`.
+/// Names in order, with repetitions as powers: `J`, `J2`, `J_K`.
 fn joined(words: &[&Piece]) -> String {
     let mut out: Vec<(String, usize)> = Vec::new();
     for w in words {
@@ -154,7 +154,8 @@ fn power(name: &str, n: usize) -> String {
     }
 }
 
-/// Whether no rotation of the word or of its transpose comes before it: their traces are the same.
+/// Whether the word comes first among its cyclic rotations and the cyclic rotations of its transpose, which all have
+/// the same trace.
 fn is_first(letters: &[Piece], word: &[&Piece]) -> bool {
     let index = |name: &str| letters.iter().position(|l| l.name == name).unwrap_or(0);
     let own: Vec<usize> = word.iter().map(|w| index(&w.name)).collect();
@@ -198,7 +199,7 @@ fn words(letters: &[Piece], length: usize) -> Vec<Vec<&Piece>> {
     out
 }
 
-/// Vectors of the reduced space: momenta, their sums brought to one frame, advected vectors.
+/// Vectors of the reduced space: momenta, their sums in one frame, advected vectors.
 fn vectors(x: &Inputs, passages: &[RandomStep]) -> Vec<Piece> {
     let s = &x.letters.symbols;
     let mut out = Vec::new();
@@ -276,7 +277,7 @@ fn matrices(x: &Inputs) -> Vec<Piece> {
     out
 }
 
-/// Squares of the cross products of two vectors: the part of one across the other.
+/// Squared cross products of two vectors, which give the part of one orthogonal to the other.
 fn areas(vectors: &[Piece]) -> Vec<Candidate> {
     let three = |v: &&Piece| v.value.shape() == Shape::vector(Dim::Fixed(3));
     let list: Vec<&Piece> = vectors.iter().filter(three).take(8).collect();
@@ -349,9 +350,9 @@ fn across(x: &Inputs, vectors: &[Piece]) -> Vec<Candidate> {
     out
 }
 
-/// For GL(n) with an advected form `C`: traces of powers of `C skew(C⁻¹ μ)`, and of its mirror images. If the
-/// velocity is in body axes, they are traces for the angular momentum in space, with the metric seen from the body.
-/// If the velocity is in spatial axes, they are traces for the circulation, with the shape seen from space.
+/// For GL(n) with an advected form `C`: traces of powers of `C skew(C⁻¹ μ)`, and of the mirrored expressions. If the
+/// velocity is in body axes, they are traces for the angular momentum in space, with the metric in the body frame. If
+/// the velocity is in spatial axes, they are traces for the circulation, with the shape in the frame of space.
 fn of_forms(x: &Inputs) -> Vec<Candidate> {
     let s = &x.letters.symbols;
     let mut out = Vec::new();
@@ -401,7 +402,7 @@ pub(super) fn letters(x: &Inputs) -> Vec<SymbolId> {
         .collect()
 }
 
-/// Whether a value depends on nothing but momenta, advected quantities and parameters at the node.
+/// Whether a value depends only on momenta, advected quantities and parameters at the node.
 pub(super) fn is_reduced(x: &Inputs, e: &Expr) -> bool {
     let own = letters(x);
     expr::letters(e).iter().all(|l| {

@@ -39,7 +39,7 @@ impl Reducer<'_> {
         {
             return expr::product(path);
         }
-        // Columns rather than rows, and of relative elements those from the first body on.
+        // Columns rather than rows; for relative elements, those that start with the first body.
         let row = self.algebra.factor_shape(&w[0]).rows == Dim::Fixed(1);
         let later = matches!(ends, [Some(a), Some(b)] if a > b);
         let turned = row || (later && !minus);
@@ -101,7 +101,7 @@ impl Reducer<'_> {
         let name = self.symbols.fresh_name(&self.name(w, &definition));
         let quantity = self.symbols.add(&name, shape, structure, Role::Advected);
         let own = expr::here(&self.symbols, quantity);
-        // Λ becomes Λ Ω: the velocity, in the mode of the element, is next to the quantity.
+        // Λ becomes Λ Ω: the velocity, in the same mode as the element, is next to the quantity.
         let velocity = |f: &Factor| -> Option<Expr> {
             let o = self.occurrence(f)?;
             let mut v = expr::here(&self.symbols, o.configuration.velocity);

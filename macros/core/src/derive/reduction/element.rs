@@ -1,13 +1,13 @@
-//! Elements of the groups as factors of words: as themselves, as the rotation of a quaternion or a rigid motion,
-//! and as the translation of a rigid motion, which is written by the whole motion. Takes factors; gives the element
-//! of a factor, its mode, and the side that must be absorbed.
+//! Elements of the groups as factors of words: the element itself, the rotation of a quaternion or a rigid motion,
+//! and the translation of a rigid motion, which is expressed by the whole motion. Takes factors; gives the element of
+//! a factor, its mode, and the side that must be absorbed.
 
 use super::terms::Reducer;
 use crate::algebra::{Factor, Source, Word, inclusion_of_space, last_unit};
 use crate::check::spec::{Configuration, Side};
 use crate::expr::Letter;
 
-/// An element at its place in a word.
+/// An element at a position in a word.
 #[derive(Clone, Copy)]
 pub(super) struct Occurrence<'a> {
     pub(super) configuration: &'a Configuration,
@@ -57,7 +57,7 @@ fn motion(at: Letter, transposed: bool, inverted: bool) -> Factor {
 }
 
 impl<'a> Reducer<'a> {
-    /// The element that a factor is.
+    /// The element of a factor, if it is one.
     pub(super) fn occurrence(&self, f: &Factor) -> Option<Occurrence<'a>> {
         let Factor::Letter {
             source,
@@ -80,15 +80,14 @@ impl<'a> Reducer<'a> {
         })
     }
 
-    /// For an element: where the index lies that must be absorbed. On the body side `Λ` has it on
-    /// its left (space), on the spatial side on its right (the reference).
+    /// For an element: the side of the index that must be absorbed. On the body side this index of `Λ` is on its left
+    /// (space), on the spatial side on its right (the reference).
     pub(super) fn open(&self, f: &Factor) -> Option<Open> {
         self.occurrence(f).map(|o| o.open())
     }
 
-    /// The word with translations of elements by whole motions: `x = ι^T G e`, and on the body side
-    /// `R^T x = -ι^T G^-1 e`, with the inclusion `ι` of space and the last unit vector `e`. `true`
-    /// for a minus sign.
+    /// The word with translations of elements expressed by whole motions: `x = ι^T G e`, and on the body side `R^T x
+    /// = -ι^T G^-1 e`, with the inclusion `ι` of space and the last unit vector `e`. `true` for a minus sign.
     pub(super) fn in_motions(&self, word: &[Factor]) -> (bool, Word) {
         let mut minus = false;
         let mut out = Word::with_capacity(word.len());
@@ -138,7 +137,7 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Whether a word is a plane seen from a body, `G^T ι z`, of which `R^T z` is a part.
+    /// Whether a word is a plane in the body frame, `G^T ι z`, of which `R^T z` is a part.
     pub(super) fn is_plane(&self, word: &[Factor]) -> bool {
         matches!(word, [first, second, _, ..] if self.occurrence(first).is_some_and(|o| {
             let rows = o.configuration.group.size();
@@ -166,7 +165,7 @@ impl<'a> Reducer<'a> {
         })
     }
 
-    /// Whether a factor takes up an index: constants do, inclusions only hand it on.
+    /// Whether a factor absorbs an index: constants do, inclusions pass it on.
     pub(super) fn absorbs(&self, f: &Factor) -> bool {
         self.is_constant(f) && !matches!(f, Factor::Inclusion { .. })
     }

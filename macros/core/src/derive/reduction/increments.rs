@@ -1,5 +1,5 @@
-//! Fields of an unreduced statement: `next(X)` is put in as `X + ΔX`, and differences are written by the
-//! increment. Takes the terms of an edge; gives them in increments and values at its start.
+//! Fields of an unreduced statement: `X + ΔX` replaces `next(X)`, and differences are expressed by the increment.
+//! Takes the terms of an edge; gives them in increments and values at its start.
 
 use crate::algebra::Algebra;
 use crate::check::spec::Spec;
@@ -11,7 +11,7 @@ use crate::expr::symbol::{Role, SymbolId, Symbols};
 
 use crate::expr::{self, Expr, Letter, Node, Shift};
 
-/// Largest sum that is looked at for what cancels in it.
+/// The size of the largest sum that is searched for cancellation.
 const LARGEST: u32 = 60;
 
 /// The values of fields at the end of an edge.
@@ -21,7 +21,7 @@ pub(super) fn ends(spec: &Spec) -> Vec<(Letter, Expr)> {
         .collect()
 }
 
-/// The expression with these put in.
+/// The expression with these substitutions.
 pub(super) fn by_increments(
     spec: &Spec,
     algebra: &Algebra,
@@ -34,9 +34,9 @@ pub(super) fn by_increments(
     tidied(spec, algebra, &increments, &put)
 }
 
-/// The Lagrangian with terms of negative powers of the step taken together where values of fields cancel
-/// between them, `X'·X'/(2 h) - X'·X/h + X·X/(2 h)`: apart, each would act on the momentum with a
-/// force of the order of `1/h`.
+/// The Lagrangian in which terms with negative powers of the step size are combined if values of fields cancel
+/// between them, as in `X'·X'/(2 h) - X'·X/h + X·X/(2 h)`. Separately, each would exert a force of order `1/h` on the
+/// momentum.
 pub(super) fn gathered(spec: &Spec, algebra: &Algebra, ends: &[(Letter, Expr)]) -> Expr {
     let s = &spec.symbols;
     let fields = spec.configurations.iter().filter(|c| c.group.is_additive());
@@ -64,7 +64,7 @@ pub(super) fn gathered(spec: &Spec, algebra: &Algebra, ends: &[(Letter, Expr)]) 
     }
 }
 
-/// Whether it is divided by the step.
+/// Whether it is divided by the step size.
 pub(crate) fn is_singular(s: &Symbols, e: &Expr) -> bool {
     let holds_step = |e: &Expr| expr::contains_role(s, e, Role::Step);
     match e.node() {
@@ -77,7 +77,7 @@ pub(crate) fn is_singular(s: &Symbols, e: &Expr) -> bool {
     }
 }
 
-/// Sums in which values cancel, `X + ΔX - X`.
+/// Simplifies sums in which values cancel, `X + ΔX - X`.
 fn tidied(spec: &Spec, algebra: &Algebra, increments: &[Letter], e: &Expr) -> Expr {
     if !increments.iter().any(|l| expr::contains(e, *l)) {
         return e.clone();

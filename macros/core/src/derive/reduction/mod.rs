@@ -1,7 +1,6 @@
 //! Reduction of a model that is stated by its configuration at both ends of a step: `next(Λ)` becomes `Λ Ω` (or `ω
-//! Λ`), and the remaining `Λ` is absorbed by parameters, such as `z`: `Λ^T z` becomes an advected quantity. Takes a
-//! checked model; gives the reduced model, with the advected quantities of the statement. For fields, `next(X)`
-//! becomes `X + ΔX`.
+//! Λ`), and parameters such as `z` absorb the remaining `Λ`: `Λ^T z` becomes an advected quantity. Takes a checked
+//! model; gives the reduced model with these advected quantities. For fields, `next(X)` becomes `X + ΔX`.
 
 mod carry;
 mod element;
@@ -23,8 +22,8 @@ use crate::expr::{self, Expr, Letter, Shift};
 pub(crate) use increments::is_singular;
 use terms::Reducer;
 
-/// The reduced model; a model that has its velocities already is given back as it is. If no parameter absorbs a
-/// configuration, the statement stays as it is: the configuration then occurs in the equations.
+/// The reduced model; a model that is stated by velocities is unchanged. If no parameter absorbs a configuration, the
+/// statement is unchanged, and the equations contain the configuration.
 pub fn reduce(mut spec: Spec) -> Result<Spec, Errors> {
     let ends = increments::ends(&spec);
     let symbols = spec.symbols.clone();
@@ -66,7 +65,7 @@ pub fn reduce(mut spec: Spec) -> Result<Spec, Errors> {
         (new_edge, new_nodal) = (r.as_far_as_possible(&edge), r.as_far_as_possible(&nodal));
     }
     let (symbols, carried) = (r.symbols, r.carried);
-    // The proof: with the definitions put back, the reduced Lagrangian is the one that was stated.
+    // The proof: with the definitions substituted, the reduced Lagrangian equals the stated one.
     let definitions: Vec<(Letter, Expr)> = carried
         .iter()
         .map(|c| (at(c.quantity, Shift::HERE), c.definition.clone()))
@@ -103,8 +102,8 @@ pub fn reduce(mut spec: Spec) -> Result<Spec, Errors> {
     Ok(spec)
 }
 
-/// Constraints of advected quantities that hold a configuration at the end of the edge, by its velocity:
-/// `Y + next(X) - X` as `Y + ΔX`. Only so can it be seen that what they state is an action.
+/// Constraints of advected quantities that contain a configuration at the end of the edge, expressed by its velocity:
+/// `Y + next(X) - X` becomes `Y + ΔX`. Only this form shows that they state an action.
 fn put_velocities_in(spec: &mut Spec, algebra: &Algebra, ends: &[(Letter, Expr)]) {
     let symbols = algebra.symbols();
     let forward = configurations_at_the_end(spec);
@@ -125,7 +124,7 @@ fn put_velocities_in(spec: &mut Spec, algebra: &Algebra, ends: &[(Letter, Expr)]
     }
 }
 
-/// Every configuration at the end of the edge, by its constraint.
+/// Every configuration at the end of the edge, expressed by its constraint.
 fn configurations_at_the_end(spec: &Spec) -> Vec<(Letter, Expr)> {
     let list = spec.configurations.iter();
     list.map(|c| (at(c.element, Shift::NEXT), c.update.clone()))

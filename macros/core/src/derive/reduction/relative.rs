@@ -1,6 +1,6 @@
-//! Elements of SU(2) and SE(3) that occur only relative to one another: several bodies are written by the first one
+//! Elements of SU(2) and SE(3) that occur only relative to one another: several bodies are expressed by the first one
 //! and the relative motions. If the first one cancels, the relative motions are the advected quantities. Takes
-//! numbers; gives them in relative motions, which it declares.
+//! scalars; gives them in relative motions, which it declares.
 
 use super::settle::settled;
 use super::terms::{Carried, Reducer};
@@ -10,11 +10,11 @@ use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, SymbolId};
 use crate::expr::{self, Expr, Letter, Shift};
 
-/// The frame of a body, by its element; with `true` by the rotation of that element alone.
+/// The frame of a body, given by its element; with `true`, by the rotation of that element only.
 pub(super) type Frame = (SymbolId, bool);
 
 impl<'a> Reducer<'a> {
-    /// A number in relative motions, where no element is left over.
+    /// A scalar in relative motions, if no element remains.
     pub(super) fn relative(&mut self, e: &Expr) -> Option<Expr> {
         let used = expr::letters(e);
         let all = self.spec.configurations.iter();
@@ -29,7 +29,7 @@ impl<'a> Reducer<'a> {
         if others.is_empty() || !others.iter().all(same) {
             return None;
         }
-        // On trial: the quantities are kept only if they help.
+        // The quantities are kept only if the reduction succeeds.
         let known = (self.symbols.clone(), self.carried.len());
         let replaced: Vec<(Letter, Expr)> = others
             .iter()
@@ -52,7 +52,7 @@ impl<'a> Reducer<'a> {
         Some(e)
     }
 
-    /// The element of a body, written by the element of the first body: `G1 (G1^-1 G2)`, or `(G1 G2^-1)^-1 G1`.
+    /// The element of a body, expressed by the element of the first body: `G1 (G1^-1 G2)`, or `(G1 G2^-1)^-1 G1`.
     fn by_first(&mut self, first: &Configuration, c: &Configuration) -> Expr {
         let between = self.motion_between(first, c);
         let g = expr::here(&self.symbols, first.element);
@@ -63,7 +63,7 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// The relative motion, written by advected ones, or a new one.
+    /// The relative motion, expressed by advected ones, or a new one.
     fn motion_between(&mut self, a: &Configuration, b: &Configuration) -> Expr {
         if let Some(path) = self.path((a.element, false), (b.element, false)) {
             return expr::product(path);
@@ -102,7 +102,7 @@ impl<'a> Reducer<'a> {
     }
 
     /// The path from one body's frame to another's by relative elements that are already advected: three bodies need
-    /// two of them, whatever pairs the statement names. Whole elements also give their rotations.
+    /// two of them, for any pairs in the statement. Whole elements also give their rotations.
     pub(super) fn path(&self, from: Frame, to: Frame) -> Option<Vec<Expr>> {
         let mut reached: Vec<(Frame, Vec<Expr>)> = vec![(from, Vec::new())];
         let mut k = 0;

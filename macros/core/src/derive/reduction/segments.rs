@@ -1,5 +1,5 @@
-//! Segments of words: an element, constants, an element again or the end. Each becomes one advected quantity. Takes
-//! words; gives their factors with quantities in place of the segments.
+//! Segments of words: an element, constants, and another element or the end. Each becomes one advected quantity.
+//! Takes words; gives their factors with quantities in place of the segments.
 
 use super::element::Open;
 use super::terms::{LeftOver, Reduced, Reducer};
@@ -8,7 +8,7 @@ use crate::expr::shape::{Dim, Shape};
 use crate::expr::{self, Expr};
 
 impl Reducer<'_> {
-    /// The factors of a word, segments that hold elements replaced by quantities.
+    /// The factors of a word, with quantities in place of segments that contain elements.
     pub(super) fn word(&mut self, word: &[Factor], cyclic: bool) -> Result<Vec<Expr>, LeftOver> {
         let (minus, whole) = self.in_motions(word);
         let turns = if cyclic { whole.len() } else { 1 };
@@ -29,7 +29,7 @@ impl Reducer<'_> {
         }
     }
 
-    /// Ranges of factors, in order, that together with constants absorb every element.
+    /// Ranges of factors, in order, in which constants absorb every element.
     fn segments(&self, w: &[Factor]) -> Option<Vec<(usize, usize)>> {
         let n = w.len();
         let opens: Vec<Option<Open>> = w.iter().map(|f| self.open(f)).collect();
@@ -50,7 +50,7 @@ impl Reducer<'_> {
                     } else if column {
                         n
                     } else {
-                        // A parameter with one index of either kind.
+                        // A parameter with one index of each kind.
                         1 + (i + 1..stop).find(|j| self.absorbs(&w[*j]))?
                     };
                     out.push((i, end));

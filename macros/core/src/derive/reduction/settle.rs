@@ -1,6 +1,6 @@
 //! Parts of an expression in which the elements cancel, written without them: `q^T next(q)` becomes the velocity
-//! wherever it occurs, so that the statement otherwise keeps its form. Takes expressions in elements and
-//! velocities; gives equal ones.
+//! wherever it occurs, and the statement otherwise keeps its form. Takes expressions in elements and velocities;
+//! gives equal ones.
 
 use crate::algebra::{Algebra, Factor, Poly};
 use crate::expr::{self, Expr, Map, Node};

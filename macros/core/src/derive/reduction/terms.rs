@@ -1,5 +1,5 @@
-//! Terms of an unreduced Lagrangian: sums and products as they were written, and the numbers in them by their
-//! normal form, word by word. Takes expressions in elements and velocities; gives them in velocities and advected
+//! Terms of an unreduced Lagrangian: sums and products keep their form, and scalars in them are reduced in normal
+//! form, word by word. Takes expressions in elements and velocities; gives them in velocities and advected
 //! quantities, or the word that still contains an element.
 
 use super::element::Open;
@@ -21,7 +21,7 @@ pub(super) struct Carried {
     pub(super) update: Expr,
 }
 
-/// An element of the group is left over.
+/// An element of the group remains.
 pub(super) struct LeftOver;
 
 pub(super) type Reduced = Result<Expr, LeftOver>;
@@ -37,7 +37,7 @@ pub(super) struct Reducer<'a> {
 }
 
 impl<'a> Reducer<'a> {
-    /// With nothing found yet.
+    /// With no quantities yet.
     pub(super) fn new(spec: &'a Spec, algebra: &'a Algebra<'a>) -> Reducer<'a> {
         Reducer {
             spec,
@@ -49,17 +49,17 @@ impl<'a> Reducer<'a> {
 }
 
 impl<'a> Reducer<'a> {
-    /// A number: parts in which the elements cancel come first, then the rest.
+    /// A scalar: parts in which the elements cancel come first, then the rest.
     pub(super) fn reduced(&mut self, e: &Expr) -> Reduced {
         let holds = |e: &Expr| self.holds_element(e);
         let e = settled(self.algebra, &holds, e);
         self.number(&e)
     }
 
-    /// The same term by term, each that no parameter absorbs as it is.
+    /// The scalar reduced term by term; a term that no parameter absorbs is unchanged.
     pub(super) fn as_far_as_possible(&mut self, e: &Expr) -> Expr {
         if let Ok(whole) = self.clone().reduced(e) {
-            // Once more for what it finds.
+            // Once more, with the quantities that were found.
             return self.reduced(e).unwrap_or(whole);
         }
         let terms =
@@ -72,7 +72,7 @@ impl<'a> Reducer<'a> {
         expr::sum(terms.collect::<Vec<_>>(), Shape::SCALAR)
     }
 
-    /// A number, its sums and products kept as they were written.
+    /// A scalar whose sums and products keep their form.
     pub(super) fn number(&mut self, e: &Expr) -> Reduced {
         if !self.holds_element(e) {
             return Ok(e.clone());
@@ -125,7 +125,7 @@ impl<'a> Reducer<'a> {
         Some(expr::dot(u, expr::mul(piece.clone(), v)))
     }
 
-    /// The element that every term of a vector starts with, and the rest, which holds none.
+    /// The element with which every term of a vector starts, and the rest, if it contains no element.
     fn front(&self, e: &Expr) -> Option<(Factor, Expr)> {
         let poly = self.algebra.lower(e);
         let mut rest = Poly::zero(poly.shape);
@@ -224,7 +224,7 @@ impl<'a> Reducer<'a> {
         })
     }
 
-    /// A value of a functional: what it is made from is reduced, nothing comes out of it.
+    /// A value of a functional: its arguments are reduced, and nothing is factored out.
     fn functional(&mut self, e: &Expr) -> Reduced {
         let mut refused = None;
         let symbols = self.symbols.clone();
@@ -261,7 +261,7 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// `det Q` of an element of GL(n), multiplied in each step by the determinant of the velocity.
+    /// `det Q` of an element of GL(n), which each step multiplies by the determinant of the velocity.
     fn determinant(&mut self, l: Letter) -> Expr {
         let element = expr::letter(&self.symbols, l.symbol, l.shift);
         let velocity = self.configuration(l.symbol).map(|c| c.velocity);
@@ -270,7 +270,7 @@ impl<'a> Reducer<'a> {
             transposed: false,
             inverted: false,
         };
-        // The word of the element alone names its determinant: no segment is one element.
+        // The word of the element alone identifies its determinant, because no segment is a single element.
         let word = vec![factor];
         if let Some(c) = self.carried.iter().find(|c| c.word == word) {
             return expr::here(&self.symbols, c.quantity);

@@ -1,6 +1,6 @@
-//! Assumptions that say nothing: met by every choice of the parameters, or by none. Takes the
-//! assumptions; gives warnings. That an equation always holds is proved; the rest is tried from
-//! fixed starts over twelve orders of magnitude, which may err for bounds that are very narrow.
+//! Assumptions without content: all choices of the parameters satisfy them, or none. Takes the assumptions; gives
+//! warnings. That an equation always holds is proved. All else is tried from fixed starts over twelve orders of
+//! magnitude, which may fail for very narrow bounds.
 
 use super::draw::{self, Draw};
 use super::feasible::{Budget, Condition, Problem};
@@ -14,10 +14,10 @@ use crate::expr::{self, Expr};
 use crate::interpret::Assignment;
 use crate::syntax::ast::Comparison;
 
-/// Nodes evaluated for the assumptions of one model.
+/// The limit on nodes evaluated for the assumptions of one model.
 const NODES: u64 = 200_000;
 
-/// Starts that are tried.
+/// The number of starts that are tried.
 const STARTS: u64 = 16;
 
 /// The warnings.
@@ -64,7 +64,7 @@ pub(super) fn assumptions(x: &Inputs) -> Vec<Warning> {
     out
 }
 
-/// Values near the given ones that the assumptions admit; the given values if there are no such values.
+/// Values near the given ones that the assumptions admit; otherwise the given values.
 pub(super) fn admitted(x: &Inputs, values: Assignment) -> Option<Assignment> {
     if x.spec.assumptions.is_empty() {
         return Some(values);
@@ -87,7 +87,8 @@ fn shown(x: &Inputs, a: &Assumption) -> String {
     format!("`{} {relation} {}`", x.text(&a.left), x.text(&a.right))
 }
 
-/// Whether the ranges of functions show that it always holds: a number that underflows says otherwise.
+/// Whether the ranges of functions show that the assumption always holds; underflow would contradict this
+/// numerically.
 fn by_range(left: &Expr, relation: Comparison, right: &Expr) -> bool {
     if !left.shape().is_scalar() {
         return false;
@@ -127,7 +128,7 @@ fn never(s: &Symbols, list: &[&Assumption], budget: &Budget) -> bool {
     fails(s, &conditions, budget)
 }
 
-/// Whether no start leads to values that meet all conditions; `false` when that was not decided.
+/// Whether no start leads to values that satisfy all conditions; `false` if this is undecided.
 fn fails(s: &Symbols, conditions: &[Condition], budget: &Budget) -> bool {
     let Some(problem) = Problem::new(s, conditions, budget) else {
         return false;
@@ -139,8 +140,8 @@ fn fails(s: &Symbols, conditions: &[Condition], budget: &Budget) -> bool {
     !found && !budget.is_spent()
 }
 
-/// The values of a start: as a user would give them, zero, one, and of either sign over twelve
-/// orders of magnitude.
+/// The values of a start: as a user would give them, zero, one, and values of either sign over twelve orders of
+/// magnitude.
 fn start(s: &Symbols, letters: &[SymbolId], seed: u64) -> Assignment {
     let mut source = Draw::new(seed.wrapping_mul(977));
     let mut values = draw::nothing(s);

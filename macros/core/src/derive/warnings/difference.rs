@@ -1,5 +1,5 @@
-//! Total differences `F(end) - F(start)` and constants: what the motion does not depend on. Takes terms
-//! of the action; says whether they are one, decided at exact points.
+//! Total differences `F(end) - F(start)` and constants, which do not affect the motion. Takes terms of the action;
+//! decides at exact points whether they are one of these.
 
 use super::{Inputs, LARGEST};
 use crate::derive::lie;
@@ -7,10 +7,10 @@ use crate::derive::reversal::by_configuration;
 use crate::derive::variation::at;
 use crate::expr::{self, Expr, Function, Letter, Node, Shift};
 
-/// Most nodes that are differentiated, over all pairs of ends.
+/// The limit on differentiated nodes, over all pairs of ends.
 const EVALUATED: u64 = 100_000;
 
-/// Whether an expression does not change when a node moves, velocities on its outgoing edge with it.
+/// Whether an expression is unchanged if a node moves together with the velocities on its outgoing edge.
 pub(super) fn is_kept(x: &Inputs, e: &Expr) -> bool {
     kept(x, &smoothed(x, e))
 }
@@ -36,8 +36,8 @@ fn kept(x: &Inputs, e: &Expr) -> bool {
     })
 }
 
-/// The derivatives of an expression as the element at the end of the edge moves and that at its start
-/// stays: the velocity alone changes.
+/// The derivatives of an expression if the element at the end of the edge moves and the element at its start is
+/// fixed, so that only the velocity changes.
 fn at_the_end<'a>(x: &'a Inputs, e: &'a Expr) -> impl Iterator<Item = Expr> + 'a {
     let s = &x.letters.symbols;
     let ends = x.spec.configurations.iter().zip(&x.letters.direction);
@@ -50,22 +50,22 @@ fn at_the_end<'a>(x: &'a Inputs, e: &'a Expr) -> impl Iterator<Item = Expr> + 'a
     })
 }
 
-/// The expression by the velocities and the configuration at the start of the edge.
+/// The expression in the velocities and the configuration at the start of the edge.
 pub(super) fn on_edge(x: &Inputs, e: &Expr) -> Expr {
     let e = expr::substitute(&x.letters.symbols, e, &x.spec.end_of_edge());
     by_configuration(x.spec, &e)
 }
 
-/// Whether `e`, of [`on_edge`], is constant along every motion.
+/// Whether `e`, from [`on_edge`], is constant along every motion.
 pub(super) fn is_constant(x: &Inputs, e: &Expr) -> bool {
     let e = &smoothed(x, e);
     kept(x, e) && at_the_end(x, e).all(|d| x.vanishes(&d))
 }
 
-/// Whether `e` is `F(q1, h) - F(q0, h)`, a constant among them: no derivative of it mixes its two ends, it is
-/// constant where they meet, and its derivative at its end is that a step later. `false` for an expression that is
-/// too large, and for a difference over which a clock advances. If the clock in it does not advance, the term is a
-/// force: `A(t)*(next(X) - X)` is the force `-dA/dt`.
+/// Whether `e` is `F(q1, h) - F(q0, h)` or a constant. No derivative of `e` may mix its two ends, `e` must be
+/// constant where they coincide, and clocks must not change the derivative at its end from one step to the next.
+/// `false` for an expression that is too large, and for a difference over which a clock advances. If the clock in the
+/// term does not advance, the term is a force: `A(t)*(next(X) - X)` is the force `-dA/dt`.
 pub(super) fn is_total(x: &Inputs, e: &Expr) -> bool {
     let e = smoothed(x, &on_edge(x, e));
     let pairs = (x.spec.configurations.len() as u64).pow(2);
@@ -88,7 +88,7 @@ pub(super) fn is_total(x: &Inputs, e: &Expr) -> bool {
     kept(x, &met) && ends.all(|d| d.size() <= LARGEST && kept(x, &d) && goes_on(&d))
 }
 
-/// The clocks of an expression, each by its value at the node after.
+/// The clocks of an expression, each with its value at the next node.
 fn a_step_later(x: &Inputs, e: &Expr) -> Vec<(Letter, Expr)> {
     let clocks = x.spec.clocks();
     let advected = x.spec.advected.iter();

@@ -1,16 +1,15 @@
-//! Real values of letters by their structure, from a fixed seed: what a user would give, with
-//! symmetric matrices positive definite and numbers positive. Takes symbols; gives assignments for
-//! [`interpret`](crate::interpret).
+//! Real values of letters by their structure, from a fixed seed, as a user would give them: symmetric matrices are
+//! positive definite and scalars positive. Takes symbols; gives assignments for [`interpret`](crate::interpret).
 
 use crate::expr::shape::{Dim, Structure};
 use crate::expr::symbol::{SymbolId, Symbols};
 use crate::interpret::Assignment;
 
-/// A source of numbers that gives the same ones in every run (SplitMix64).
+/// A source of numbers that are equal in every run (SplitMix64).
 pub(super) struct Draw(u64);
 
 impl Draw {
-    /// From a seed.
+    /// A source with this seed.
     pub(super) fn new(seed: u64) -> Draw {
         Draw(seed)
     }
@@ -31,20 +30,20 @@ impl Draw {
     }
 }
 
-/// The size that a dimension has here: its smallest.
+/// The size of a dimension here, which is its smallest.
 pub(super) fn size(symbols: &Symbols, d: Dim) -> usize {
     symbols.sizes(d).0
 }
 
-/// No values yet; dimensions that have only a name take their smallest size.
+/// No values yet; named dimensions have their smallest size.
 pub(super) fn nothing(symbols: &Symbols) -> Assignment {
     let sizes = (0..symbols.dim_count()).map(|i| size(symbols, Dim::Named(i)));
     Assignment::new().sized(sizes.collect())
 }
 
-/// A value of a letter as a user would give it: positive numbers, symmetric matrices positive
-/// definite, elements of groups. Vectors, skew matrices and matrices without structure, which may
-/// couple what the others move, are multiplied by `scale`; numbers spread as it shrinks.
+/// A value of a letter as a user would give it: positive scalars, positive definite symmetric matrices, elements of
+/// groups. Vectors, skew matrices and matrices without structure may couple other motions; they are multiplied by
+/// `scale`. The spread of scalars increases as `scale` decreases.
 pub(super) fn natural(symbols: &Symbols, id: SymbolId, scale: f64, draw: &mut Draw) -> Vec<f64> {
     let symbol = symbols.get(id);
     let (n, m) = (
@@ -118,7 +117,7 @@ fn positive_definite(n: usize, draw: &mut Draw) -> Vec<f64> {
     (0..n * n).map(|k| entry(k / n, k % n)).collect()
 }
 
-/// A product of one turn in every coordinate plane.
+/// A product of one rotation in every coordinate plane.
 fn rotation(n: usize, draw: &mut Draw) -> Vec<f64> {
     let mut r: Vec<f64> = (0..n * n)
         .map(|k| f64::from(u8::from(k / n == k % n)))
@@ -166,7 +165,7 @@ mod tests {
             let size = n as usize;
             let rotation = drawn(n, Structure::Orthogonal);
             assert!(is_orthogonal(size, &rotation));
-            // No axis is left where it is.
+            // No axis is fixed.
             assert!((0..size).all(|i| rotation[i * size + i].abs() < 1.0));
             let skew = drawn(n, Structure::Skew);
             let symmetric = drawn(n, Structure::Symmetric);

@@ -1,4 +1,4 @@
-//! Parameters and abbreviations that nothing uses, and functions that are not smooth. Takes the model; gives warnings.
+//! Unused parameters and abbreviations, and functions that are not smooth. Takes the model; gives warnings.
 
 use super::{Inputs, Topic, Warning};
 use crate::diagnostic::{Diagnostic, Place};
@@ -43,7 +43,7 @@ pub(super) fn parameters(x: &Inputs) -> Vec<Warning> {
         .collect()
 }
 
-/// The warning of an abbreviation that nothing uses.
+/// The warning about an unused abbreviation.
 pub(crate) fn unused_let(name: &str, place: Place) -> Warning {
     let message = format!("`{name}` is named by `let` and never used: it has no effect");
     let help = match unknown::is_force(name) {
@@ -53,7 +53,7 @@ pub(crate) fn unused_let(name: &str, place: Place) -> Warning {
     Warning::new(Topic::UnusedLet, Diagnostic::new(place, message).help(help))
 }
 
-/// One warning for each absolute value or sign of what moves.
+/// One warning for each absolute value or sign of a moving quantity.
 pub(super) fn kinks(x: &Inputs) -> Vec<Warning> {
     let s = &x.letters.symbols;
     let moving = |e: &Expr| {

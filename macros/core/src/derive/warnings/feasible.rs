@@ -1,6 +1,6 @@
-//! Parameters that meet conditions: the coordinates in which they may vary and a damped
-//! Gauss-Newton iteration from given values. Takes equations and inequalities between parameters;
-//! gives values that satisfy them, or none. Bounded: work is counted in nodes evaluated.
+//! Parameters that satisfy conditions: the coordinates in which they may vary, and a damped Gauss-Newton iteration
+//! from given values. Takes equations and inequalities between parameters; gives values that satisfy them, or None.
+//! The work is bounded, in nodes evaluated.
 
 use super::draw;
 use crate::check::spec::Assumption;
@@ -19,19 +19,19 @@ pub(super) struct Condition {
     relation: Comparison,
 }
 
-/// Equal to this part of the size of the terms counts as equal.
+/// Two values count as equal if they differ by less than this fraction of the size of their terms.
 const EQUAL: f64 = 1e-9;
 
 /// The relative margin by which an inequality must hold, so that rounding does not matter.
 const CLEAR: f64 = 1e-6;
 
 impl Condition {
-    /// An assumption.
+    /// The condition of an assumption.
     pub(super) fn of(symbols: &Symbols, a: &Assumption) -> Condition {
         Condition::new(symbols, a, a.relation)
     }
 
-    /// That an inequality does not hold; nothing for an equation.
+    /// The condition that an inequality does not hold; None for an equation.
     pub(super) fn opposite(symbols: &Symbols, a: &Assumption) -> Option<Condition> {
         Some(Condition::new(symbols, a, a.relation.opposite()?))
     }
@@ -45,22 +45,22 @@ impl Condition {
         }
     }
 
-    /// Nodes that one evaluation visits.
+    /// The number of nodes that one evaluation visits.
     fn cost(&self) -> u64 {
         u64::from(self.difference.size()) + u64::from(self.bound.size())
     }
 }
 
-/// The work that is left.
+/// The remaining work.
 pub(super) struct Budget(Cell<u64>);
 
 impl Budget {
-    /// So many nodes.
+    /// A budget of this many nodes.
     pub(super) fn new(nodes: u64) -> Budget {
         Budget(Cell::new(nodes))
     }
 
-    /// Whether it is used up: what was not found may still exist.
+    /// Whether the budget is used up, so that an unsuccessful search proves nothing.
     pub(super) fn is_spent(&self) -> bool {
         self.0.get() == 0
     }
@@ -72,7 +72,7 @@ impl Budget {
     }
 }
 
-/// Conditions on some parameters, with the entries in which those may vary.
+/// Conditions on some parameters, with the entries that may vary.
 pub(super) struct Problem<'a> {
     symbols: &'a Symbols,
     conditions: &'a [Condition],
@@ -81,10 +81,10 @@ pub(super) struct Problem<'a> {
     budget: &'a Budget,
 }
 
-/// Most entries that vary together.
+/// The largest number of entries that vary together.
 const MOST: usize = 48;
 
-/// Iterations from one start.
+/// The number of iterations from one start.
 const ITERATIONS: usize = 40;
 
 impl<'a> Problem<'a> {
@@ -104,7 +104,7 @@ impl<'a> Problem<'a> {
             let size = |d| draw::size(symbols, d);
             let (rows, cols) = (size(symbol.shape.rows), size(symbol.shape.cols));
             match symbol.structure {
-                // These vary along curves; they keep the value they start with.
+                // These vary along curves, so they keep their initial value.
                 Structure::Orthogonal | Structure::UnitQuaternion | Structure::RigidMotion => {}
                 other => {
                     let entries = bracket::coordinates(other, rows, cols).into_iter();
@@ -126,7 +126,7 @@ impl<'a> Problem<'a> {
         &self.letters
     }
 
-    /// Whether the values meet every condition, with nothing to spare.
+    /// Whether the values satisfy every condition exactly as stated, without a margin.
     pub(super) fn holds(&self, values: &Assignment) -> bool {
         let mut all = self.conditions.iter();
         all.all(|c| match self.measured(c, values) {
@@ -182,7 +182,7 @@ impl<'a> Problem<'a> {
         None
     }
 
-    /// Left side less right side, and a bound of the size of their terms.
+    /// Left side minus right side, and a bound of the size of their terms.
     fn measured(&self, c: &Condition, values: &Assignment) -> Option<(Matrix, f64)> {
         self.budget.take(c.cost())?;
         let d = evaluate(self.symbols, &c.difference, values).ok()?;
@@ -191,7 +191,7 @@ impl<'a> Problem<'a> {
         finite.then_some((d, bound))
     }
 
-    /// A vector that vanishes if all conditions hold by a clear margin.
+    /// A vector that vanishes if all conditions hold by the margin [`CLEAR`].
     fn residual(&self, values: &Assignment) -> Option<Vec<f64>> {
         let mut out = Vec::new();
         for c in self.conditions {
@@ -214,7 +214,7 @@ impl<'a> Problem<'a> {
         found.map_or(0.0, |m| m.get(i, j))
     }
 
-    /// The values with every free entry moved, and its mirror image.
+    /// The values with every free entry changed; the mirrored entry changes too.
     fn moved(&self, values: &Assignment, by: impl Fn(usize) -> f64) -> Assignment {
         let mut out = values.clone();
         for id in &self.letters {

@@ -1,5 +1,5 @@
-//! Whether the action of a step has a limit of small steps. Takes the limit as derived; gives the warning if it
-//! does not, with the reason.
+//! Whether the action of a step has a limit of small steps. Takes the derived limit; gives the warning with its
+//! reason if there is none.
 
 use super::terms::{action_of, place, typed};
 use super::{Inputs, Topic, Warning};
@@ -48,7 +48,8 @@ pub(super) fn limit(x: &Inputs) -> Option<Warning> {
     Some(Warning::new(Topic::NoLimit, d))
 }
 
-/// The warning of a Lagrangian per unit time, which times the step is one of a step: `m*v^2/2 - V` with `v = (next(x) - x)/h`.
+/// The warning about a Lagrangian per unit time, which must be multiplied by the step size, such as `m*v^2/2 - V`
+/// with `v = (next(x) - x)/h`.
 pub(super) fn per_unit_time(x: &Inputs) -> Option<Warning> {
     if x.limit.as_ref().err()? != limit::STANDING {
         return None;
@@ -60,7 +61,7 @@ pub(super) fn per_unit_time(x: &Inputs) -> Option<Warning> {
         limit_of(x, &action, &algebra)
     };
     let whole = of_step(&x.spec.typed).ok()?;
-    // A potential that has the step already would vanish.
+    // A potential that already contains the step size would vanish.
     let vanishes = |term: &Expr| of_step(term).is_ok_and(|limit| limit.lagrangian.is_zero());
     let (_, all) = typed(x);
     if whole.kinetic.is_zero() || all.iter().any(vanishes) || algebra.exhausted() {
@@ -82,7 +83,7 @@ fn limit_of(x: &Inputs, action: &Action, algebra: &Algebra<'_>) -> Result<Limit,
     limit::limit(x.spec, x.letters, action, x.variations, x.assumed, algebra)
 }
 
-/// The first term that has by itself no limit, for the same reason; none if this is true of every term.
+/// The first term without a limit of its own, for the same reason; None if this holds for every term.
 fn blamed(x: &Inputs, terms: &[Expr], why: &str) -> Option<Expr> {
     let without = |term: &&Expr| {
         let algebra = x.engine();

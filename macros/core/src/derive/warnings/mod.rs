@@ -1,7 +1,7 @@
-//! Warns about models that derive but are probably not intended: no kinetic energy, a wrong sign, a step of first
-//! order that looks symmetric, parameters and terms without effect, assumptions that say nothing. Takes a
-//! derivation's parts; gives warnings, each with its tokens and a way out. Nothing here changes the derivation, and
-//! the work is bounded: an expression that is too large to decide gives no warning.
+//! Warns about valid models that are probably not intended: no kinetic energy, a wrong sign, a step of first order
+//! that looks symmetric, parameters and terms without effect, assumptions without content. Takes a derivation's
+//! parts; gives warnings, each with its tokens and a remedy. The warnings do not change the derivation, and the work
+//! is bounded: an expression that is too large to decide gives no warning.
 
 mod assumptions;
 mod difference;
@@ -44,15 +44,15 @@ pub enum Topic {
     SignOfKineticEnergy,
     /// The step is not symmetric under time reversal, although the model does not request a one-sided rule.
     FirstOrder,
-    /// A parameter that is used nowhere.
+    /// A parameter that is not used.
     UnusedParameter,
-    /// An abbreviation that is used nowhere.
+    /// An abbreviation that is not used.
     UnusedLet,
     /// A potential, or a term, that is constant along every motion.
     ConstantTerm,
     /// A function of a moving quantity that is not differentiable everywhere.
     NotSmooth,
-    /// An assumption that every choice of the parameters meets, or none.
+    /// An assumption that every choice of the parameters satisfies, or none.
     Assumption,
     /// A term of a chain that contains one neighbour and not the site itself.
     OneNeighbour,
@@ -81,7 +81,7 @@ impl Topic {
 pub struct Warning {
     /// The topic.
     pub topic: Topic,
-    /// Its tokens, its words and the way out.
+    /// Its tokens, its text and a remedy.
     pub diagnostic: Diagnostic,
 }
 
@@ -102,7 +102,7 @@ impl Warning {
     }
 }
 
-/// The parts of a derivation that warnings are made from.
+/// The parts of a derivation that the warnings use.
 pub(crate) struct Inputs<'a> {
     pub(crate) spec: &'a Spec,
     pub(crate) letters: &'a Letters,
@@ -116,11 +116,11 @@ pub(crate) struct Inputs<'a> {
     pub(crate) algebra: &'a Algebra<'a>,
 }
 
-/// Largest expression that is evaluated at points.
+/// The size of the largest expression that is evaluated at points.
 const LARGEST: u32 = 20_000;
 
 impl Inputs<'_> {
-    /// A kinetic term and a potential as this model would state them, to show in advice.
+    /// A kinetic term and a potential in the notation of this model, for advice.
     fn examples(&self) -> [String; 2] {
         let first = self.spec.configurations.first();
         match first.filter(|_| self.spec.has_only_fields()) {
@@ -138,13 +138,13 @@ impl Inputs<'_> {
         }
     }
 
-    /// Whether an expression vanishes for all admitted parameters: at exact points. Expressions that are too large
-    /// count as not vanishing.
+    /// Whether an expression vanishes for all admitted parameters, tested at exact points. Expressions that are too
+    /// large count as not vanishing.
     fn vanishes(&self, e: &Expr) -> bool {
         e.size() <= LARGEST && assumed::vanishes(&self.letters.symbols, self.assumed, e)
     }
 
-    /// An engine for further decisions, with the work that is left.
+    /// An engine for further decisions, with the remaining work.
     fn engine(&self) -> Algebra<'_> {
         self.algebra.over(&self.letters.symbols)
     }
@@ -161,9 +161,8 @@ impl Inputs<'_> {
         )
     }
 
-    /// The action with the symmetric part in place of every square parameter matrix without structure: a model for all
-    /// matrices, such as one with a general left factor, is judged by symmetric ones. `None` if there is no such
-    /// parameter.
+    /// The action with the symmetric part in place of every square parameter matrix without structure: a model with a
+    /// general left factor is judged by symmetric ones. `None` if the model contains no such parameter.
     fn for_symmetric_matrices(&self, action: &Action) -> Option<Action> {
         let s = &self.letters.symbols;
         let symmetric: Vec<(Letter, Expr)> = self

@@ -1,5 +1,5 @@
-//! Checks whether a step that looks symmetric is symmetric. Takes the reversal as derived; gives the warning that
-//! the action is not self-adjoint, at the terms that cause it, unless the model asks for such a step.
+//! Checks whether a step that looks symmetric is symmetric. Takes the derived reversal; gives the warning that the
+//! action is not self-adjoint, at the terms that cause it, unless the model requests such a step.
 
 use super::terms::{action_of, place, typed};
 use super::{Inputs, Topic, Warning, difference};
@@ -12,16 +12,16 @@ use crate::expr::shape::Shape;
 use crate::expr::{self, Expr, Function, Node, Shift};
 use crate::syntax::ast::NodeRule;
 
-/// The warning, if the action is not self-adjoint and no rule of one side explains it.
+/// The warning, if the action is not self-adjoint and no one-sided rule explains it.
 pub(super) fn order(x: &Inputs) -> Option<Warning> {
     let Reversal::Broken(left) = x.reversal else {
         return None;
     };
-    // A clock that does not go back says nothing of the order of a step.
+    // A clock that does not return has no effect on the order of a step.
     if reversal::clock_left(x.spec, x.action, &x.engine()).is_some() {
         return None;
     }
-    // `node incoming` and `node outgoing` ask for first order: what counts is whether the step were
+    // `node incoming` and `node outgoing` request first order. The question is then whether the step would be
     // symmetric without them.
     let (action, left) = if x.spec.node_rule == NodeRule::Symmetric {
         (x.action.clone(), left.clone())
@@ -152,8 +152,8 @@ fn is_undecided(x: &Inputs, e: &Expr) -> bool {
 /// The largest sum that is shown.
 const SHOWN: u32 = 40;
 
-/// The sum of terms and their reverses, in the shorter of two forms: as it is, or in normal form. `None` if both
-/// are too long to read.
+/// The sum of terms and their reverses, in the shorter of two forms: directly or in normal form. `None` if both are
+/// too long to read.
 fn shown(x: &Inputs, terms: &[(Expr, Expr)]) -> Option<Expr> {
     let sums = terms.iter().map(|(_, sum)| sum.clone());
     let sum = expr::sum(sums, Shape::SCALAR);
@@ -167,7 +167,7 @@ fn shown(x: &Inputs, terms: &[(Expr, Expr)]) -> Option<Expr> {
 }
 
 /// The terms, as typed, that are not self-adjoint, each with the sum of the term and its reverse. Terms that are
-/// self-adjoint together are left out, and if all terms are to blame, none is named.
+/// self-adjoint together are omitted; if all terms are to blame, none is named.
 fn blamed(x: &Inputs, terms: Vec<Expr>) -> Vec<(Expr, Expr)> {
     let count = terms.len();
     let mut found: Vec<(Expr, Expr)> = Vec::new();
@@ -189,7 +189,7 @@ fn blamed(x: &Inputs, terms: Vec<Expr>) -> Vec<(Expr, Expr)> {
     }
 }
 
-/// A term and its reverse, where they do not add up to a total difference.
+/// A term and its reverse, if their sum is not a total difference.
 fn left_over(x: &Inputs, term: &Expr) -> Option<Expr> {
     let action = action_of(x, term);
     let symmetric = |a: &Action| reversed(x, a).is_some_and(|r| r.is_symmetric());

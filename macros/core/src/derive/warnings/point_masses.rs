@@ -1,5 +1,5 @@
-//! Point masses held at a distance: second moments of rank one, so that the spin about the line to the origin is
-//! without inertia. The derivation reports this, and promises neither a step nor a bounded energy.
+//! Point masses at a fixed distance: second moments of rank one, so that there is no inertia about the line to the
+//! origin. The derivation reports this, and promises neither a step nor a bounded energy.
 
 use super::Topic::DegenerateKineticEnergy;
 use crate::derive::Derivation;
@@ -22,8 +22,8 @@ fn text(d: &Derivation) -> String {
 
 const REFUSED: &str = "every choice of the parameters is refused at the start";
 
-/// Stated by second moments, by positions in the body and in space, from space, in four dimensions
-/// with two masses, forced and free.
+/// Stated by second moments, by positions in the body and in space, with spatial velocities, in four dimensions with
+/// two masses, forced and free.
 const STATED: [&str; 6] = [
     "param m, g: Real; param a: Vec<3>; group Λ: SO<3> velocity Ω; advected Γ: Vec<3>; \
      constraint next(Λ) = Λ*Ω; constraint next(Γ) = Ω^T*Γ; \
@@ -95,7 +95,7 @@ fn the_way_out_is_one() {
         );
         assert!(!text.contains("makes no step"), "{text}");
     }
-    // Two masses on different lines are a flat body.
+    // Two masses on different lines form a flat body.
     let flat = "param a, b: Vec<3>; group Λ: SO<3> velocity Ω; constraint next(Λ) = Λ*Ω; \
                 lagrangian = -tr((a*a^T + b*b^T)*Ω)/h;";
     let d = derived(flat);

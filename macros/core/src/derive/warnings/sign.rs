@@ -1,6 +1,6 @@
-//! The sign of the kinetic energy. Takes the quadratic form; gives the warnings that it does not
-//! see every velocity, or is not positive for parameters as a user would give them. For given
-//! parameters the emitted code says the same of the state it starts from.
+//! The sign of the kinetic energy. Takes the quadratic form; gives the warnings that it does not depend on every
+//! velocity, or is not positive for parameters as a user would give them. For given parameters, the emitted code
+//! tests the state from which it starts.
 
 use super::draw::{self, Draw};
 use super::{Inputs, Topic, Warning, assumptions};
@@ -18,7 +18,7 @@ const CONVENTION: &str = "the Lagrangian states kinetic minus potential energy: 
      second moments J write `-tr(J*Ω)/h`, which is +½ ω·Iω times the step with I = tr(J) Id - J; \
      if what is typed is another multiple of the action, say which by `scale`";
 
-/// The same of fields.
+/// The convention of signs for fields.
 const OF_FIELDS: &str = "the Lagrangian states kinetic minus potential energy, times the step; if what is \
      typed is another multiple of the action, say which by `scale`";
 
@@ -26,7 +26,7 @@ const OF_FIELDS: &str = "the Lagrangian states kinetic minus potential energy, t
 pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
     let kinetic = x.kinetic.filter(|k| !k.first_order)?;
     let (rank, n) = kinetic.degenerate()?;
-    // With other configurations a step may be solved, to velocities that the momenta do not determine.
+    // With other configurations, a step may have a solution with velocities that the momenta do not determine.
     let is_alone = x.spec.configurations.len() == 1;
     let refused = match is_alone && x.solve.needs_second_moments() {
         true => {
@@ -71,10 +71,10 @@ pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
     Some(Warning::new(Topic::DegenerateKineticEnergy, d))
 }
 
-/// Parameters that are tried.
+/// The number of parameter choices that are tried.
 const DRAWS: u64 = 32;
 
-/// Most nodes that are evaluated for one of them.
+/// The limit on nodes evaluated for one choice.
 const EVALUATED: u64 = 10_000;
 
 /// The warning that the kinetic energy is positive for none of the parameters that are tried.
@@ -154,7 +154,7 @@ fn joining(x: &Inputs, gradients: &[Expr]) -> BTreeSet<SymbolId> {
     gradients.iter().flat_map(of).filter(can_be_small).collect()
 }
 
-/// Values for the letters of the form, parameters among them admitted by the assumptions.
+/// Values for the letters of the form; the assumptions admit the parameters among them.
 fn draw_state(
     x: &Inputs,
     energy: &Expr,
@@ -189,7 +189,7 @@ fn draw_state(
     assumptions::admitted(x, values)
 }
 
-/// The matrix of the form: column by column the gradient at a basis element.
+/// The matrix of the form: each column is the gradient at a basis element.
 fn hessian(x: &Inputs, gradients: &[Expr], values: &Assignment) -> Option<Vec<Vec<f64>>> {
     let s = &x.letters.symbols;
     let basis = kinetic::basis(x.spec, x.letters, &|n| draw::size(s, n));

@@ -1,5 +1,5 @@
-//! Terms of the Lagrangian without effect: constants, total differences, and potentials that vanish in
-//! the limit of small steps. Takes the Lagrangian as it was typed; gives warnings.
+//! Terms of the Lagrangian without effect: constants, total differences, and potentials that vanish in the limit of
+//! small steps. Takes the Lagrangian as typed; gives warnings.
 
 use super::difference::{is_constant, is_kept, is_total, on_edge};
 use super::{Inputs, Topic, Warning};
@@ -14,7 +14,7 @@ use crate::expr::symbol::{Role, SymbolId};
 use crate::expr::{self, Expr, Letter, Node, Shift};
 use crate::syntax::ast::NodeRule;
 
-/// Most nodes of the action, times parameters and pairs of ends, that are differentiated.
+/// The limit on differentiated nodes of the action, times parameters and pairs of ends.
 const EVALUATED: u64 = 50_000;
 
 /// The advice for a term that is constant along every motion.
@@ -34,7 +34,7 @@ fn moved(x: &Inputs) -> String {
     format!("multiply it by a quantity that moves, as in `{potential}`, or leave it out")
 }
 
-/// Whether an expression holds anything but parameters and the step.
+/// Whether an expression contains letters other than parameters and the step size.
 fn moves(x: &Inputs, e: &Expr) -> bool {
     let s = &x.letters.symbols;
     let letters = expr::letters(e);
@@ -42,7 +42,7 @@ fn moves(x: &Inputs, e: &Expr) -> bool {
     roles.any(|r| !matches!(r, Role::Parameter | Role::Step))
 }
 
-/// The Lagrangian as typed: the terms of its sum as they are, if it is a sum, and all terms with common factors
+/// The Lagrangian as typed: the terms of its sum unchanged, if it is a sum, and all terms with common factors
 /// multiplied in.
 pub(super) fn typed(x: &Inputs) -> (Vec<Expr>, Vec<Expr>) {
     let whole = &x.spec.typed;
@@ -60,7 +60,7 @@ fn warn(place: Place, message: String, help: &str) -> Warning {
     )
 }
 
-/// Warnings of a constant potential, and of terms and parameters on which the motion does not depend.
+/// Warnings about a constant potential, and about terms and parameters that do not affect the motion.
 pub(super) fn without_effect(x: &Inputs) -> Vec<Warning> {
     let s = &x.letters.symbols;
     let (addends, all) = typed(x);
@@ -143,7 +143,7 @@ pub(super) fn without_effect(x: &Inputs) -> Vec<Warning> {
     out
 }
 
-/// Terms at the end of a step, each with one at the start that takes it off.
+/// Terms at the end of a step, each paired with a term at the start that is subtracted from it.
 fn pairs<'a>(x: &Inputs, addends: &'a [Expr]) -> Vec<(&'a Expr, &'a Expr)> {
     let s = &x.letters.symbols;
     let at_level = |t: &Expr, level: i8| {
@@ -170,7 +170,7 @@ fn holds(x: &Inputs, term: &Expr, p: SymbolId) -> bool {
     letters.iter().any(|l| l.symbol == p)
 }
 
-/// Parameters on which the action depends by a constant or a total difference only.
+/// Parameters that occur in the action only in a constant or a total difference.
 fn idle(x: &Inputs) -> Vec<SymbolId> {
     let s = &x.letters.symbols;
     let total = by_configuration(x.spec, &x.spec.typed);
@@ -196,14 +196,14 @@ fn idle(x: &Inputs) -> Vec<SymbolId> {
         return Vec::new();
     }
     let without = |p: &SymbolId| {
-        // In a direction of its own shape and structure: the letter of another node.
+        // In a direction of its own shape and structure: its letter at another node.
         let change = [(at(*p, Shift::HERE), expr::letter(s, *p, Shift::NEXT))];
         is_total(x, &expr::directional(s, &total, &change))
     };
     parameters.into_iter().filter(without).collect()
 }
 
-/// The power of the step that a term is proportional to, as a physical action.
+/// The power of the step size to which a term is proportional, as a physical action.
 fn power(x: &Inputs, term: &Expr) -> Option<i32> {
     let s = &x.letters.symbols;
     let h = at(x.spec.step, Shift::HERE);
@@ -222,8 +222,8 @@ fn power(x: &Inputs, term: &Expr) -> Option<i32> {
     })
 }
 
-/// The warning of potentials that vanish in the limit of small steps. A correction to another term is
-/// one that holds nothing of its own.
+/// The warning about potentials that vanish in the limit of small steps. A term is a correction to other terms if
+/// these contain all its parameters and advected quantities.
 pub(super) fn vanishing(x: &Inputs) -> Option<Warning> {
     let s = &x.letters.symbols;
     let (_, all) = typed(x);
@@ -264,7 +264,7 @@ pub(super) fn vanishing(x: &Inputs) -> Option<Warning> {
     Some(Warning::new(Topic::NoLimit, d))
 }
 
-/// The action of a term as typed, alone.
+/// The action of a single term as typed.
 pub(super) fn action_of(x: &Inputs, term: &Expr) -> Action {
     let physical = match &x.spec.scale {
         Some(scale) => expr::quotient(term.clone(), scale.clone()),
@@ -278,8 +278,8 @@ pub(super) fn action_of(x: &Inputs, term: &Expr) -> Action {
     })
 }
 
-/// Where a term was typed: the position of the same term without signs and divisors, else the position of the
-/// Lagrangian.
+/// The position at which a term was typed: the position of the same term without signs and divisors, otherwise the
+/// position of the Lagrangian.
 pub(super) fn place(x: &Inputs, term: Option<&Expr>) -> Place {
     fn core(e: &Expr) -> &Expr {
         match e.node() {

@@ -1,4 +1,4 @@
-//! Functionals for tests: each is an ordinary expression in its own letters, which evaluates it and can replace it.
+//! Functionals for tests. Each has an ordinary expression in its own letters, which evaluates it and can replace it.
 
 use super::{Applied, Functional, Kind, Reach, derived, given, pairing};
 use crate::expr::shape::{Dim, Shape, Structure};
@@ -8,15 +8,15 @@ use crate::interpret::{Asked, Assignment, Matrix, evaluate};
 
 pub(crate) const THREE: Dim = Dim::Fixed(3);
 
-/// A functional and what it is.
+/// A functional and its expression.
 pub(crate) struct Known {
     pub(crate) id: FunctionalId,
     letters: Vec<SymbolId>,
     body: Expr,
 }
 
-/// The functionals `f(x)`, `g(x, y)` of vectors, `k(a)` of a number, `r(S)` of a symmetric matrix, `q(A)`,
-/// a matrix, and `A(x)` over sites, with their letters added to a table.
+/// The functionals `f(x)`, `g(x, y)` of vectors, `k(a)` of a scalar, `r(S)` of a symmetric matrix, `q(A)` with matrix
+/// values, and `A(x)` over sites, with their letters added to a table.
 pub(crate) struct Sample {
     pub(crate) symbols: Symbols,
     pub(crate) all: Vec<Known>,
@@ -127,7 +127,7 @@ impl Sample {
         expr::pull_back(&self.symbols, a, which, seed.clone())
     }
 
-    /// The expression with every value of a functional opened, not its derivatives.
+    /// The expression with every value of a functional replaced by its expression; derivatives are unchanged.
     pub(crate) fn opened(&self, e: &Expr) -> Expr {
         let s = &self.symbols;
         let e = expr::rebuild(s, e, &mut |x| self.opened(x));
@@ -139,7 +139,7 @@ impl Sample {
         expr::substitute(s, &known.body, &replaced)
     }
 
-    /// Lets every functional be answered.
+    /// Defines every functional in `values`.
     pub(crate) fn define(&self, values: &mut Assignment) {
         for known in &self.all {
             let name = &self.symbols.functional(known.id).name;

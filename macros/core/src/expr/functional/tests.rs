@@ -1,5 +1,4 @@
-//! Compares gradients and directional derivatives of functionals with those of their definitions and with difference
-//! quotients.
+//! Compares derivatives of functionals with derivatives of their definitions and with difference quotients.
 
 use super::sample::{Sample, THREE, at};
 use crate::algebra::{Algebra, Rational};

@@ -1,9 +1,9 @@
-//! Characters that look like a Latin or Greek letter and are another one: the micro sign, Cyrillic
-//! letters, letters of other widths and styles. Takes a name; gives the name in plain letters.
+//! Characters that look like a Latin or Greek letter but are different: the micro sign, Cyrillic letters, letters of
+//! other widths and styles. Takes a name; gives the name in plain letters.
 
 use unicode_normalization::UnicodeNormalization;
 
-/// Letters whose plain form looks different: they are names of their own.
+/// Letters whose compatibility form looks different; they remain separate names.
 const OWN: &str = "ϵϑϕϖϱςℓ";
 
 /// Pairs of a letter and the one that it looks like: Cyrillic, Armenian, phonetic.
@@ -27,8 +27,8 @@ pub(crate) fn twin(c: char) -> Option<char> {
     (plain != c).then_some(plain)
 }
 
-/// A character in its compatible form. Letters of the blackboard and the like differ in print: of those
-/// only the ones that are the same letter by definition are replaced.
+/// A character in its compatibility form. Blackboard letters and similar ones print differently, so they are replaced
+/// only if they are the same letter by definition.
 fn plain(c: char) -> impl Iterator<Item = char> {
     let own = c.is_ascii() || OWN.contains(c);
     let styled = ('\u{2100}'..='\u{214f}').contains(&c);

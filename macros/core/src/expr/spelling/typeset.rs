@@ -1,10 +1,10 @@
-//! How a name in LaTeX is read when it is printed, in the form in which plain names are compared.
-//! Spaces and braces show nothing, upright and italic words look alike; other fonts and accents do not.
+//! How a LaTeX name is interpreted for printing, in the form in which plain names are compared. Spaces and braces
+//! print nothing, and upright and italic words look alike; other fonts and accents do not.
 
 use super::{shown, skeleton};
 use crate::expr::symbol::GREEK;
 
-/// A row of pieces: the text on the line, and the scripts of its last piece.
+/// A row of pieces: its text, and the scripts of its last piece.
 #[derive(Default)]
 struct Row {
     line: String,
@@ -13,7 +13,7 @@ struct Row {
 }
 
 impl Row {
-    /// Another piece behind the last one, whose scripts then belong to the line.
+    /// Appends a piece. The scripts of the previous piece then belong to the text.
     fn push(&mut self, piece: &str) {
         let scripts = std::mem::take(&mut self.below).join(",");
         let above = std::mem::take(&mut self.above);
@@ -23,7 +23,7 @@ impl Row {
         self.line.push_str(piece);
     }
 
-    /// The row as a piece of another one.
+    /// The row as a piece of another row.
     fn text(self) -> String {
         match (self.below.is_empty(), self.above.is_empty()) {
             (true, true) => self.line,
@@ -32,7 +32,7 @@ impl Row {
     }
 }
 
-/// A name in LaTeX as a reader sees it, as `index` counts time.
+/// A LaTeX name as a reader sees it. `index` is the time index.
 pub(crate) fn seen_typeset(latex: &str, index: &str) -> String {
     let latex = skeleton(latex);
     let row = row(&mut latex.chars().peekable());
@@ -89,7 +89,7 @@ fn command(rest: &mut Rest) -> String {
         rest.next();
         return String::new();
     }
-    // The plain letters of the engine are the curly ones of LaTeX.
+    // The engine's plain letters are LaTeX's variant letters.
     let name = match word.as_str() {
         "varepsilon" => "epsilon",
         "epsilon" => "straightepsilon",

@@ -1,6 +1,6 @@
-//! Linear maps, rotations of the plane and rigid motions along a chain in coordinates: a linear map by its entries,
-//! a rotation of the plane by its angle, a rigid motion by its rotation and its position. Takes a model with labels
-//! as stated; gives the same action in fields and rotations, which loops over sites take.
+//! Linear maps, rotations of the plane and rigid motions along a chain, in coordinates. A linear map is represented
+//! by its entries, a rotation of the plane by its angle, a rigid motion by its rotation and its position. Takes a
+//! model with labels as stated; gives the same action in fields and rotations, which loops over sites support.
 
 mod motions;
 mod restated;
@@ -15,7 +15,7 @@ use crate::lattice::Lattice;
 use crate::pipeline;
 use crate::syntax::ast::{Kind, Kindred, Model, Size, Statement};
 
-/// A configuration of a group that is kept in coordinates.
+/// A configuration of a group that is stored in coordinates.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Coordinates {
     /// Its name.
@@ -70,7 +70,7 @@ impl Coordinates {
     }
 }
 
-/// A configuration that is stated in a group and kept in coordinates.
+/// A configuration that is stated in a group and stored in coordinates.
 struct Stated {
     of: Coordinates,
     velocity: String,
@@ -81,7 +81,7 @@ struct Stated {
 /// The model in coordinates, and the elements concerned; `None` if nothing along the chain requires coordinates.
 ///
 /// # Errors
-/// Mistakes of the model as stated; a form without such coordinates.
+/// Errors in the model as stated, or a form without such coordinates.
 pub(super) fn in_coordinates(
     model: &Model,
     lattice: &Lattice,
@@ -90,18 +90,18 @@ pub(super) fn in_coordinates(
     if all.is_empty() {
         return Ok(None);
     }
-    // Mistakes are reported for the model as it is stated.
+    // Errors refer to the model as stated.
     written(model, lattice, pipeline::representative(model, lattice)?)?;
     let restated = restated::restated(model, &all)?;
     Ok(Some((restated, all.into_iter().map(|x| x.of).collect())))
 }
 
-/// A model that has been found to be right, in coordinates; as it is where nothing asks for them.
+/// A valid model in coordinates; unchanged if it needs none.
 pub fn restated(model: &Model, lattice: &Lattice) -> Option<Model> {
     restated::restated(model, &stated(model, lattice)).ok()
 }
 
-/// The elements that are written in coordinates.
+/// The elements that are replaced by coordinates.
 fn stated(model: &Model, lattice: &Lattice) -> Vec<Stated> {
     let mut out = Vec::new();
     for (statement, docs) in model.statements.iter().zip(&model.remarks) {
@@ -146,7 +146,7 @@ fn chart(of: &Kindred) -> Option<Chart> {
     groups::named(&of.name.text, Dim::Fixed(n))?.chart()
 }
 
-/// The size of a group or of a shape, where it is one number.
+/// The size of a group or of a shape, if it is a single number.
 fn size(of: &Kindred) -> Option<usize> {
     match of.sizes.as_slice() {
         [Size::Number(n, _)] => usize::try_from(*n).ok(),
@@ -154,7 +154,7 @@ fn size(of: &Kindred) -> Option<usize> {
     }
 }
 
-/// The side of a configuration on which its velocity acts.
+/// The side of a configuration's velocity.
 fn side_of(model: &Model, element: &str, velocity: &str) -> Option<Side> {
     model.statements.iter().find_map(|s| match s {
         Statement::Constraint { name, value, .. } if name.text == element => {

@@ -8,18 +8,18 @@ use crate::diagnostic::Place;
 use crate::syntax::ast::{Expression, Kind, Kindred, Model, Name, Size, Statement};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The rigid motions of a model, and what its parameters are.
+/// The rigid motions of a model, and the kinds of its parameters.
 pub(super) struct Motions<'a> {
     all: Vec<&'a Stated>,
     /// Parameters that are rigid motions, with their dimension.
     given: BTreeMap<String, usize>,
-    /// Vectors of one component more than space has, with the dimension of that.
+    /// Vectors with one component more than the dimension of space, with that dimension.
     points: BTreeMap<String, usize>,
-    /// Names of numbers.
+    /// Names of scalars.
     numbers: BTreeSet<String>,
 }
 
-/// A rotation and a place; of a vector its part in space and its last component.
+/// A rotation and a position; for a vector, its part in space and its last component.
 type Two = [Expression; 2];
 
 impl<'a> Motions<'a> {
@@ -69,7 +69,7 @@ impl<'a> Motions<'a> {
         }
     }
 
-    /// Whether this is the name of a motion that moves, or of its velocity.
+    /// Whether this is the name of a rigid motion among the configurations, or of its velocity.
     pub(super) fn moves(&self, name: &str) -> bool {
         let mut all = self.all.iter();
         all.any(|x| x.of.name == name || x.velocity == name)
@@ -107,7 +107,7 @@ impl<'a> Motions<'a> {
         })
     }
 
-    /// A motion by its rotation and its place.
+    /// The rotation and the position of a motion.
     fn two(&self, e: &Expression) -> Option<Two> {
         match &e.kind {
             Kind::Name(n) => self.named(n, e),
@@ -232,7 +232,7 @@ impl<'a> Motions<'a> {
         }
     }
 
-    /// The dimension of space of a vector of one component more.
+    /// The dimension of space for a vector with one component more.
     fn dimension(&self, e: &Expression) -> Option<usize> {
         let known = e.name_that(&|n| self.points.contains_key(n))?;
         self.points.get(known).copied()
@@ -289,7 +289,7 @@ impl<'a> Motions<'a> {
                 if let Kind::Transpose(motion) = &first.kind
                     && let Some([turn, place]) = self.two(motion)
                 {
-                    // A plane: its normal turns, its distance from the origin changes.
+                    // A plane: a motion rotates its normal and changes its distance from the origin.
                     let along = call(e, "dot", [place, in_space.clone()]);
                     return Some([
                         product(e, [transposed(e, turn), in_space]),
@@ -316,7 +316,7 @@ impl<'a> Motions<'a> {
         }
     }
 
-    /// Whether it is seen to be a number.
+    /// Whether it is recognized as a scalar.
     fn is_number(&self, e: &Expression) -> bool {
         match &e.kind {
             Kind::Number(_) | Kind::Constant(_) | Kind::Component(..) => true,
@@ -375,7 +375,7 @@ fn inverse(at: &Expression, [turn, place]: Two) -> Two {
     [back, kind(at, Kind::Neg(Box::new(moved)))]
 }
 
-/// A shape or a group, of one size or of none.
+/// A shape or a group, with one size or none.
 pub(super) fn kindred(place: Place, family: &str, n: Option<usize>) -> Kindred {
     let size = |n| Size::Number(u64::try_from(n).unwrap_or(0), place);
     Kindred {
@@ -390,7 +390,7 @@ pub(super) fn kindred(place: Place, family: &str, n: Option<usize>) -> Kindred {
     }
 }
 
-/// An expression of a shape of one size.
+/// An expression annotated with a shape of one size.
 pub(super) fn shaped(at: &Expression, e: Expression, shape: &str, n: usize) -> Expression {
     let shape = kindred(at.place, shape, Some(n));
     kind(at, Kind::Shaped(Box::new(e), shape))
