@@ -162,7 +162,7 @@ impl<'a> Algebra<'a> {
         self.work.get()
     }
 
-    /// Whether an expression was too large to normalize; all later answers are void.
+    /// Whether an expression was too large to normalise; all later answers are void.
     pub fn exhausted(&self) -> bool {
         self.work.get() > work_limit() || crate::work::exhausted()
     }

@@ -1,4 +1,4 @@
-//! Fields whose discrete Lagrangian is convex in their velocities. The velocity of a step then minimizes a strictly
+//! Fields whose discrete Lagrangian is convex in their velocities. The velocity of a step then minimises a strictly
 //! convex function, so the root of its balance is unique. Takes the terms of the edge and the fields that are solved
 //! together; gives the coefficients whose signs decide, or None if the terms are not of this kind.
 

@@ -1,4 +1,4 @@
-//! The limit of small steps: the Lagrangian per unit time that the action of a step discretizes, from the expansion
+//! The limit of small steps: the Lagrangian per unit time that the action of a step discretises, from the expansion
 //! of `Ω = exp(h ξ)`, and the physical energy derived from it. The limit reveals wrong signs and factors, and gives
 //! runs their energy.
 

@@ -1,5 +1,5 @@
-//! Estimates the rounding error of an expression for small step sizes. Velocities are then near the identity, and `(Ω
-//! - 1) a / h` has sixteen correct digits, whereas `Ω a / h - a / h` loses some. Takes expressions; gives the order
+//! Estimates the rounding error of an expression for small step sizes. Velocities are then near the identity, and
+//! `(Ω - 1) a / h` has sixteen correct digits, whereas `Ω a / h - a / h` loses some. Takes expressions; gives the order
 //! of their values in the step size, and the order of their rounding errors.
 
 use super::cancellation;

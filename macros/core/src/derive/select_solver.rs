@@ -39,8 +39,8 @@ pub struct MoserVeselov {
     pub factor: Expr,
     /// Whether `C` equals its transpose.
     pub symmetric: bool,
-    /// The part of the node momentum that does not depend on the velocity, as a covector. The edge momentum is `N = μ
-    /// - rest`.
+    /// The part of the node momentum that does not depend on the velocity, as a covector. The edge momentum is
+    /// `N = μ - rest`.
     pub rest: Expr,
     /// `C` in the body frame, if it is constant there: it contains parameters, and advected quantities whose letters
     /// denote their constant values at the identity.

@@ -36,7 +36,7 @@ pub fn largest(d: &Derivation, n: Dim) -> u64 {
     }
 }
 
-/// The number of coordinates of the Lie algebra, maximized over the sizes that the model allows.
+/// The number of coordinates of the Lie algebra, maximised over the sizes that the model allows.
 pub fn most_coordinates(d: &Derivation, i: usize) -> u64 {
     match of(d, i) {
         Family::Rotation | Family::Quaternion => 3,

@@ -1,5 +1,5 @@
 //! Collects like terms and cancels common numeric factors for display: `-V A - V A` becomes `-2 V A`, `h^2 a/(2 h)`
-//! becomes `h a/2`. Takes an expression, gives an equal one. Products are not expanded, so that users recognize what
+//! becomes `h a/2`. Takes an expression, gives an equal one. Products are not expanded, so that users recognise what
 //! they wrote.
 
 use super::substitute::bottom_up;

@@ -1,5 +1,5 @@
 //! Hashes of expressions. Each hash is computed once, when the expression is created, and uses whole words, since the
-//! macro's engine is compiled without optimization. Gives maps and sets of expressions that use these hashes. They
+//! macro's engine is compiled without optimisation. Gives maps and sets of expressions that use these hashes. They
 //! are looked up, never iterated.
 
 use super::Expr;

@@ -84,7 +84,7 @@ pub struct ConstraintResponse {
 }
 
 impl Matrix {
-    /// The matrix of these columns; recognizes a multiple of the identity.
+    /// The matrix of these columns; recognises a multiple of the identity.
     fn of(algebra: &Algebra, columns: Vec<Expr>) -> Matrix {
         let columns: Vec<Expr> = columns
             .into_iter()

@@ -1,5 +1,5 @@
 //! Matrices over the integers modulo a prime, stored by rows, for exact random points. Plain loops: the macro's
-//! engine is compiled without optimization, and iterators would cost ten times as much.
+//! engine is compiled without optimisation, and iterators would cost ten times as much.
 
 use super::{add, inverse, mul, negate};
 use crate::work;

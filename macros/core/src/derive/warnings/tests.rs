@@ -298,7 +298,7 @@ fn what_the_motion_does_not_depend_on_is_said() {
     for term in [
         "- h*p*dot(gU, Γ)^2",
         "+ p*dot(gU, next(Γ) - Γ)*dot(n, Γ + next(Γ))",
-        // A constant that normalizes another term.
+        // A constant that normalises another term.
         "+ h*(1 + dot(n, n))*dot(gU, z) - h*p*dot(n, Γ)",
         "+ (1 + q^2)*tr(J)/h - h*p*dot(n, Γ)",
         "- h*p*(1 - dot(n, Γ))",

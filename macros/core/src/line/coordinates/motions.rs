@@ -316,7 +316,7 @@ impl<'a> Motions<'a> {
         }
     }
 
-    /// Whether it is recognized as a scalar.
+    /// Whether it is recognised as a scalar.
     fn is_number(&self, e: &Expression) -> bool {
         match &e.kind {
             Kind::Number(_) | Kind::Constant(_) | Kind::Component(..) => true,
