@@ -39,7 +39,7 @@ pub(super) struct Lines<'a> {
 /// The cost of each further bracket level, as unused width in percent of a line.
 const DEPTH_COST: usize = 30;
 
-/// A segment shorter than one in this many parts of a line counts as short.
+/// A segment counts as short if it takes at most `1 / SHORT_END` of a line.
 const SHORT_END: usize = 8;
 
 /// How a format measures its lines, in its own units.
@@ -115,7 +115,8 @@ fn within(layout: &Layout, limit: usize) -> Option<Lines<'_>> {
     broken(layout, &ruler)
 }
 
-/// A left side wider than one in this many parts of a line is too wide for aligning the relation signs.
+/// A left side is too wide for the other relation signs to align with its own if it takes more than `1 / WIDE_LEFT`
+/// of a line.
 const WIDE_LEFT: usize = 4;
 
 /// Breaks relations into lines of this many points with aligned relation signs. A relation with a wide left side
