@@ -329,7 +329,7 @@ pub enum Statement {
         components: Vec<Expression>,
         /// The text of the formulas between the quotes.
         texts: Vec<String>,
-        /// The word `case`, if the case gives the definition: there are no components until it does.
+        /// The word `case`, if the case defines the function; its formulas are then empty until the case is read.
         by_case: Option<Place>,
     },
     /// `grid n;`
