@@ -313,7 +313,7 @@ fn finish(
             continue;
         };
         let side = match g.group.is_additive() {
-            // For this group both frames are equivalent; the momentum is spatial.
+            // For an additive group both frames are equivalent; the momentum is spatial.
             true => Some(Side::Spatial),
             false => shapes::side(&declared.symbols, g, &update),
         };

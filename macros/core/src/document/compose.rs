@@ -342,7 +342,7 @@ pub fn pairing(a: Formula, b: Formula, half: bool) -> Formula {
     Formula::equal(Formula::pairing(a, b), value)
 }
 
-/// The Lagrangian as it was declared, without its scale, term by term.
+/// The Lagrangian divided by its declared scale, term by term.
 pub fn physical(sheet: &Sheet) -> Formula {
     let terms = crate::derive::action::summands(&sheet.d.letters.symbols, &sheet.d.spec.lagrangian);
     sheet.math(&expr::sum(terms, Shape::SCALAR))

@@ -34,7 +34,8 @@ pub struct Printed {
 
 /// Prints the derivation of a model with labels in a format; `stated` is its text.
 ///
-/// # Errors If a statement is invalid, or the model cannot be derived.
+/// # Errors
+/// If a statement is invalid, or the model cannot be derived.
 pub fn printed_lattice(
     model: &Model,
     stated: &str,

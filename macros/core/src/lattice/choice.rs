@@ -117,7 +117,8 @@ impl Choice {
 
     /// Sets the number of segments or sites of a label.
     ///
-    /// # Errors The label does not exist, or the requested number is too small.
+    /// # Errors
+    /// The label does not exist, or the requested number is too small.
     pub fn with_count(
         mut self,
         lattice: &Lattice,
@@ -148,7 +149,8 @@ impl Choice {
 
     /// Closes the chain to a ring.
     ///
-    /// # Errors The model does not declare `periodic;`.
+    /// # Errors
+    /// The model does not declare `periodic;`.
     pub fn with_ring(mut self, lattice: &Lattice) -> Result<Choice, Refusal> {
         if lattice.periodic.is_none() {
             let line = lattice.line.and_then(|i| lattice.labels.get(i));
@@ -161,7 +163,8 @@ impl Choice {
 
     /// Sets the end condition at the first or the last site.
     ///
-    /// # Errors The alternative does not exist.
+    /// # Errors
+    /// The alternative does not exist.
     pub fn with_end(
         mut self,
         lattice: &Lattice,

@@ -166,7 +166,8 @@ impl Lattice {
         }
     }
 
-    /// At most one field has a domain, and it is at a set of sites. Functionals occur only in the Lagrangian.
+    /// Checks that at most one field has a domain, at a set of sites. Constraints, assumptions and advected quantities must
+    /// not contain functionals.
     fn domains(&self, model: &Model, parameters: &[Parameter], errors: &mut Errors) {
         let is_mesh = |s: &&Statement| matches!(s, Statement::Mesh { .. });
         let stated = model.statements.iter().filter(is_mesh).count();

@@ -92,7 +92,8 @@ pub struct ExpandedModel {
 
 /// Expands a model.
 ///
-/// # Errors Mistakes in the model, with the tokens where they occur.
+/// # Errors
+/// Mistakes in the model, with the tokens where they occur.
 pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<ExpandedModel, Errors> {
     let mut errors = Errors::new();
     circular_definitions(model, &mut errors);

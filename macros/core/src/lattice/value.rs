@@ -52,14 +52,16 @@ impl SiteData {
 
     /// Evaluates the expression with the values of names.
     ///
-    /// # Errors A name without a value, or an operation that is not defined for numbers.
+    /// # Errors
+    /// A name without a value, or an operation that is not defined for numbers.
     pub fn value(&self, of: &Names<'_>) -> Result<f64, String> {
         self.value_and_slopes(of, &|_, _| None)
     }
 
     /// Evaluates with the slopes of names, `slope(S, 1)`, as [`SiteData::slopes`] lists them.
     ///
-    /// # Errors As [`SiteData::value`]; an undefined slope.
+    /// # Errors
+    /// As [`SiteData::value`]; an undefined slope.
     pub fn value_and_slopes(&self, of: &Names<'_>, slope: &Slopes<'_>) -> Result<f64, String> {
         value(&self.expression, &Given { of, slope })
     }
@@ -77,7 +79,8 @@ impl SiteData {
 
     /// The slopes in the expression: name and direction, counted from 1.
     ///
-    /// # Errors One of the slopes is not a name with a numeric direction.
+    /// # Errors
+    /// One of the slopes is not a name with a numeric direction.
     pub fn slopes(&self) -> Result<Vec<(String, u64)>, String> {
         let mut out = Vec::new();
         self.expression.each(&mut |e| {

@@ -138,7 +138,8 @@ pub struct Open {
 
 /// The functions of a model that a case must define.
 ///
-/// # Errors A function whose argument or value a formula cannot have.
+/// # Errors
+/// A function whose argument or value a formula cannot have.
 pub fn open(model: &Model) -> Result<Vec<Open>, Diagnostic> {
     let mut all = Vec::new();
     for statement in &model.statements {
@@ -167,7 +168,8 @@ pub fn open(model: &Model) -> Result<Vec<Open>, Diagnostic> {
 
 /// Checks that a text is a formula in the components of an argument. `known` accepts other names that it may contain.
 ///
-/// # Errors A text that cannot be parsed, or the first unknown name.
+/// # Errors
+/// A text that cannot be parsed, or the first unknown name.
 pub fn check(text: &str, argument: &Kindred, known: &dyn Fn(&str) -> bool) -> Result<(), String> {
     let parsed = read(text).map_err(|wrong| wrong.text())?;
     if let Some(name) = parsed.call_that(&|n| !super::FUNCTIONS.contains(&n)) {
