@@ -1,12 +1,12 @@
-//! Embeds every model file of `elastic/`, `lattices/` and `fluids/` with its cases, so that an installed command has them.
-//! Takes the folders; gives `files.rs`, an array of `ModelFile`.
+//! Embeds the model files of `elastic/`, `lattices/` and `fluids/` and their cases, so that an installed command
+//! includes them. Writes `files.rs`, an array of `ModelFile`.
 
 use std::error::Error;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Folders of model files, with the family their models belong to.
+/// Folders of model files, and the family of their models.
 const FOLDERS: [(&str, &str); 3] = [
     ("elastic", "Elastic"),
     ("lattices", "Chain"),
@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The files of a folder with this ending, in order of their names; none where there is no such folder.
+/// The files of a folder with this extension, sorted by name; empty if the folder does not exist.
 fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut all: Vec<PathBuf> = entries

@@ -1,5 +1,5 @@
-//! A rigid body in a field that is quadratic in the direction of its axis: a satellite under the
-//! gradient of gravity, or Brun's problem, which is integrable for the inertia of the body itself.
+//! A rigid body in a field that is quadratic in the direction of its axis, such as a satellite in a gravity gradient.
+//! If the quadratic form is proportional to the inertia of the body, this is Brun's integrable problem.
 
 use crate::case::{Case, Citations, Entry, Place, bounds, diagonal, poinsot, rotation};
 use crate::thesis::THESIS;
@@ -23,7 +23,7 @@ clebsch::model! {
     }
 }
 
-/// Which of its equations are those of the thesis.
+/// The equations that also appear in the thesis.
 const CITATIONS: Citations = Citations {
     work: Some(THESIS),
     statement: "",

@@ -1,5 +1,5 @@
-//! A heavy top that also carries a dipole in a uniform field: two advected vectors. Of the Kowalevski
-//! type it is integrable (Bogoyavlenskij 1984; Reyman and Semenov-Tian-Shansky 1987).
+//! A heavy top with a dipole in a uniform field: two advected vectors. A body of Kowalevski type is integrable
+//! (Bogoyavlenskij 1984; Reyman and Semenov-Tian-Shansky 1987).
 
 use crate::case::{Case, Citations, Entry, Place, bounds, diagonal, identity, poinsot};
 use crate::thesis::THESIS;
@@ -32,7 +32,7 @@ clebsch::model! {
     }
 }
 
-/// Which of its equations are those of the thesis.
+/// The equations that also appear in the thesis.
 const CITATIONS: Citations = Citations {
     work: Some(THESIS),
     statement: "",

@@ -1,5 +1,4 @@
-//! The rigid body of any dimension, with any left factor (thesis 2.3; Moser and Veselov 1991, Manakov
-//! 1976).
+//! The free rigid body in n dimensions, with any left factor (thesis 2.3; Moser and Veselov 1991, Manakov 1976).
 
 use crate::case::{Case, Citations, Entry, Place};
 use crate::thesis::THESIS;
@@ -20,7 +19,7 @@ clebsch::model! {
     }
 }
 
-/// Which of its equations are those of the thesis.
+/// The equations that also appear in the thesis.
 const CITATIONS: Citations = Citations {
     work: Some(THESIS),
     statement: "",
@@ -32,7 +31,7 @@ const CITATIONS: Citations = Citations {
 
 const STEP: f64 = 0.1;
 
-/// Second moments between 0.5 and 2.25, all different, no two sums alike.
+/// Distinct second moments between 0.5 and 2.37.
 fn moments<const N: usize>() -> SMatrix<f64, N, N> {
     SMatrix::from_fn(|i, j| match i == j {
         true => 0.5 + 0.25 * i as f64 + 0.03 * (i * i % 5) as f64,
@@ -40,7 +39,7 @@ fn moments<const N: usize>() -> SMatrix<f64, N, N> {
     })
 }
 
-/// A skew matrix without a pattern.
+/// A skew matrix without special structure.
 fn momentum<const N: usize>() -> SMatrix<f64, N, N> {
     let entry = |i: usize, j: usize| 1.0 - 0.37 * ((3 * i + 5 * j) % 7) as f64;
     SMatrix::from_fn(|i, j| match i.cmp(&j) {
@@ -62,10 +61,10 @@ fn rows<const N: usize>(a: &SMatrix<f64, N, N>) -> Vec<f64> {
     a.transpose().as_slice().to_vec()
 }
 
-/// A case whose step takes this part of the exact bound.
+/// A case whose steps use this fraction of the exact bound.
 fn case<const N: usize>(name: &str, doc: &str, c: SMatrix<f64, N, N>, fraction: f64) -> Case {
     let m = momentum::<N>();
-    // The factors here are valid; a wrong one would be refused when the case is opened.
+    // The factors here are valid; opening the case rejects an invalid one.
     let ratio = LeftFactor::new(c).map_or(1.0, |factor| factor.reach(&(m * STEP)));
     Case {
         name: name.to_owned(),

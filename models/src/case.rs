@@ -1,5 +1,5 @@
-//! Named cases of a model: parameters, initial data, step, number of steps and the bounds that its
-//! invariants keep, in the order of the model's card.
+//! Named cases of a model: parameters, initial values, step size, number of steps, and bounds on the drift of
+//! invariants, in the order of the model's card.
 
 use clebsch::card::Card;
 pub use clebsch_core::document::{Citations, Place, Work};
@@ -9,9 +9,9 @@ pub use clebsch_core::document::{Citations, Place, Work};
 pub struct Case {
     /// Its name.
     pub name: String,
-    /// What it shows and where it comes from.
+    /// Its purpose and its source.
     pub doc: String,
-    /// Time step.
+    /// Step size.
     pub h: f64,
     /// Number of steps.
     pub steps: u64,
@@ -19,24 +19,24 @@ pub struct Case {
     pub parameters: Vec<Vec<f64>>,
     /// Initial values, row by row, in the order of the card.
     pub initial: Vec<Vec<f64>>,
-    /// Largest drift of each invariant, relative to its natural scale.
+    /// Bound on the drift of each invariant, relative to its natural scale.
     pub bounds: Vec<(String, f64)>,
 }
 
-/// A model of the gallery with what is cited of it and its cases; the first one is the default.
+/// A gallery model with its citations and cases; the first case is the default.
 #[derive(Clone, Debug)]
 pub struct Entry {
     /// The model as data.
     pub card: Card,
-    /// Where its equations stand in a work.
+    /// The citations for its equations.
     pub citations: Citations,
     /// Its cases.
     pub cases: Vec<Case>,
 }
 
 impl Entry {
-    /// The cards of the model, one for each of its sizes, the default one first; one card for a
-    /// model without named sizes.
+    /// The cards of the model, one for each size, with the default size first; a single card if the model does not
+    /// have named sizes.
     pub fn cards(&self) -> Vec<Card> {
         let mut all: Vec<Vec<usize>> = vec![Vec::new()];
         for d in self.card.dimensions {
@@ -53,8 +53,7 @@ impl Entry {
         [self.card].into_iter().chain(others).collect()
     }
 
-    /// The card for the numbers of a case: the one whose fields are as long. The default one where
-    /// none is.
+    /// The card whose fields have as many values as the case, or the default card if none does.
     pub fn card_of(&self, case: &Case) -> Card {
         let fits = |fields: &[clebsch::card::Field], values: &[Vec<f64>]| {
             fields.len() == values.len()
@@ -67,7 +66,7 @@ impl Entry {
     }
 }
 
-/// The Poinsot matrix `J = tr(I)/2 - I` of principal moments of inertia, as its diagonal.
+/// The diagonal of the Poinsot matrix `J = tr(I)/2 - I`, from principal moments of inertia.
 pub fn poinsot(moments: [f64; 3]) -> [f64; 3] {
     let half = moments.iter().sum::<f64>() / 2.0;
     moments.map(|i| half - i)
@@ -83,7 +82,7 @@ pub fn identity() -> Vec<f64> {
     diagonal([1.0; 3])
 }
 
-/// The rotation of a quaternion `(w, x, y, z)` of any length, row by row.
+/// The rotation matrix of a quaternion `(w, x, y, z)` of any nonzero norm, row by row.
 pub fn rotation([w, x, y, z]: [f64; 4]) -> Vec<f64> {
     let s = 2.0 / (w * w + x * x + y * y + z * z);
     vec![
@@ -99,14 +98,14 @@ pub fn rotation([w, x, y, z]: [f64; 4]) -> Vec<f64> {
     ]
 }
 
-/// The column `R v` for a matrix of nine numbers, row by row.
+/// The vector `R v`, for a 3 x 3 matrix given row by row.
 pub fn turned(r: &[f64], v: [f64; 3]) -> Vec<f64> {
     r.chunks(3)
         .map(|row| row.iter().zip(v).map(|(a, b)| a * b).sum())
         .collect()
 }
 
-/// The symmetric matrix `R diag(d) Rᵀ`, row by row, to the last bit symmetric.
+/// The matrix `R diag(d) Rᵀ`, row by row, exactly symmetric.
 pub fn carried(r: &[f64], d: [f64; 3]) -> Vec<f64> {
     let rows: Vec<&[f64]> = r.chunks(3).collect();
     let entry = |a: &[f64], b: &[f64]| -> f64 {
@@ -118,7 +117,7 @@ pub fn carried(r: &[f64], d: [f64; 3]) -> Vec<f64> {
         .collect()
 }
 
-/// The bounds of a case, from names and largest drifts.
+/// The bounds of a case, from names of invariants and their maximum drifts.
 pub fn bounds(drifts: &[(&str, f64)]) -> Vec<(String, f64)> {
     drifts
         .iter()

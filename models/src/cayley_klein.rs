@@ -1,5 +1,5 @@
-//! The free rigid body in unit quaternions (thesis 2.8, the Cayley-Klein form): a family of
-//! discretisations, of which the member `c = 0` is the Moser-Veselov system seen from SU(2).
+//! The free rigid body in unit quaternions (thesis 2.8, the Cayley-Klein form): a family of discretisations. The
+//! member `c = 0` is the Moser-Veselov system lifted to SU(2).
 
 use crate::case::{Case, Citations, Entry, bounds, diagonal};
 
@@ -18,10 +18,10 @@ clebsch::model! {
     }
 }
 
-/// Moments of inertia of the figures.
+/// Moments of inertia in the figures.
 pub(crate) const SYMMETRIC: [f64; 3] = [1.0, 1.0, 0.5];
 
-/// Momentum of the figures at node 0.
+/// Momentum at node 0 in the figures.
 pub(crate) const MOMENTUM: [f64; 3] = [-0.5, 0.1, 0.5];
 
 fn case(name: &str, doc: &str, moments: [f64; 3], c: f64, energy: f64, steps: u64) -> Case {

@@ -1,5 +1,5 @@
-//! The free rigid body in unit quaternions, in the space frame: the inertia is carried by the
-//! rotation that the quaternion covers, the momentum is constant.
+//! The free rigid body in unit quaternions, in the space frame: the rotation of the quaternion advects the inertia,
+//! and the momentum is constant.
 
 use crate::case::{Case, Citations, Entry, diagonal};
 use crate::cayley_klein::{MOMENTUM, SYMMETRIC};

@@ -1,5 +1,5 @@
-//! A charge in uniform magnetic and electric fields. The term linear in the velocity makes the step the
-//! centred rotation of Boris (1970); its vector potential is B x X/2.
+//! A charge in uniform magnetic and electric fields. The magnetic term is linear in the velocity, with the vector
+//! potential B x X/2, so that the step is the centred rotation of Boris (1970).
 
 use crate::case::{Case, Citations, Entry};
 
@@ -21,8 +21,8 @@ clebsch::model! {
     }
 }
 
-/// A particle of mass and charge one in a field of strength one along the third axis; with E = 0 it turns about
-/// the origin, at distance one.
+/// A particle with unit mass and charge in a field of unit strength along the third axis. If E = 0, it moves on a
+/// helix of radius one around that axis.
 fn case(name: &str, doc: &str, electric: [f64; 3]) -> Case {
     Case {
         name: name.to_owned(),
@@ -32,7 +32,7 @@ fn case(name: &str, doc: &str, electric: [f64; 3]) -> Case {
         parameters: vec![vec![1.0], vec![1.0], vec![0.0, 0.0, 1.0], electric.to_vec()],
         // m V + (q/2) B x X with the velocity (1, 0, 0.1).
         initial: vec![vec![0.0, 1.0, 0.0], vec![0.5, 0.0, 0.1]],
-        // All that is derived is exact.
+        // All derived invariants are exact.
         bounds: Vec::new(),
     }
 }

@@ -1,5 +1,5 @@
-//! Two rigid bodies joined by a ball and socket (thesis 2.8, with the coupling corrected), seen from
-//! the joint; the centre of mass of the whole is at rest.
+//! Two rigid bodies with a ball-and-socket joint (thesis 2.8, with the coupling corrected), relative to the joint.
+//! The common centre of mass is at rest.
 
 use crate::case::{Case, Citations, Entry, Place, bounds, diagonal, identity, poinsot};
 use crate::thesis::{THESIS, system};
@@ -26,7 +26,7 @@ clebsch::model! {
     }
 }
 
-/// Where its equations stand in the thesis, and what is corrected.
+/// Its equations in the thesis, and the corrections.
 const CITATIONS: Citations = Citations {
     work: Some(THESIS),
     statement: system!("2.8.2", "-h"),
@@ -68,7 +68,7 @@ const CITATIONS: Citations = Citations {
     ],
 };
 
-/// A body: principal moments about its own centre of mass, and the arm from the joint to it.
+/// A body: principal moments about its own centre of mass, and the vector from the joint to that centre.
 #[derive(Clone, Copy)]
 struct Body {
     moments: [f64; 3],

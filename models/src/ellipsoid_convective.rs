@@ -1,5 +1,6 @@
-//! Elastic ellipsoid (affine body) seen from the body, a material of Mooney and Rivlin (thesis 3.1.2 and 3.2.3, with
-//! (3.27) corrected for potentials and (3.61) for its natural state). Any number of dimensions from two to four.
+//! An elastic ellipsoid (affine body) in the convective representation, with a Mooney-Rivlin material, in two to four
+//! dimensions. See sections 3.1.2 and 3.2.3 of the thesis; (3.27) is corrected for potentials, and (3.61) for its
+//! natural state.
 
 use crate::case::{Case, Citations, Entry, Place};
 use crate::ellipsoids::ellipsoids;
@@ -28,7 +29,7 @@ clebsch::model! {
     }
 }
 
-/// Where its equations stand in the thesis, and what is corrected.
+/// Its equations in the thesis, and the corrections.
 const CITATIONS: Citations = Citations {
     work: Some(THESIS),
     statement: system!("3.1.2", "h"),
@@ -52,7 +53,7 @@ const CITATIONS: Citations = Citations {
 
 /// The model and its cases.
 pub fn entry() -> Entry {
-    // The momentum seen from the body is Q^T C0 V I0.
+    // The body momentum is Q^T C0 V I0.
     let cases = ellipsoids().into_iter().map(|e| Case {
         initial: vec![e.placement(), e.body_momentum()],
         ..e.case()

@@ -1,5 +1,5 @@
-//! Elastic ellipsoid (affine body) seen from space, its energy a function of the second moments there (thesis 3.1.2,
-//! with (3.35) corrected for potentials). Any number of dimensions from two to four.
+//! An elastic ellipsoid (affine body) in the spatial representation, in two to four dimensions. Its energy is a
+//! function of the second moments in space (thesis 3.1.2, with (3.35) corrected for potentials).
 
 use crate::case::{Case, Citations, Entry, Place};
 use crate::ellipsoids::ellipsoids;
@@ -28,7 +28,7 @@ clebsch::model! {
     }
 }
 
-/// Where its equations stand in the thesis, and what is corrected.
+/// Its equations in the thesis, and the corrections.
 const CITATIONS: Citations = Citations {
     work: Some(THESIS),
     statement: system!("3.1.2", "h"),
@@ -61,7 +61,7 @@ const CITATIONS: Citations = Citations {
 
 /// The model and its cases.
 pub fn entry() -> Entry {
-    // The momentum in space is C0 V I0 Q^T.
+    // The spatial momentum is C0 V I0 Q^T.
     let cases = ellipsoids().into_iter().map(|e| Case {
         initial: vec![e.placement(), e.spatial_momentum()],
         ..e.case()

@@ -1,9 +1,9 @@
 //! Data of the elastic ellipsoids, shared by both representations: metric, second moments, material, placement and
-//! velocity, from which each makes its momentum.
+//! velocity. Each representation computes its momentum from these.
 
 use crate::case::{Case, bounds};
 
-/// A start of an ellipsoid with `n` rows.
+/// The initial state of an ellipsoid with `n` rows.
 pub(crate) struct Ellipsoid {
     n: usize,
     name: &'static str,
@@ -11,20 +11,20 @@ pub(crate) struct Ellipsoid {
     h: f64,
     metric: Vec<f64>,
     moments: Vec<f64>,
-    /// d; a, b, c are those of the thesis's figures.
+    /// The parameter d; a, b and c are given by `STIFFNESS`.
     resistance: f64,
-    /// Q, diagonal.
+    /// The diagonal of Q.
     stretches: Vec<f64>,
-    /// V, the velocity of the placement.
+    /// V, the rate of change of the placement.
     velocity: Vec<f64>,
-    /// Amplitude of the energy, relative.
+    /// Relative amplitude of the energy oscillation.
     energy: f64,
 }
 
 /// a, b and c of thesis figures 3.1 to 3.3.
 const STIFFNESS: [f64; 3] = [0.1, 10.0, 10.0];
 
-/// d of a body that is without stress at the identity.
+/// The value of d for which the body is stress-free at the identity.
 fn natural(n: usize) -> f64 {
     let [a, b, c] = STIFFNESS;
     2.0 * (a + (n as f64 - 1.0) * b + c)
@@ -44,14 +44,14 @@ fn product(n: usize, a: &[f64], b: &[f64]) -> Vec<f64> {
     (0..n * n).map(|at| entry(at / n, at % n)).collect()
 }
 
-/// A rotation and a change of shape, without a pattern.
+/// A rotation and a deformation without special structure.
 fn velocity(n: usize) -> Vec<f64> {
     let entry = |i: usize, j: usize| 0.6 - 0.15 * ((3 * i + 5 * j + 2 * i * j) % 8) as f64;
     (0..n * n).map(|at| entry(at / n, at % n)).collect()
 }
 
 impl Ellipsoid {
-    /// Everything but the initial values.
+    /// The case without initial values.
     pub(crate) fn case(&self) -> Case {
         let [a, b, c] = STIFFNESS;
         let numbers = [a, b, c, self.resistance].map(|x| vec![x]);
@@ -63,7 +63,7 @@ impl Ellipsoid {
             steps: 10_000,
             parameters: matrices.into_iter().chain(numbers).collect(),
             initial: Vec::new(),
-            // The amplitude of the case; what is exact keeps to rounding.
+            // The energy oscillates with the amplitude of the case; exact invariants drift by rounding only.
             bounds: bounds(&[("energy", self.energy)]),
         }
     }

@@ -1,23 +1,23 @@
-//! Models that are shipped as text: the files of `elastic/`, `lattices/` and `fluids/` with their cases.
-//! `build.rs` lists the folders, so that a new file is shipped without being named anywhere.
+//! Models that are shipped as text: the files of `elastic/`, `lattices/` and `fluids/` with their cases. `build.rs`
+//! lists the folders, so that new files are included automatically.
 
-/// What a model is about; `clebsch list` groups models by it.
+/// The family of a model, by which `clebsch list` groups models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
-    /// Bodies that turn.
+    /// Rigid bodies.
     Rigid,
     /// Point masses.
     Particle,
-    /// Bodies that deform homogeneously, and single rods.
+    /// Bodies with homogeneous deformations, and single rods.
     Elastic,
     /// Sites along a label: rods, chains, lattices.
     Chain,
-    /// Fluids as particles, with functionals of all of them.
+    /// Fluids as particles, with functionals of all particles.
     Fluid,
 }
 
 impl Family {
-    /// All families, in the order in which they are listed.
+    /// All families, in the order of the list.
     pub const ALL: [Self; 5] = [
         Self::Rigid,
         Self::Particle,
@@ -39,27 +39,27 @@ impl Family {
     }
 }
 
-/// A model as text.
+/// A model file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ModelFile {
-    /// The file's name without its ending, such as `toda-chain`.
+    /// The file's name without its extension, such as `toda-chain`.
     pub name: &'static str,
-    /// What it is about.
+    /// Its family.
     pub family: Family,
-    /// The statement.
+    /// The text of the model.
     pub text: &'static str,
     /// Its cases; the first one is the default.
     pub cases: &'static [CaseFile],
 }
 
-/// A case as text.
+/// A case file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CaseFile {
-    /// The file's name without its ending.
+    /// The file's name without its extension.
     pub stem: &'static str,
-    /// Its TOML.
+    /// Its TOML text.
     pub text: &'static str,
 }
 
-/// Every shipped model file, by family, then by name.
+/// All shipped model files, by family, then by name.
 pub const FILES: &[ModelFile] = include!(concat!(env!("OUT_DIR"), "/files.rs"));

@@ -15,7 +15,7 @@ clebsch::model! {
     }
 }
 
-/// Where its equations stand in the thesis, and what is corrected.
+/// Its equations in the thesis, and the corrections.
 const CITATIONS: Citations = Citations {
     work: Some(THESIS),
     statement: system!("2.5.4", "-h"),
@@ -41,8 +41,8 @@ fn case(name: &str, doc: &str, moments: [f64; 3], momentum: [f64; 3], steps: u64
         steps,
         parameters: vec![diagonal(poinsot(moments))],
         initial: vec![identity(), momentum.to_vec()],
-        // Everything is exact: what is left is rounding, which projection every 64 steps and the
-        // spatial momentum as state keep from accumulating.
+        // All invariants are exact. Rounding errors do not accumulate, since the stepper projects every 64 steps and
+        // stores the spatial momentum.
         bounds: [
             "energy",
             "spatial_momentum",

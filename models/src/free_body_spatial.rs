@@ -1,5 +1,5 @@
-//! The free rigid body in the spatial representation (thesis 2.5.5): the Poinsot matrix is carried
-//! along by the motion, the spatial momentum is constant.
+//! The free rigid body in the spatial representation (thesis 2.5.5): the motion advects the Poinsot matrix, and the
+//! spatial momentum is constant.
 
 use crate::case::{
     Case, Citations, Entry, Place, bounds, carried, identity, poinsot, rotation, turned,
@@ -21,7 +21,7 @@ clebsch::model! {
     }
 }
 
-/// Where its equations stand in the thesis, and what is corrected.
+/// Its equations in the thesis, and the corrections.
 const CITATIONS: Citations = Citations {
     work: Some(THESIS),
     statement: system!("2.5.5", "-h"),
@@ -57,7 +57,7 @@ const CITATIONS: Citations = Citations {
     ],
 };
 
-/// Momenta in body axes; the statement takes what belongs to space.
+/// Takes the momentum in body axes and converts it to space axes.
 fn case(name: &str, doc: &str, moments: [f64; 3], attitude: Vec<f64>, momentum: [f64; 3]) -> Case {
     Case {
         name: name.to_owned(),
@@ -70,7 +70,7 @@ fn case(name: &str, doc: &str, moments: [f64; 3], attitude: Vec<f64>, momentum: 
             turned(&attitude, momentum),
             carried(&attitude, poinsot(moments)),
         ],
-        // The energy of a free body is exact, what is left is rounding.
+        // The energy of a free body is exact, up to rounding.
         bounds: bounds(&[("energy", 1e-12)]),
     }
 }

@@ -24,7 +24,7 @@ clebsch::model! {
     }
 }
 
-/// Where its equations stand in the thesis, and what is corrected.
+/// Its equations in the thesis, and the corrections.
 const CITATIONS: Citations = Citations {
     work: Some(THESIS),
     statement: system!("2.7.1", "-h"),
@@ -56,7 +56,7 @@ const CITATIONS: Citations = Citations {
     ],
 };
 
-/// Rotation by the angle with this cosine and sine about the second axis: tilts the top.
+/// The rotation about the second axis by the angle with this cosine and sine, which tilts the top.
 fn tilted(cos: f64, sin: f64) -> Vec<f64> {
     vec![cos, 0.0, sin, 0.0, 1.0, 0.0, -sin, 0.0, cos]
 }
@@ -81,7 +81,7 @@ fn case(
             vec![0.0, 0.0, 1.0],
         ],
         initial: vec![attitude, momentum.to_vec()],
-        // Casimirs to rounding; the energy oscillates within O(h²), with the amplitude of the case.
+        // Casimirs are exact up to rounding; the energy oscillates within O(h²), with the amplitude of the case.
         bounds: vec![
             ("energy".to_owned(), energy),
             ("momentum_Gamma".to_owned(), 1e-13),

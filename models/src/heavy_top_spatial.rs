@@ -1,5 +1,5 @@
-//! The heavy top in the spatial representation, which thesis 2.7 mentions and does not give: second
-//! moments and centre of mass are carried along by the motion, the vertical is fixed.
+//! The heavy top in the spatial representation, which section 2.7 of the thesis mentions but does not derive. The
+//! motion advects second moments and centre of mass, and the vertical is fixed.
 
 use crate::case::{Case, Citations, Entry, Place, bounds, carried, poinsot, turned};
 use crate::thesis::THESIS;
@@ -27,7 +27,7 @@ clebsch::model! {
     }
 }
 
-/// Which of its equations are those of the thesis.
+/// The equations that also appear in the thesis.
 const CITATIONS: Citations = Citations {
     work: Some(THESIS),
     statement: "",
@@ -42,12 +42,12 @@ const CITATIONS: Citations = Citations {
     ],
 };
 
-/// Rotation by the angle of the 3-4-5 triangle about the second axis: tilts the top.
+/// The rotation about the second axis by the angle with cosine 0.8, which tilts the top.
 fn tilted() -> Vec<f64> {
     vec![0.8, 0.0, 0.6, 0.0, 1.0, 0.0, -0.6, 0.0, 0.8]
 }
 
-/// Momentum and centre of mass in body axes; the statement takes what belongs to space.
+/// Takes momentum and centre of mass in body axes and converts them to space axes.
 fn case(
     name: &str,
     doc: &str,

@@ -1,5 +1,5 @@
-//! A planet about a fixed sun (Kepler's problem) in coordinates of space. With a potential at the nodes
-//! the step is Störmer and Verlet's (Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.4).
+//! Kepler's problem: a planet around a fixed sun, in Cartesian coordinates. The potential acts at nodes, so the step
+//! is the Störmer-Verlet method (Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.4).
 
 use crate::case::{Case, Citations, Entry, bounds};
 
@@ -17,8 +17,8 @@ clebsch::model! {
     }
 }
 
-/// A planet of mass one that starts on the first axis and moves across it, in a plane tilted about that axis
-/// as the 3-4-5 triangle has it.
+/// A planet of mass one that starts on the first axis. Its velocity is perpendicular to that axis, in a plane tilted
+/// about the axis by the angle with cosine 0.8.
 fn case(name: &str, doc: &str, h: f64, place: f64, speed: f64, energy: f64) -> Case {
     Case {
         name: name.to_owned(),

@@ -1,7 +1,7 @@
-//! A rigid body in an ideal fluid (Kirchhoff 1869; Lamb, Hydrodynamics, chapter VI): the kinetic
-//! energy is a quadratic form in angular and linear velocity with the added masses of the fluid.
-//! The discretisation follows Moser and Veselov for the rotation; the linear velocity of a step is
-//! the mean of its translation seen from both ends, so that the step is symmetric in time.
+//! A rigid body in an ideal fluid (Kirchhoff 1869; Lamb, Hydrodynamics, chapter VI). The kinetic energy is a
+//! quadratic form in angular and linear velocity, which includes the added masses of the fluid. The rotation is
+//! discretised as by Moser and Veselov. The linear velocity of a step is the mean of its translation in the body
+//! frames at both ends, so that the step is symmetric in time.
 
 use crate::case::{Case, Citations, Entry, bounds, diagonal};
 

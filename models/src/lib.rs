@@ -1,5 +1,5 @@
-//! The gallery: one model, one file, each with its source, its statement, and named cases with
-//! data. Everything else about a model is derived from its statement.
+//! The gallery. Each file contains one model with its source, its declaration and named cases; everything else is
+//! derived from the declaration.
 
 pub mod body_in_quadratic_field;
 pub mod body_in_two_fields;
@@ -27,7 +27,7 @@ mod thesis;
 pub use case::{Case, Citations, Entry};
 pub use files::{CaseFile, FILES, Family, ModelFile};
 
-/// All models, in order of their names.
+/// All compiled models, ordered by name.
 pub fn gallery() -> Vec<Entry> {
     vec![
         body_in_quadratic_field::entry(),
@@ -49,7 +49,7 @@ pub fn gallery() -> Vec<Entry> {
     ]
 }
 
-/// The model with this name, as the command line spells it (`heavy-top`).
+/// The model with this command-line name, such as `heavy-top`.
 pub fn find(kebab: &str) -> Option<Entry> {
     gallery().into_iter().find(|e| e.card.kebab == kebab)
 }

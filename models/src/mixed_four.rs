@@ -1,6 +1,6 @@
-//! Four configurations in four groups, joined by springs: a body about a fixed point, a rigid motion, a second body in unit
-//! quaternions and a point mass, whose kinetic energy is quartic. Springs act at the nodes, so that a step solves for each
-//! by itself, in its own way.
+//! Four configurations in four groups, coupled by springs: a body with a fixed point, a rigid motion, a second body
+//! in unit quaternions, and a point mass with a quartic kinetic energy. The springs act at nodes, so that a step
+//! solves for each configuration separately and by a different method.
 
 use crate::case::{Case, Citations, Entry, Place, diagonal, identity};
 use crate::thesis::THESIS;
@@ -47,7 +47,7 @@ clebsch::model! {
     }
 }
 
-/// Which of its equations are those of the thesis.
+/// The equations that also appear in the thesis.
 const CITATIONS: Citations = Citations {
     work: Some(THESIS),
     statement: "",
@@ -85,7 +85,7 @@ fn case(name: &str, doc: &str, quartic: f64) -> Case {
             vec![0.8, 0.1, -0.2],
             vec![0.2, -0.4, 0.5],
         ],
-        // Momenta are exact.
+        // All momenta are exact.
         bounds: Vec::new(),
     }
 }

@@ -1,4 +1,4 @@
-//! The thesis that the gallery cites: its entries in bibliographies, and what is said of a model that it derives.
+//! The thesis cited by the gallery: its bibliography entries, and the remark on a model that it derives.
 
 use crate::case::Work;
 
@@ -11,7 +11,7 @@ pub(crate) const THESIS: Work = Work {
     item: "M. F. Dixon, \\emph{Geometric integrators for continuum dynamics}, PhD thesis, Imperial College London, 2007.",
 };
 
-/// What is said of the model of a section, whose Lagrangian there is that of a step here times a factor.
+/// The remark on the model of a section; the thesis's Lagrangian is `$factor` times the action of a step here.
 macro_rules! system {
     ($section:literal, $factor:literal) => {
         concat!(

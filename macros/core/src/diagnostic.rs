@@ -1,12 +1,11 @@
-//! What is wrong, where, and what to write instead. Stages collect diagnostics and stop at their
-//! boundary; the macro turns them into compile errors on the exact tokens, the command line into
-//! text with line, column and caret.
+//! Diagnostics: what is wrong, where, and what to write instead. A stage collects diagnostics and fails at its end.
+//! The macro turns them into compile errors with exact spans; the command line prints line, column and caret.
 
 use crate::expr::symbol::ascii;
 use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
 
-/// A range of tokens, kept as its first and last span: joining spans does nothing on stable.
+/// A range of tokens, stored as its first and last span, since stable Rust cannot join spans.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     /// Span of the first token.
@@ -30,7 +29,7 @@ impl Place {
         (start.line, start.column + 1)
     }
 
-    /// From the start of one range to the end of another.
+    /// The range from the start of one range to the end of another.
     pub fn to(self, end: Place) -> Place {
         Place {
             first: self.first,
@@ -48,16 +47,16 @@ pub struct Diagnostic {
     pub message: String,
     /// What to write instead.
     pub help: Vec<String>,
-    /// Other tokens involved, with a word on each.
+    /// Other tokens involved, with a note on each.
     pub also: Vec<(Place, String)>,
-    /// Whether it only follows from another mistake: it is not reported beside one.
+    /// Whether it is a consequence of another mistake, and is not reported if there is one.
     pub follows: bool,
-    /// Whether the model is larger than what is derived, and not wrong.
+    /// Whether the model exceeds a size limit but is otherwise valid.
     pub too_large: bool,
 }
 
 impl Diagnostic {
-    /// A diagnostic without further remarks.
+    /// A diagnostic with a message only.
     pub fn new(place: Place, message: impl Into<String>) -> Diagnostic {
         Diagnostic {
             place,
@@ -69,7 +68,7 @@ impl Diagnostic {
         }
     }
 
-    /// Told as one of a model that is not wrong but larger than what is derived.
+    /// Marks the diagnostic as a size limit: the model is valid but too large.
     #[must_use]
     pub fn of_size(self) -> Diagnostic {
         Diagnostic {
@@ -78,7 +77,7 @@ impl Diagnostic {
         }
     }
 
-    /// A diagnostic that only follows from another mistake.
+    /// A diagnostic that is a consequence of another mistake.
     pub fn following(place: Place, message: impl Into<String>) -> Diagnostic {
         Diagnostic {
             follows: true,
@@ -86,21 +85,21 @@ impl Diagnostic {
         }
     }
 
-    /// Adds a remedy.
+    /// Adds a suggestion.
     #[must_use]
     pub fn help(mut self, text: impl Into<String>) -> Diagnostic {
         self.help.push(text.into());
         self
     }
 
-    /// Adds a second place.
+    /// Adds a second position.
     #[must_use]
     pub fn also(mut self, place: Place, text: impl Into<String>) -> Diagnostic {
         self.also.push((place, text.into()));
         self
     }
 
-    /// Message and remedies as one text.
+    /// Message and suggestions as one text.
     pub fn text(&self) -> String {
         let mut text = self.message.clone();
         for line in &self.help {
@@ -110,8 +109,7 @@ impl Diagnostic {
         text
     }
 
-    /// The diagnostic for a terminal, with a word on how grave it is: file, line, column, the line
-    /// itself and carets.
+    /// The diagnostic for a terminal, with a severity level: file, line, column, the source line and carets.
     pub fn render(&self, level: &str, source: &str, file: &str) -> String {
         let mut out = format!("{level}: {}\n", self.message);
         out.push_str(&snippet(source, file, self.place));
@@ -127,22 +125,22 @@ impl Diagnostic {
     }
 }
 
-/// All mistakes found before a stage gave up; never empty when returned as an error.
+/// All mistakes found before a stage failed; not empty if returned as an error.
 #[derive(Clone, Debug, Default)]
 pub struct Errors {
     list: Vec<Diagnostic>,
 }
 
-/// More than this many messages help nobody.
+/// The maximum number of reported mistakes.
 const MOST: usize = 20;
 
 impl Errors {
-    /// Whether all that is told is that the model is larger than what is derived.
+    /// Whether all diagnostics are size limits.
     pub fn are_of_size(&self) -> bool {
         !self.list.is_empty() && self.list.iter().all(|d| d.too_large)
     }
 
-    /// Nothing wrong so far.
+    /// An empty list.
     pub fn new() -> Errors {
         Errors::default()
     }
@@ -155,7 +153,7 @@ impl Errors {
         }
     }
 
-    /// The mistake that was found first.
+    /// The first mistake.
     pub fn first(self) -> Diagnostic {
         let nothing = || Diagnostic::new(Place::token(Span::call_site()), "nothing is wrong");
         self.list.into_iter().next().unwrap_or_else(nothing)
@@ -171,7 +169,7 @@ impl Errors {
         self.list.iter()
     }
 
-    /// One mistake for each place, the first: copies of one statement repeat it.
+    /// Keeps the first mistake at each position, since copies of one statement repeat it.
     #[must_use]
     pub fn first_at_each_place(self) -> Errors {
         let mut seen = Vec::new();
@@ -186,7 +184,7 @@ impl Errors {
         out
     }
 
-    /// Stops here if anything was wrong.
+    /// Returns an error if there are mistakes.
     pub fn propagate(self) -> Result<(), Errors> {
         if self.list.is_empty() {
             Ok(())
@@ -209,7 +207,7 @@ impl Errors {
         all
     }
 
-    /// The mistakes as text for a terminal: file, line, column, the line itself and carets.
+    /// The mistakes as text for a terminal: file, line, column, the source line and carets.
     pub fn render(&self, source: &str, file: &str) -> String {
         self.list
             .iter()
@@ -238,14 +236,14 @@ impl core::fmt::Display for Errors {
 
 impl std::error::Error for Errors {}
 
-/// The shape in which rustc underlines from the first to the last token.
+/// Builds the `compile_error!` with spans such that rustc underlines from the first to the last token.
 fn compile_error(place: Place, text: &str) -> TokenStream {
     let mut head = quote_spanned!(place.first=> ::core::compile_error!);
     head.extend(quote_spanned!(place.last=> { #text }));
     head
 }
 
-/// How much of a line is quoted, in letters.
+/// The maximum number of quoted characters of a line.
 const LONGEST: usize = 200;
 
 fn snippet(source: &str, file: &str, place: Place) -> String {
@@ -265,7 +263,7 @@ fn snippet(source: &str, file: &str, place: Place) -> String {
             .saturating_sub(start.column)
             .max(1)
     };
-    // Of a very long line what stands around the place; it may be a whole model.
+    // Quote only the part around the position if the line is very long; it may contain a whole model.
     let length = line_text.chars().count();
     let (from, shown) = match length > LONGEST {
         true => {
@@ -280,7 +278,7 @@ fn snippet(source: &str, file: &str, place: Place) -> String {
     let part: String = line_text.chars().skip(from).take(shown).collect();
     let column = start.column.saturating_sub(from);
     let carets = width.min(shown.saturating_sub(column)).max(1);
-    // Tabs are kept so that the caret stands under its token.
+    // Keep tabs, so that the caret is below its token.
     let lead: String = (before.chars().chain(part.chars()))
         .take(before.len() + column)
         .map(|c| if c == '\t' { '\t' } else { ' ' })
@@ -293,8 +291,8 @@ fn snippet(source: &str, file: &str, place: Place) -> String {
     )
 }
 
-/// The candidate closest to a misspelt name, if it is close: the same name in another case or in
-/// ASCII (`Gamma` for `Γ`), or one with a few letters changed, but never all of them.
+/// The candidate closest to a misspelt name, if it is close: the same name in another case or in ASCII (`Gamma` for
+/// `Γ`), or a name with a few letters changed, but not all letters.
 pub fn closest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let length = name.chars().count();
     let limit = (length / 3).max(1).min(length.saturating_sub(1));
@@ -313,7 +311,7 @@ pub fn closest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 fn edit_distance(a: &str, b: &str) -> usize {
     let a: Vec<char> = a.chars().take(64).collect();
     let b: Vec<char> = b.chars().take(64).collect();
-    // The distances of the beginnings: of the two rows before and of this one.
+    // Edit distances of prefixes: the two previous rows and the current one.
     let mut rows = [Vec::new(), Vec::new(), (0..=b.len()).collect::<Vec<_>>()];
     for (i, x) in a.iter().enumerate() {
         rows.rotate_left(1);
@@ -321,7 +319,7 @@ fn edit_distance(a: &str, b: &str) -> usize {
         for (j, y) in b.iter().enumerate() {
             let changed = rows[1][j] + usize::from(x != y);
             let mut cost = changed.min(row[j] + 1).min(rows[1][j + 1] + 1);
-            // Two letters in the wrong order are one mistake.
+            // Two transposed letters count as one mistake.
             if i > 0 && j > 0 && *x == b[j - 1] && a[i - 1] == *y {
                 cost = cost.min(rows[0][j - 1] + 1);
             }

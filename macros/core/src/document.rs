@@ -1,6 +1,6 @@
-//! A derivation as a paper section: the model, its constrained action, variations, Clebsch
-//! relations, the balance with its momentum map, what is solved, invariants, the limit. One
-//! document; the printers turn it into text, LaTeX, Markdown, MathML or JSON.
+//! Lays out a derivation as a section of a paper: model, constrained action, variations, Clebsch relations, balance
+//! and momentum map, solution of a step, invariants, continuous limit. The result is one document; the printers turn
+//! it into text, LaTeX, Markdown, MathML or JSON.
 
 pub mod citations;
 mod compose;
@@ -33,19 +33,18 @@ use crate::expr::symbol::Symbols;
 use crate::print::document::Document;
 use crate::print::{Format, Style, expression, render};
 
-/// The style of a model: its time index.
+/// The print style of a model: its time index.
 pub fn style(d: &Derivation) -> Style {
     Style::new(&d.spec.time_index)
 }
 
-/// The derivation in a format; it cites nothing.
+/// Prints the derivation in a format, without citations.
 pub fn printed(d: &Derivation, format: Format) -> String {
     printed_telling(d, format, Style::default().columns, Citations::NONE, None)
 }
 
-/// The derivation in a format, its plain text in lines of at most so many columns where that can be; with what is
-/// cited of the model; with the model as `stated`, where its text is known. What becomes part of a paper, LaTeX and
-/// Markdown, begins with the scheme.
+/// Prints the derivation in a format, with `citations` and the model text `stated`, if known. Plain text wraps at
+/// `columns` where possible. LaTeX and Markdown begin with the scheme.
 pub fn printed_telling(
     d: &Derivation,
     format: Format,
@@ -66,8 +65,8 @@ pub fn printed_telling(
     paged(doc, &d.letters.symbols, Some(&d.spec.lets), &style, format)
 }
 
-/// A document in a format: what the model names by its names, and on a page rigid motions and their momenta in parts; on
-/// a terminal motions stay whole. A model with sites has no names here.
+/// Prints a document in a format and substitutes the model's `let` names. Every format but text also splits rigid
+/// motions and their momenta into parts. Pass `lets: None` for a model with sites.
 fn paged(
     doc: Document,
     symbols: &Symbols,
@@ -85,7 +84,7 @@ fn paged(
     render(&doc, &symbols, style, format)
 }
 
-/// A number that changes when the model's text or the engine's version does (FNV-1a).
+/// A number that changes with the model's text or the engine's version (FNV-1a).
 pub fn fingerprint(d: &Derivation) -> u64 {
     let text = format!("{} {}", env!("CARGO_PKG_VERSION"), source(d));
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, b| {
@@ -93,7 +92,7 @@ pub fn fingerprint(d: &Derivation) -> u64 {
     })
 }
 
-/// Lines for the model's rustdoc: its own documentation, then the derivation in MathML if asked.
+/// Lines for the model's rustdoc: its own documentation, then the derivation in MathML if `derivation` is set.
 pub fn rustdoc(d: &Derivation, derivation: bool) -> Vec<String> {
     let mut lines: Vec<String> = d.spec.docs.clone();
     if derivation {
@@ -106,7 +105,7 @@ pub fn rustdoc(d: &Derivation, derivation: bool) -> Vec<String> {
     lines
 }
 
-/// What was derived, in a few lines of plain text.
+/// Summarises the derivation in a few lines of plain text.
 pub fn summary(d: &Derivation) -> String {
     let s = &d.letters.symbols;
     let st = style(d);
@@ -143,7 +142,7 @@ pub fn summary(d: &Derivation) -> String {
     lines.join("\n")
 }
 
-/// Which Riccati form a balance has.
+/// Describes the Riccati form of a balance.
 fn riccati_words(r: &StepEquation, show: &mut dyn FnMut(&crate::expr::Expr) -> String) -> String {
     match r {
         StepEquation::Exact(mv) => format!("exact, C = {}", show(&mv.factor)),

@@ -1,51 +1,50 @@
-//! The work of one derivation, counted, and the most of it that any model is given. Takes what is
-//! made and evaluated on this thread; gives counts that are the same on every machine, and an end
-//! to what would not end by itself. No clock is read.
+//! Counts the work of one derivation and enforces a limit. It counts expression nodes and exact evaluations on the
+//! current thread; the counts do not depend on the machine, and no clock is read.
 
 #[cfg(test)]
 mod tests;
 
 use std::cell::Cell;
 
-/// Most nodes of expressions that one derivation makes. A model of the gallery makes a tenth of a
-/// million, the largest of 10 kB that are known to have a derivation one million.
+/// Maximum number of expression nodes in one derivation. Gallery models need about 100,000; the largest known
+/// derivable models of 10 kB need one million.
 pub const NODES: u64 = 3_000_000;
 
-/// Most nodes of one expression, each counted as often as it occurs.
+/// Maximum number of nodes of one expression, counted with repetition.
 pub const LARGEST: u32 = 500_000;
 
-/// Most products of numbers that the search for invariants takes at exact points.
+/// Maximum number of multiplications at exact points in the search for invariants.
 pub const PRODUCTS: u64 = 30_000_000;
 
-/// What one derivation has taken.
+/// The work of one derivation.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Work {
-    /// Nodes of expressions made.
+    /// Expression nodes created.
     pub nodes: u64,
-    /// Products of terms in normal forms, long words counted by their length.
+    /// Products of terms in normal forms, weighted by the length of words.
     pub terms: u64,
-    /// Products of numbers at exact points.
+    /// Multiplications at exact points.
     pub products: u64,
 }
 
 thread_local! {
-    /// Whether work on this thread is bounded: while a model is derived it is.
+    /// Whether work on this thread is limited, which is the case during a derivation.
     static BOUNDED: Cell<bool> = const { Cell::new(false) };
     static MADE: Cell<u64> = const { Cell::new(0) };
     static TAKEN: Cell<u64> = const { Cell::new(0) };
-    /// How many times the work of an ordinary model is given: a lattice that is written out has the
-    /// bodies of many.
+    /// The current limit, as a multiple of the ordinary one. An expanded chain gets a larger limit, since it has many
+    /// bodies.
     static ROOM: Cell<u64> = const { Cell::new(1) };
-    /// Nodes of the expression that was too large to make; 0 where none was.
+    /// Nodes of the expression that exceeded the limit; 0 if there is none.
     static ASKED: Cell<u32> = const { Cell::new(0) };
 }
 
-/// More work than an ordinary model is given, until it is dropped.
+/// Raises the work limit until it is dropped.
 pub(crate) struct Room {
     before: u64,
 }
 
-/// Gives so many times the work of an ordinary model.
+/// Raises the work limit to a multiple of the ordinary one.
 pub(crate) fn room(times: u64) -> Room {
     Room {
         before: ROOM.replace(times.max(1)),
@@ -58,28 +57,28 @@ impl Drop for Room {
     }
 }
 
-/// How many times the work of an ordinary model the derivation at hand is given.
+/// The current limit as a multiple of the ordinary one.
 pub(crate) fn times() -> u64 {
     ROOM.get()
 }
 
-/// Most nodes of expressions that the derivation at hand makes.
+/// The current limit on expression nodes.
 fn nodes() -> u64 {
     NODES.saturating_mul(ROOM.get())
 }
 
-/// Most products of numbers that the search for invariants of the derivation at hand takes.
+/// The current limit on multiplications in the search for invariants.
 pub(crate) fn products() -> u64 {
     PRODUCTS.saturating_mul(ROOM.get())
 }
 
-/// The work of this thread from `begin` on, bounded until it is dropped.
+/// Counts and limits the work of this thread from `begin` until it is dropped.
 pub(crate) struct Count {
     before: (bool, u64, u64),
 }
 
 impl Count {
-    /// Begins to count from zero.
+    /// Starts counting from zero.
     pub(crate) fn begin() -> Count {
         ASKED.set(0);
         Count {
@@ -87,7 +86,7 @@ impl Count {
         }
     }
 
-    /// What was taken so far, `terms` by normal forms.
+    /// The work so far; `terms` is the count of the normal forms.
     pub(crate) fn work(&self, terms: u64) -> Work {
         Work {
             nodes: MADE.get(),
@@ -106,16 +105,16 @@ impl Drop for Count {
     }
 }
 
-/// Whether more nodes were asked for than a derivation is given: what was made since is void.
+/// Whether the node limit was exceeded; results created after that are invalid.
 pub(crate) fn exhausted() -> bool {
     BOUNDED.get() && MADE.get() > nodes()
 }
 
-/// Books a node of an expression of this size; `false` when there is none left.
+/// Counts an expression node of this size; `false` if the limit is exceeded.
 pub(crate) fn make(size: u32) -> bool {
     let made = MADE.get().saturating_add(1);
     MADE.set(match size > LARGEST {
-        // One that is never walked to its end: the model is given up.
+        // Such an expression is never traversed: the derivation is abandoned.
         true if BOUNDED.get() => {
             ASKED.set(ASKED.get().max(size));
             u64::MAX
@@ -125,7 +124,7 @@ pub(crate) fn make(size: u32) -> bool {
     !exhausted()
 }
 
-/// What was asked for beyond what a derivation is given, with the number and the limit.
+/// Describes the exceeded limit, with the requested number and the limit.
 pub(crate) fn excess() -> Option<String> {
     let asked = ASKED.get();
     match (exhausted(), cut_short()) {
@@ -144,7 +143,7 @@ pub(crate) fn excess() -> Option<String> {
     }
 }
 
-/// Books products of numbers; `false` when there are none left.
+/// Counts multiplications; `false` if the limit is exceeded.
 pub(crate) fn take(products: usize) -> bool {
     TAKEN.set(TAKEN.get().saturating_add(products as u64));
     !cut_short()

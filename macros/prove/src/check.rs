@@ -1,7 +1,6 @@
-//! Re-checks an explanation without the graph that found it: every step must be one rule, used
-//! at one place, with its conditions true of the very terms that are written there. Takes the
-//! chain of terms, the statement and the rules; shares no state with the search. (The check of
-//! egg itself panics on a mistake and passes over unknown rules and over conditions.)
+//! Re-checks an explanation independently of the graph that found it. Every step must apply one rule at one position,
+//! with its conditions true for the terms in the explanation. The check shares no state with the search. (egg's own
+//! check panics on a mistake, and ignores unknown rules and conditions.)
 
 use super::conditions::{Value, View, decide, put};
 use super::language::{Term, shape};
@@ -13,7 +12,7 @@ use std::collections::BTreeMap;
 
 type Bindings<'a> = BTreeMap<Var, &'a FlatTerm<Term>>;
 
-/// Whether the chain leads from `left` to `right` by the rules; an error says which step fails.
+/// Checks that the rules lead from `left` to `right` along the chain; the error names the step that fails.
 pub fn check(
     chain: &[FlatTerm<Term>],
     left: &RecExpr<Term>,
@@ -41,7 +40,7 @@ pub fn check(
     Ok(())
 }
 
-/// The name of the rule that made a term, and whether it was read from right to left.
+/// The name of the rule that produced a term, and whether it was applied from right to left.
 pub fn rule_of(term: &FlatTerm<Term>) -> Option<(String, bool)> {
     if let Some(name) = term.forward_rule {
         return Some((name.to_string(), false));
@@ -102,7 +101,7 @@ fn step(before: &FlatTerm<Term>, after: &FlatTerm<Term>, rules: &[Rule]) -> Resu
     Ok(())
 }
 
-/// Sight of the terms that the variables of a rule are bound to.
+/// The terms bound to the variables of a rule, as conditions see them.
 struct Bound<'a> {
     bindings: &'a Bindings<'a>,
     root: &'a FlatTerm<Term>,
@@ -143,7 +142,7 @@ fn apply(rule: &Rule, from: &FlatTerm<Term>, to: &FlatTerm<Term>) -> Result<(), 
     let Some(values) = decide(&rule.given, &view) else {
         return refuse("a condition");
     };
-    // What the term itself determines must agree with what the rule computes.
+    // The bindings of the term must agree with the values that the rule computes.
     let computed: Vec<(Var, Value)> = values
         .into_iter()
         .filter(|(v, _)| !bindings.contains_key(v))
@@ -158,7 +157,7 @@ fn apply(rule: &Rule, from: &FlatTerm<Term>, to: &FlatTerm<Term>) -> Result<(), 
     Ok(())
 }
 
-/// Whether the term is an instance of the pattern; binds variables on first sight.
+/// Whether the term is an instance of the pattern; binds each variable at its first occurrence.
 fn fits<'a>(
     pattern: &PatternAst<Term>,
     at: Id,

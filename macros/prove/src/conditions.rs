@@ -1,16 +1,15 @@
-//! What a rule asks of the things its variables stand for, and what it computes from them.
-//! The same conditions are decided twice: on classes during the search, on the written terms of
-//! an explanation when it is checked.
+//! Conditions of a rule on its variables, and values that it computes from them. They are decided twice: on classes
+//! during the search, and on the terms of an explanation during the check.
 
 use super::language::{Leaf, Number, Term};
 use clebsch_core::algebra::Rational;
 use clebsch_core::expr::shape::{Dim, Shape, Structure};
 use egg::{ENodeOrVar, Id, Language, PatternAst, RecExpr, Var};
 
-/// Whether a structure is the wanted one.
+/// A predicate on structures.
 pub type Structured = fn(Structure) -> bool;
 
-/// One condition or computation, over variables of a rule.
+/// One condition or computation on the variables of a rule.
 #[derive(Clone, Copy, Debug)]
 pub enum Given<V> {
     /// A letter with `A^T = A`.
@@ -35,17 +34,17 @@ pub enum Given<V> {
     Bilinear(V, V),
     /// An exact number, taken literally.
     Number(V),
-    /// An integer (a number asked for before).
+    /// An integer; its variable already has a `Number` condition.
     Whole(V),
-    /// The first is the sum of the two numbers that follow.
+    /// The first is the sum of the other two numbers.
     Plus(V, V, V),
-    /// The first is one more than the number that follows.
+    /// The first is one more than the second.
     After(V, V),
-    /// The first is the product of the two numbers that follow.
+    /// The first is the product of the other two numbers.
     Times(V, V, V),
-    /// The first is the power of the number that follows with the integer exponent behind it.
+    /// The first is the second raised to the integer power of the third.
     Raised(V, V, V),
-    /// The first is the number of rows of the second, where it is a number.
+    /// The first is the number of rows of the second, if that is a number.
     Rows(V, V),
     /// The zero of the shape of the left-hand side.
     Zero(V),
@@ -53,7 +52,7 @@ pub enum Given<V> {
     Identity(V),
 }
 
-/// What a variable is replaced by before a rule is used.
+/// The value substituted for a variable before a rule is applied.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Value {
     /// A number.
@@ -66,18 +65,18 @@ pub enum Value {
     Leaf(Leaf),
 }
 
-/// Sight of the things that the variables of a rule stand for.
+/// The bindings of the variables of a rule.
 pub trait View {
-    /// The shape of what the variable stands for.
+    /// The shape of a variable's binding.
     fn shape(&self, v: Var) -> Option<Shape>;
-    /// Its value, where it is a number.
+    /// Its value, if it is a number.
     fn number(&self, v: Var) -> Option<Rational>;
     /// The shape of the left-hand side.
     fn whole(&self) -> Option<Shape>;
 }
 
 impl<V: Copy> Given<V> {
-    /// The variable and the wanted structure, where the condition is about a letter.
+    /// The variable and its required structure, if the condition concerns a letter.
     pub fn letter(&self) -> Option<(V, Structured)> {
         match *self {
             Given::Symmetric(v) => Some((v, Structure::is_symmetric)),
@@ -88,7 +87,7 @@ impl<V: Copy> Given<V> {
         }
     }
 
-    /// The same condition over other names of the variables, unless a name is refused.
+    /// The condition with renamed variables, or the first error of `f`.
     pub fn renamed<W, E>(&self, f: impl Fn(V) -> Result<W, E>) -> Result<Given<W>, E> {
         Ok(match *self {
             Given::Symmetric(a) => Given::Symmetric(f(a)?),
@@ -114,8 +113,8 @@ impl<V: Copy> Given<V> {
     }
 }
 
-/// Decides the conditions in order. `None` where one fails; otherwise the values of the
-/// variables that are taken literally or computed.
+/// Decides the conditions in order. `None` if one fails; otherwise the values of the variables that are literal or
+/// computed.
 pub fn decide(given: &[Given<Var>], view: &impl View) -> Option<Vec<(Var, Value)>> {
     let shape = |v: Var| view.shape(v);
     let number = |v: Var| view.number(v);
@@ -124,7 +123,7 @@ pub fn decide(given: &[Given<Var>], view: &impl View) -> Option<Vec<(Var, Value)
     for condition in given {
         let mut holds = true;
         let value = match *condition {
-            // Letters were put in place when the rule was made for this statement.
+            // Letters were substituted when the rule was made for this statement.
             Given::Symmetric(_) | Given::Skew(_) | Given::Diagonal(_) | Given::Orthogonal(_) => {
                 None
             }
@@ -182,7 +181,7 @@ impl Value {
         match self {
             Value::Number(q) => add(Term::Number(Number(q))),
             Value::Leaf(leaf) => add(Term::Leaf(leaf)),
-            // A 1 x 1 zero or identity is written as a number, always.
+            // A 1 x 1 zero or identity is always written as a number.
             Value::Zero(s) if s.is_scalar() => add(Term::Number(Number(Rational::ZERO))),
             Value::Identity(Dim::Fixed(1)) => add(Term::Number(Number(Rational::ONE))),
             Value::Zero(s) => {

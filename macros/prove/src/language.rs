@@ -1,6 +1,5 @@
-//! The terms that equality saturation rewrites: operators with two operands at most, so that
-//! associativity and commutativity are rules like any other. Takes operators and operands, gives
-//! terms and their shapes; every term of one class of equal terms has the same shape.
+//! The terms that equality saturation rewrites. Operators have at most two operands, so that associativity and
+//! commutativity are ordinary rules. All terms of a class of equal terms have the same shape.
 
 use clebsch_core::algebra::Rational;
 use clebsch_core::expr::shape::{Dim, Shape};
@@ -10,9 +9,9 @@ use core::str::FromStr;
 use egg::{Analysis, DidMerge, EGraph, Id, Language, define_language};
 
 define_language! {
-    /// Operators. A difference is a sum with a summand scaled by -1, a quotient is a scaling by a
-    /// power with exponent -1; the first operand of a scaling is a number, and a product (`*`)
-    /// joins matrices whose inner dimensions agree.
+    /// Operators. A difference is a sum with a term scaled by -1; a quotient is a scaling by a power with exponent
+    /// -1. The first operand of a scaling is a number, and a product (`*`) joins matrices with equal inner
+    /// dimensions.
     pub enum Term {
         "+" = Sum([Id; 2]),
         "." = Scale([Id; 2]),
@@ -62,14 +61,14 @@ impl FromStr for Number {
     }
 }
 
-/// What has no operands and belongs to the statement at hand.
+/// A term without operands, specific to the statement.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum Leaf {
     /// A symbol at an offset, with its shape.
     Letter(Letter, Shape),
-    /// A number that exact arithmetic does not follow.
+    /// A number outside the range of exact arithmetic.
     Constant(Constant),
-    /// A dimension: operand of an identity or a zero matrix.
+    /// A dimension, as the operand of an identity or a zero matrix.
     Size(Dim),
     /// The unit vector along an axis counted from 0.
     Unit(Dim, u8),
@@ -90,7 +89,7 @@ impl fmt::Display for Leaf {
     }
 }
 
-/// Leaves come from statements only; a rule that names one is a mistake in the table.
+/// Leaves come from statements only; a rule with a leaf is a mistake in the table.
 impl FromStr for Leaf {
     type Err = ();
 
@@ -99,8 +98,8 @@ impl FromStr for Leaf {
     }
 }
 
-/// The shape of a term from the shapes of its operands; `None` where they do not fit.
-/// A size counts as the identity matrix that it measures.
+/// The shape of a term from the shapes of its operands; `None` if they do not match. A size counts as the identity
+/// matrix of that size.
 pub fn shape(node: &Term, operands: &[Shape]) -> Option<Shape> {
     let three = Dim::Fixed(3);
     let scalar = |s: Shape| s.is_scalar().then_some(s);
@@ -139,16 +138,16 @@ pub fn shape(node: &Term, operands: &[Shape]) -> Option<Shape> {
     }
 }
 
-/// What is known of a class of equal terms.
+/// Facts about a class of equal terms.
 #[derive(Clone, Debug)]
 pub struct Fact {
-    /// The common shape; `None` for a term that does not fit, which no rule touches.
+    /// The common shape; `None` for an ill-shaped term, to which no rule applies.
     pub shape: Option<Shape>,
-    /// The value, where a number is among the terms.
+    /// The value, if one of the terms is a number.
     pub number: Option<Rational>,
 }
 
-/// Keeps a [`Fact`] for every class.
+/// Maintains a [`Fact`] for every class.
 #[derive(Clone, Default, Debug)]
 pub struct Facts;
 

@@ -1,6 +1,6 @@
-//! A second prover, by equality saturation: it shares neither normal forms nor reductions with
-//! [`clebsch_core::algebra`]. Takes a statement `left = right`, gives a proof whose every step has been
-//! re-checked, or the reason why none was found. No answer of it refutes a statement.
+//! A second prover, by equality saturation. It shares neither normal forms nor reductions with
+//! [`clebsch_core::algebra`]. For a statement `left = right` it returns a proof in which every step was re-checked,
+//! or the reason why it found none. It never refutes a statement.
 
 mod check;
 mod conditions;
@@ -22,8 +22,8 @@ use clebsch_core::expr::symbol::Symbols;
 use egg::{Language, RecExpr};
 use language::{Leaf, Term};
 
-/// What equality saturation makes of every step of a derivation's certificate, one text each: the proof by named rules, or why
-/// it found none (which refutes nothing).
+/// Runs equality saturation on every step of a derivation's certificate. Each text is a proof by named rules, or the
+/// reason why none was found, which does not refute the step.
 pub fn second_proof(d: &Derivation) -> Vec<String> {
     let verdict = |step: &Step| {
         let statement = Statement {
@@ -45,11 +45,11 @@ pub fn second_proof(d: &Derivation) -> Vec<String> {
     d.certificate.steps.iter().map(verdict).collect()
 }
 
-/// An equation between two expressions of one shape, to hold for all admissible values of its
-/// letters wherever both sides are defined.
+/// An equation between two expressions of equal shape, claimed for all admissible values of its letters for which
+/// both sides are defined.
 #[derive(Clone, Debug)]
 pub struct Statement {
-    /// What the statement is called in reports.
+    /// The name of the statement in reports.
     pub name: String,
     /// Left-hand side.
     pub left: Expr,
@@ -57,20 +57,20 @@ pub struct Statement {
     pub right: Expr,
 }
 
-/// How far a search may go. Counts of terms and iterations decide, no clock.
+/// Limits of a search, in numbers of terms and iterations; no clock is read.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Limits {
-    /// Terms held at once.
+    /// Maximum number of terms in the graph.
     pub nodes: usize,
-    /// Iterations, all rounds together.
+    /// Maximum number of iterations, over all rounds.
     pub iterations: usize,
-    /// Summands of a side, multiplied out.
+    /// Maximum number of summands of a side after expansion.
     pub summands: usize,
 }
 
 impl Default for Limits {
-    /// Enough for the identities of discrete mechanics, and about a second of an optimised
-    /// build for a statement that cannot be proved.
+    /// Sufficient for the identities of discrete mechanics. A statement without a proof takes about a second in an
+    /// optimised build.
     fn default() -> Self {
         Limits {
             nodes: 12_000,
@@ -80,24 +80,24 @@ impl Default for Limits {
     }
 }
 
-/// The answer of [`prove`].
+/// The result of [`prove`].
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Verdict {
     /// The statement holds.
     Proved {
-        /// The proof: the left-hand side, then one line for each step with the name of its rule
-        /// (`read backwards` where its right-hand side was replaced by its left-hand side).
+        /// The proof: the left-hand side, then one line for each step with the name of its rule. `read backwards`
+        /// marks a rule applied from right to left.
         explanation: Vec<String>,
-        /// Terms held at the end of the search.
+        /// Terms in the graph at the end of the search.
         nodes: usize,
         /// Iterations used.
         iterations: usize,
     },
-    /// No proof was found. The statement may still hold.
+    /// No proof was found; the statement may still be true.
     Unproved {
-        /// Why.
+        /// The reason.
         reason: String,
-        /// Terms held at the end of the search.
+        /// Terms in the graph at the end of the search.
         nodes: usize,
         /// Iterations used.
         iterations: usize,
@@ -119,8 +119,8 @@ fn refused(reason: impl Into<String>) -> Verdict {
     }
 }
 
-/// Tries to prove a statement. Letters bring the identities of their declared structure, and
-/// nothing else is assumed of them: definitions have to be substituted beforehand.
+/// Tries to prove a statement. The prover uses the identities of the declared structure of each letter and no other
+/// assumptions, so definitions must be substituted first.
 pub fn prove(symbols: &Symbols, statement: &Statement, limits: &Limits) -> Verdict {
     let (mut left, mut right) = (statement.left.clone(), statement.right.clone());
     if left.shape() != right.shape() {
@@ -160,7 +160,7 @@ pub fn prove(symbols: &Symbols, statement: &Statement, limits: &Limits) -> Verdi
     prove_terms(symbols, &l, &r, first, limits)
 }
 
-/// The same for terms of the search language.
+/// Tries to prove a statement between terms of the search language.
 fn prove_terms(
     symbols: &Symbols,
     left: &RecExpr<Term>,

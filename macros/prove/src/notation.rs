@@ -1,12 +1,12 @@
-//! Terms as people write them: `Ω^T (J Ω^T - Ω J) Ω`. Takes the terms of an explanation, gives
-//! text; brackets show the nesting, since nesting is what some steps change.
+//! Prints terms in mathematical notation: `Ω^T (J Ω^T - Ω J) Ω`. Brackets show the nesting, since some steps change
+//! only the nesting.
 
 use super::language::{Leaf, Term};
 use clebsch_core::expr::Letter;
 use clebsch_core::expr::symbol::Symbols;
 use egg::{FlatTerm, Id, Language, RecExpr};
 
-/// How tightly a text binds: a higher number needs fewer brackets.
+/// Precedence of a text: higher levels need fewer brackets.
 const SUM: u8 = 0;
 const TIMES: u8 = 1;
 const POWER: u8 = 2;
@@ -17,7 +17,7 @@ pub fn text(symbols: &Symbols, term: &FlatTerm<Term>) -> String {
     write(symbols, term).0
 }
 
-/// The text of a term that is written out as a list of its nodes.
+/// The text of a term given as a list of nodes.
 pub fn whole(symbols: &Symbols, term: &RecExpr<Term>) -> String {
     fn from(term: &RecExpr<Term>, id: Id) -> FlatTerm<Term> {
         let node = term[id].clone();

@@ -1,6 +1,5 @@
-//! The rules of one statement: the general ones, and for each of its letters those that its
-//! structure grants (`g g^T = 1` for the rotation g of the statement, ...). Takes the table and
-//! the letters, gives rules with unique names.
+//! The rules for one statement: the general rules, and the rules that follow from the structure of its letters
+//! (`g g^T = 1` for a rotation g). Every rule has a unique name.
 
 use super::conditions::{Given, Structured, Value, put};
 use super::language::{Leaf, Term};
@@ -11,25 +10,25 @@ use clebsch_core::expr::shape::Dim;
 use clebsch_core::expr::symbol::Symbols;
 use egg::{PatternAst, Var};
 
-/// One rule, ready for use.
+/// A rule in usable form.
 #[derive(Clone, Debug)]
 pub struct Rule {
-    /// Unique name; names the letter for a rule that holds for one letter only.
+    /// Unique name; it contains the letter if the rule holds for one letter only.
     pub name: String,
-    /// When it takes part in the search.
+    /// The group that determines the rounds of the search in which it is used.
     pub group: Group,
     /// Left-hand side.
     pub left: PatternAst<Term>,
     /// Right-hand side.
     pub right: PatternAst<Term>,
-    /// What must hold, and what is computed.
+    /// Its conditions and computations.
     pub given: Vec<Given<Var>>,
-    /// When the search should use it.
+    /// When the search should apply it.
     pub worth: Vec<Worth<Var>>,
 }
 
-/// All rules for a statement in these leaves, sorted and without repetition. An error names the
-/// line of the table that cannot be read.
+/// All rules for a statement with these leaves, sorted and without repetition. An error names the unreadable line of
+/// the table.
 pub fn rules(symbols: &Symbols, leaves: &[Leaf]) -> Result<Vec<Rule>, String> {
     let mut out = Vec::new();
     for (group, rows) in TABLE {
@@ -38,7 +37,7 @@ pub fn rules(symbols: &Symbols, leaves: &[Leaf]) -> Result<Vec<Rule>, String> {
         }
     }
     unit_rules(leaves, &mut out)?;
-    // Two symbols may print alike; a name must still find one rule.
+    // Two symbols may print alike, but names of rules must be unique.
     for i in 1..out.len() {
         let (before, rest) = out.split_at_mut(i);
         if let Some(rule) = rest.first_mut()
@@ -60,7 +59,7 @@ fn variable(name: &str, text: &str) -> Result<Var, String> {
         .map_err(|e| format!("rule `{name}` is not readable: {e}"))
 }
 
-/// The row for every choice of distinct letters that its conditions admit.
+/// Instances of a row for every choice of distinct letters that satisfy its conditions.
 fn instances(
     symbols: &Symbols,
     leaves: &[Leaf],
@@ -121,7 +120,7 @@ fn instances(
     Ok(())
 }
 
-/// Brackets and vector products of the unit vectors of the statement.
+/// Brackets and vector products of the unit vectors in the statement.
 fn unit_rules(leaves: &[Leaf], out: &mut Vec<Rule>) -> Result<(), String> {
     let (u, v, w) = (
         variable("unit vectors", "?u")?,

@@ -1,12 +1,12 @@
-//! The rewrite rules, one a line: name, left-hand side, right-hand side, conditions. Each holds
-//! for real matrices wherever its left-hand side is defined, and then so is its right-hand side.
-//! Prefix notation of [`super::language::Term`]; variables begin with `?`.
+//! The rewrite rules, one per line: name, left-hand side, right-hand side, conditions. Each holds for real matrices
+//! wherever its left-hand side is defined; its right-hand side is then defined too. Terms are in the prefix notation
+//! of [`super::language::Term`]; variables begin with `?`.
 
 use super::conditions::Given::{self, *};
 use super::worth::Join::{Product, Scale, Sum};
 use super::worth::Worth::{self, *};
 
-/// Name, left-hand side, right-hand side, what must hold, when it is worth using.
+/// Name, left-hand side, right-hand side, conditions, and when the rule is worth applying.
 pub type Row = (
     &'static str,
     &'static str,
@@ -15,18 +15,18 @@ pub type Row = (
     &'static [Worth<&'static str>],
 );
 
-/// When a group of rules takes part in the search.
+/// Groups of rules, which take part in different rounds of the search.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Group {
-    /// Order of summands: n of them make about n 2^n terms.
+    /// Reorders summands: n summands give about n 2^n terms.
     Order,
-    /// Bringing nested sums to one form.
+    /// Brings nested sums to one form.
     Nest,
-    /// Multiplying out.
+    /// Expands products.
     Linear,
-    /// Turning words around: cyclic order in traces, brackets read backwards.
+    /// Rotates products: cyclic order in traces, brackets in reverse.
     Turn,
-    /// All others.
+    /// All other rules.
     Plain,
 }
 
@@ -83,7 +83,7 @@ const SUMS: &[Row] = &[
     ("one more of the same first",   "(+ ?a (+ (. ?p ?a) ?b))",        "(+ (. ?r ?a) ?b)",                       &[Number("?p"), After("?r", "?p")], &[Nonzero("?a")]),
     ("collecting the same",          "(+ (. ?p ?a) (. ?q ?a))",        "(. ?r ?a)",                              &[Number("?p"), Number("?q"), Plus("?r", "?p", "?q")], &[Nonzero("?a")]),
     ("collecting the same first",    "(+ (. ?p ?a) (+ (. ?q ?a) ?b))", "(+ (. ?r ?a) ?b)",                       &[Number("?p"), Number("?q"), Plus("?r", "?p", "?q")], &[Nonzero("?a")]),
-    // With this a quantity equal to its opposite is found to be zero.
+    // This rule proves that a quantity equal to its negative is zero.
     ("half of the double",           "(. -1 ?a)",                      "(. 1/2 (+ (. -1 ?a) (. -1 ?a)))",        &[], &[Itself("?a")]),
 ];
 
@@ -103,7 +103,7 @@ const SCALINGS: &[Row] = &[
 
 #[rustfmt::skip]
 const PRODUCTS: &[Row] = &[
-    // Words nest to the right, but a column before a row closes its word.
+    // Products nest to the right, but a column before a row closes its product.
     ("nesting to the right",         "(* (* ?a ?b) ?c)",               "(* ?a (* ?b ?c))",                       &[Wide("?b")], &[Composite(Product, "?a", "?b")]),
     ("nesting to the left",          "(* ?a (* ?b ?c))",               "(* (* ?a ?b) ?c)",                       &[Column("?b")], &[Composite(Product, "?b", "?c")]),
     ("scaled first factor",          "(* (. ?s ?a) ?b)",               "(. ?s (* ?a ?b))",                       &[], &[]),

@@ -1,6 +1,6 @@
-//! Equality saturation within bounds: rules are applied to all known terms at once until both
-//! sides fall together or a bound is reached. Takes two terms and rules, gives the chain of
-//! rewritten terms from one to the other, or why there is none. Counts decide, not the clock.
+//! Equality saturation within limits: rules are applied to all known terms at once until both sides are in one class
+//! or a limit is reached. The result is the chain of rewritten terms, or the reason why there is none. The limits are
+//! counts; no clock is read.
 
 use super::Limits;
 use super::conditions::{decide, put};
@@ -16,10 +16,9 @@ use egg::{
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-/// The rounds of a search, each until it finds nothing new: multiply out in the order as
-/// written; turn words around; bring nested sums to one form; let summands change places.
-/// Reordering n summands makes about n 2^n terms and must not be multiplied out again, hence
-/// the order of the rounds.
+/// The rounds of a search; each runs until it finds nothing new. They expand products in the given order, rotate
+/// products, bring nested sums to one form, and reorder summands. Reordering n summands gives about n 2^n terms,
+/// which must not be expanded again, so it is the last round.
 const ROUNDS: [&[Group]; 4] = [
     &[Group::Plain, Group::Linear],
     &[Group::Plain, Group::Linear, Group::Turn],
@@ -27,22 +26,21 @@ const ROUNDS: [&[Group]; 4] = [
     &[Group::Plain, Group::Turn, Group::Order],
 ];
 
-/// Matches of one rule in one iteration beyond which the rule has to pause: keeps the overshoot
-/// of the node limit small.
+/// A rule with more matches in one iteration has to pause, which keeps the overshoot of the node limit small.
 const MATCHES: usize = 4_000;
 
-/// Longest proof that is written out.
+/// The maximum length of an explanation.
 const STEPS: u64 = 20_000;
 
-/// How a search ended.
+/// The result of a search.
 pub struct Found {
-    /// The terms from the left to the right side, each but the first with the rule that made it.
+    /// The terms from the left to the right side; each but the first has the rule that produced it.
     pub chain: Option<Vec<FlatTerm<Term>>>,
     /// Why the search ended.
     pub end: String,
-    /// Terms held at the end.
+    /// Terms in the graph at the end.
     pub nodes: usize,
-    /// Iterations of all rounds.
+    /// Iterations over all rounds.
     pub iterations: usize,
 }
 
@@ -67,7 +65,7 @@ impl Applier<Term, Facts> for Conditional {
         let Some(values) = decide(&self.rule.given, &here) else {
             return Vec::new();
         };
-        // Numbers stand literally on both sides, so that the step can be read and checked alone.
+        // Numbers are literal on both sides, so that the step can be read and checked alone.
         let left = put(&self.rule.left, &values);
         let right = put(&self.rule.right, &values);
         let (id, changed) = graph.union_instantiations(&left, &right, found, name);
@@ -85,7 +83,7 @@ fn rewrite(rule: &Rule) -> Result<Rewrite<Term, Facts>, String> {
     }
 }
 
-/// Looks for a chain of rules from `left` to `right`. The same input gives the same answer.
+/// Searches for a chain of rules from `left` to `right`. The result is deterministic.
 pub fn search(
     left: &RecExpr<Term>,
     right: &RecExpr<Term>,
@@ -111,7 +109,7 @@ pub fn search(
             .with_egraph(graph)
             .with_iter_limit(left_over)
             .with_node_limit(limits.nodes)
-            // The other limits bound the work; a clock would let other load decide what is proved.
+            // The other limits bound the work; with a time limit, the result would depend on the load of the machine.
             .with_time_limit(Duration::MAX)
             .with_scheduler(BackoffScheduler::default().with_initial_match_limit(MATCHES))
             .with_hook(move |runner| {
@@ -158,7 +156,7 @@ pub fn search(
     })
 }
 
-/// Terms of an explanation once written out: shared parts are repeated there.
+/// The number of terms of an explanation in full, in which shared parts are repeated.
 fn length(proof: &[Rc<TreeTerm<Term>>], known: &mut BTreeMap<*const TreeTerm<Term>, u64>) -> u64 {
     let mut total = 0u64;
     for tree in proof {
@@ -177,7 +175,7 @@ fn length(proof: &[Rc<TreeTerm<Term>>], known: &mut BTreeMap<*const TreeTerm<Ter
     total
 }
 
-/// The chain without its returns to a term that was there before.
+/// The chain without loops back to an earlier term.
 fn without_detours(chain: &[FlatTerm<Term>]) -> Vec<FlatTerm<Term>> {
     let mut out: Vec<FlatTerm<Term>> = Vec::new();
     for term in chain {

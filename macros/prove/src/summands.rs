@@ -1,11 +1,10 @@
-//! How many summands a statement has when multiplied out, and the removal of those that both
-//! sides share. Takes expressions; reordering n summands makes about n 2^n terms, which is
-//! what bounds the search.
+//! Counts the summands of a statement after expansion, and removes summands that both sides share. Reordering n
+//! summands gives about n 2^n terms, which limits the search.
 
 use clebsch_core::algebra::Rational;
 use clebsch_core::expr::{Expr, Node, neg, sum};
 
-/// The largest number of summands of any sum inside the expression, multiplied out; saturating.
+/// The largest number of summands of any sum in the expression after expansion; saturating.
 pub fn count(e: &Expr) -> usize {
     let inside = e.children().into_iter().map(count).max().unwrap_or(1);
     expanded(e).max(inside)
@@ -48,8 +47,8 @@ fn summands(e: &Expr) -> Vec<Expr> {
     }
 }
 
-/// Both sides without the summands that stand, letter for letter, on both; with the summands
-/// removed. The same summands taken from both sides leave an equivalent statement.
+/// Both sides without the summands that are identical on both, and the removed summands. The result is an equivalent
+/// statement.
 pub fn without_common(left: &Expr, right: &Expr) -> (Expr, Expr, Vec<Expr>) {
     let mut rest = summands(right);
     let mut kept = Vec::new();

@@ -1,5 +1,5 @@
-//! From expressions to terms: n-ary sums and products become nested pairs, signs and quotients
-//! become scalings. Takes an expression, gives its term, or nothing where shapes do not fit.
+//! Translates expressions into terms: n-ary sums and products become nested pairs, and signs and quotients become
+//! scalings. The result is `None` if shapes do not match.
 
 use super::language::{Leaf, Number, Term, shape};
 use clebsch_core::algebra::Rational;
@@ -7,7 +7,7 @@ use clebsch_core::expr::shape::{Dim, Shape};
 use clebsch_core::expr::{Expr, Function, Node, Part};
 use egg::{Id, Language, RecExpr};
 
-/// A term under construction, with the shape of each of its sub-terms.
+/// A term under construction, with the shapes of its subterms.
 #[derive(Default)]
 struct Builder {
     term: RecExpr<Term>,
@@ -61,7 +61,7 @@ impl Builder {
             .try_fold(*last, |tail, head| self.add(join([*head, tail])))
     }
 
-    /// Numbers in front, matrices behind in their order.
+    /// Scalar factors first, then matrices in their order.
     fn product(&mut self, factors: &[Expr]) -> Option<Id> {
         let (scalars, matrices): (Vec<Expr>, Vec<Expr>) =
             factors.iter().cloned().partition(|f| f.shape().is_scalar());
@@ -129,7 +129,7 @@ impl Builder {
             Node::Part(Part::Diagonal, a) => self.unary(a, Term::Diagonal),
             Node::Call(Function::Exp, a) => self.unary(a, Term::Exp),
             Node::Call(Function::Log, a) => self.unary(a, Term::Log),
-            // The rules know nothing of these: what holds them stays unproved here.
+            // No rules for these exist, so that statements with them stay unproved.
             Node::Call(..)
             | Node::Inclusion(..)
             | Node::Map(..)

@@ -1,6 +1,5 @@
-//! When a rule is worth using. Rules hold in both directions and always; these conditions keep
-//! the search from writing the same thing in ever longer ways (`x = g g^T x = ...`). They look
-//! at what is known so far and never decide what is true.
+//! When a rule is worth applying. Rules hold in both directions; these conditions keep the search from writing the
+//! same term in ever longer forms (`x = g g^T x = ...`). They use what is known so far and never decide what is true.
 
 use super::conditions::View;
 use super::language::{Facts, Term};
@@ -8,10 +7,10 @@ use clebsch_core::algebra::Rational;
 use clebsch_core::expr::shape::Shape;
 use egg::{EGraph, Id, Subst, Var};
 
-/// One condition on the worth of a rule, over its variables.
+/// A condition on the variables of a rule under which it is worth applying.
 #[derive(Clone, Copy, Debug)]
 pub enum Worth<V> {
-    /// The left-hand side is known to equal this.
+    /// The left-hand side is known to equal this variable.
     Itself(V),
     /// Not known to be a number.
     Unknown(V),
@@ -21,13 +20,13 @@ pub enum Worth<V> {
     Nonzero(V),
     /// Not known to be multiples of each other.
     Independent(V, V),
-    /// The left-hand side is not known to be a multiple of this.
+    /// The left-hand side is not known to be a multiple of this variable.
     Apart(V),
     /// Not known to be a sum.
     Single(V),
     /// The left-hand side is not known to be a sum.
     Unsplit,
-    /// The two joined in this way are not known to be something simple, as in `g g^T = 1`.
+    /// The two joined in this way are not known to be a simple term, as `g g^T = 1` is.
     Composite(Join, V, V),
 }
 
@@ -36,14 +35,14 @@ pub enum Worth<V> {
 pub enum Join {
     /// `a + b`.
     Sum,
-    /// A number times a matrix or a number.
+    /// A scalar times a matrix or a scalar.
     Scale,
     /// A product of matrices.
     Product,
 }
 
 impl<V: Copy> Worth<V> {
-    /// The same condition over other names of the variables, unless a name is refused.
+    /// The condition with renamed variables, or the first error of `f`.
     pub fn renamed<W, E>(&self, f: impl Fn(V) -> Result<W, E>) -> Result<Worth<W>, E> {
         Ok(match *self {
             Worth::Itself(a) => Worth::Itself(f(a)?),
@@ -59,11 +58,11 @@ impl<V: Copy> Worth<V> {
     }
 }
 
-/// A match as conditions see it.
+/// A match, as conditions see it.
 pub struct Matched<'a> {
-    /// All terms.
+    /// The graph of all terms.
     pub graph: &'a EGraph<Term, Facts>,
-    /// What the variables stand for.
+    /// The bindings of the variables.
     pub found: &'a Subst,
     /// The class of the left-hand side.
     pub root: Id,
@@ -88,7 +87,7 @@ impl Matched<'_> {
         Some(self.graph.find(*self.found.get(v)?))
     }
 
-    /// Whether all the conditions hold here.
+    /// Whether all conditions hold for this match.
     pub fn worth(&self, when: &[Worth<Var>]) -> bool {
         when.iter().all(|w| self.holds(*w).unwrap_or(true))
     }
@@ -120,7 +119,7 @@ impl Matched<'_> {
             || self.any(id, &|node| matches!(node, Term::Zero(_)))
     }
 
-    /// The class itself and all that it is known to be a multiple of.
+    /// The class itself, and all classes that it is a known multiple of.
     fn lines(&self, id: Id) -> Vec<Id> {
         let scaled = self.graph[id].nodes.iter().filter_map(|node| match node {
             Term::Scale([s, a]) if self.graph[*s].data.number.is_some() => {
@@ -136,7 +135,7 @@ impl Matched<'_> {
         a.iter().any(|id| b.contains(id))
     }
 
-    /// `a + 0` or `a/2 + a/2` does not make a sum of `a`.
+    /// Whether the class contains a proper sum; `a + 0` or `a/2 + a/2` does not make `a` a sum.
     fn is_sum(&self, id: Id) -> bool {
         let own = self.lines(id);
         let part = |id: &Id| own.contains(&self.graph.find(*id));
@@ -146,8 +145,8 @@ impl Matched<'_> {
         })
     }
 
-    /// Whether the two together are a letter or the like, or one of them holds the whole again,
-    /// as in `x + (-x + y)`.
+    /// Whether the two joined are a simple term such as a letter, or one of them contains the whole, as in
+    /// `x + (-x + y)`.
     fn is_simple(&self, join: Join, pair: [Id; 2]) -> Option<bool> {
         let joined = self.graph.lookup(match join {
             Join::Sum => Term::Sum(pair),

@@ -1,12 +1,12 @@
-//! Fluids as particles with functionals of all of them, compiled: one stepper for every number of particles. Their
-//! statements are those of the files in `models/fluids/`.
+//! Compiled models of fluids as particles, with functionals of all particles: one stepper for every number of
+//! particles. The files in `models/fluids/` contain the same models.
 
 pub mod particle_mesh_1d;
 pub mod particle_mesh_2d;
 pub mod shallow_water_2d;
 pub mod shallow_water_2d_regularised;
 
-/// The files and the statements that are compiled.
+/// The model files and the text of the compiled models.
 pub const STATEMENTS: [(&str, &str); 4] = [
     (
         include_str!("../../fluids/particle-mesh-1d.clebsch"),

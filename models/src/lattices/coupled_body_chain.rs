@@ -1,4 +1,4 @@
-//! Bodies whose kinetic energy joins neighbours, compiled for every number of them.
+//! Bodies with kinetic coupling between neighbours, compiled for every number of bodies.
 
 clebsch::model! {
     /// Bodies in a row whose kinetic energy joins the velocities of neighbours: each carries a mass at d

@@ -1,5 +1,5 @@
-//! Models with labels, compiled: one stepper for every number of sites. Their statements are those of
-//! the files in `models/lattices/`, which run without a build.
+//! Compiled models with labels: one stepper for every number of sites. The files in `models/lattices/` contain the
+//! same models and run without a build.
 
 pub mod coupled_body_chain;
 pub mod coupled_tops;
@@ -12,7 +12,7 @@ pub mod sine_gordon;
 pub mod toda_chain;
 pub mod uniform_tension_rod;
 
-/// The files and the statements that are compiled.
+/// The model files and the text of the compiled models.
 pub const STATEMENTS: [(&str, &str); 10] = [
     (
         include_str!("../../lattices/coupled-body-chain.clebsch"),

@@ -1,4 +1,4 @@
-//! A rod of one tension, compiled for every number of sections.
+//! A rod of uniform tension, compiled for every number of sections.
 
 clebsch::model! {
     /// A rod of Kirchhoff's whose tension is the same everywhere: attitudes of its sections, whose third axes are the tangent

@@ -1,5 +1,5 @@
-//! Declarations: symbols with their shapes, the configurations and advected quantities that need constraints, and
-//! which constraints were stated.
+//! Declarations: symbols with their shapes, configurations and advected quantities, and the constraints declared for
+//! them.
 
 use super::entries::Entries;
 use super::messages;
@@ -15,7 +15,7 @@ use crate::groups::Additive;
 use crate::syntax::ast::{Model, Name, Statement};
 use std::collections::BTreeSet;
 
-/// A declared configuration and its constraint, once stated.
+/// A declared configuration, with its constraint once it is declared.
 #[derive(Clone)]
 pub struct DeclaredGroup {
     pub element: SymbolId,
@@ -27,7 +27,7 @@ pub struct DeclaredGroup {
     stated: bool,
 }
 
-/// A declared advected quantity, its constraint and its definition, once stated.
+/// A declared advected quantity, with its constraint and definition once they are declared.
 #[derive(Clone)]
 pub struct DeclaredAdvected {
     pub quantity: SymbolId,
@@ -37,20 +37,20 @@ pub struct DeclaredAdvected {
     stated: bool,
 }
 
-/// A name that no other may equal, in print or in files.
+/// A name that is in use; no other name may equal it in print or in files.
 #[derive(Clone)]
 struct Taken {
     name: String,
     place: Place,
-    /// As a reader sees it.
+    /// Its printed form.
     seen: String,
-    /// As files spell it.
+    /// Its form in files.
     ascii: String,
-    /// Whether it is a copy, whose site may print in brackets.
+    /// Whether it is a copy at a site, which may print its site in brackets.
     is_copy: bool,
 }
 
-/// Everything declared.
+/// All declarations of a model.
 #[derive(Clone)]
 pub struct Declared {
     pub symbols: Symbols,
@@ -61,10 +61,10 @@ pub struct Declared {
     pub parameter_places: Vec<Place>,
     pub configurations: Vec<DeclaredGroup>,
     pub advected: Vec<DeclaredAdvected>,
-    /// Fields whose matrix is built from the entries that are kept.
+    /// Fields whose matrix is built from independent entries.
     pub structured: Vec<(SymbolId, Entries)>,
     taken: Vec<Taken>,
-    /// Typeset names: the text as a reader sees it, and the name that declares it.
+    /// Typeset names: the printed form, and the declaring name.
     typeset: Vec<(String, Name)>,
     /// Copies that print with their sites in brackets.
     apart: BTreeSet<String>,
@@ -127,13 +127,13 @@ pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
 }
 
 impl Declared {
-    /// How the matrix of a quantity is built from the entries that are kept.
+    /// How the matrix of a quantity is built from its independent entries.
     pub fn entries(&self, id: SymbolId) -> Entries {
         let found = self.structured.iter().find(|(own, _)| *own == id);
         found.map_or(Entries::Own, |(_, entries)| *entries)
     }
 
-    /// Names the increments of fields, and states how the fields advance: `next(X) = X + ΔX`.
+    /// Names the increments of fields and sets their constraints: `next(X) = X + ΔX`.
     fn increments(&mut self) {
         let symbols = &mut self.symbols;
         let fields = self.configurations.iter_mut();
@@ -226,7 +226,7 @@ impl Declared {
                     }
                     self.configurations.push(DeclaredGroup {
                         element,
-                        // Named when every name of the model is known.
+                        // The increment gets its symbol once all names of the model are known.
                         velocity: element,
                         group: Group::Additive(Additive(shape)),
                         place: name.place,
@@ -307,7 +307,7 @@ impl Declared {
         }
     }
 
-    /// Whether the name is free; reports it otherwise.
+    /// Whether the name is free; reports an error if it is not.
     pub fn admit(&mut self, name: &Name, errors: &mut Errors) -> bool {
         let text = name.text.as_str();
         if let Some(d) = unusable(name) {
@@ -376,7 +376,7 @@ impl Declared {
         true
     }
 
-    /// A name as a reader sees it.
+    /// The printed form of a name.
     fn shown(&self, name: &Name) -> String {
         match self.apart.contains(&name.text) {
             true => seen_apart(&name.text, &self.time_index),
@@ -384,8 +384,8 @@ impl Declared {
         }
     }
 
-    /// Prints the site of a copy in brackets where it would print as another name or as a sign of derivations: the copy
-    /// is not written in the model, and is not to be renamed.
+    /// Prints the site of a copy in brackets if the copy would otherwise print like another name or like a sign of
+    /// derivations. The user does not write the copy, and so cannot rename it.
     fn tell_apart(&mut self, name: &Name) {
         let shown = seen(&name.text, &self.time_index);
         let alike = |t: &Taken| t.seen == shown;
@@ -411,8 +411,8 @@ impl Declared {
         }
     }
 
-    /// Keeps the name from being declared again. How it prints is found once: compared with every
-    /// later name, it would be most of the work of a long list of parameters.
+    /// Marks the name as used. Its printed form is computed here once; computing it for each comparison would
+    /// dominate the work of a long list of parameters.
     pub(super) fn take(&mut self, name: &str, place: Place) {
         self.taken.push(Taken {
             name: name.to_owned(),
@@ -423,7 +423,7 @@ impl Declared {
         });
     }
 
-    /// A name in formulas of LaTeX, as a reader sees it.
+    /// The printed form of a name in LaTeX formulas.
     fn in_latex(&self, name: &Name) -> String {
         match &name.typeset {
             Some((latex, _)) => seen_typeset(latex, &self.time_index),
@@ -516,7 +516,7 @@ impl Declared {
         }
     }
 
-    /// Notes that a constraint was stated, though it was wrong.
+    /// Marks the constraint of a quantity as declared, although it was faulty.
     pub fn mark_stated(&mut self, id: SymbolId) {
         for g in self.configurations.iter_mut().filter(|g| g.element == id) {
             g.stated = true;
@@ -559,7 +559,7 @@ impl Declared {
         }
     }
 
-    /// Every configuration and advected quantity needs its constraint.
+    /// Reports configurations and advected quantities without a constraint.
     pub fn require_constraints(&self, errors: &mut Errors) {
         for g in self.configurations.iter().filter(|g| !g.stated) {
             errors.push(messages::missing_constraint(

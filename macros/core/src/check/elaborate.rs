@@ -1,5 +1,5 @@
-//! From syntax to shaped expressions: names become symbols, every operation checks its shapes,
-//! `Id`, `0` and `E1 E2 ...` take theirs from the context.
+//! Turns syntax into expressions with shapes: names become symbols, and every operation checks its shapes. `Id`, `0`
+//! and `E1 E2 ...` take their shape from the context.
 
 mod components;
 mod domains;
@@ -20,11 +20,11 @@ use crate::syntax::ast::{Expression, Kind, Kindred, Name};
 pub struct Elaborator<'a> {
     names: &'a Declared,
     bindings: Vec<(String, Expr)>,
-    /// Names of `let`s that are not among the bindings: still to come, or (`true`) faulty.
+    /// Names of `let`s without a binding: not yet defined, or (`true`) faulty.
     unbound: Vec<(String, bool)>,
 }
 
-/// The terms of a number, each with its place: summands at the top, through signs and divisors.
+/// The top-level summands of a scalar with their positions, also within signs and numerators.
 pub fn terms(e: &Expression) -> Vec<&Expression> {
     match &e.kind {
         Kind::Sum(list) => list.iter().flat_map(|(_, t)| terms(t)).collect(),
@@ -41,7 +41,7 @@ pub fn terms(e: &Expression) -> Vec<&Expression> {
     }
 }
 
-/// Unit vectors along the axes, as far as there are steppers.
+/// Names of unit vectors, up to the largest dimension with a stepper.
 const UNITS: [&str; 8] = ["E1", "E2", "E3", "E4", "E5", "E6", "E7", "E8"];
 
 type Elaborated = Result<Expr, Box<Diagnostic>>;
@@ -51,7 +51,7 @@ fn fail<T>(d: Diagnostic) -> Result<T, Box<Diagnostic>> {
 }
 
 impl<'a> Elaborator<'a> {
-    /// With the declared names and no bindings yet; `lets` are the names of those to come.
+    /// Starts without bindings; `lets` are the names of later definitions.
     pub fn new(names: &'a Declared, lets: Vec<String>) -> Self {
         Elaborator {
             names,
@@ -60,12 +60,12 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// Notes that the `let` of this name is faulty: its uses are not reported as well.
+    /// Marks the `let` of this name as faulty, so that its uses are not reported as well.
     pub fn spoil(&mut self, name: &Name) {
         self.unbound.push((name.text.clone(), true));
     }
 
-    /// The definitions by `let` so far, in order.
+    /// The `let` definitions so far, in order.
     pub fn bound(&self) -> &[(String, Expr)] {
         &self.bindings
     }
@@ -86,17 +86,17 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// An expression of whatever shape.
+    /// Elaborates an expression of any shape.
     pub fn any(&self, e: &Expression) -> Elaborated {
         self.elaborate(e, None)
     }
 
-    /// A number.
+    /// Elaborates a scalar.
     pub fn number(&self, e: &Expression) -> Elaborated {
         self.of_shape(e, Shape::SCALAR)
     }
 
-    /// An expression of a given shape.
+    /// Elaborates an expression of a given shape.
     pub fn of_shape(&self, e: &Expression, wanted: Shape) -> Elaborated {
         let value = self.elaborate(e, Some(wanted))?;
         if value.shape() == wanted {
@@ -121,7 +121,7 @@ impl<'a> Elaborator<'a> {
         fail(d)
     }
 
-    /// Two sides of one shape.
+    /// Elaborates two sides of equal shape.
     pub fn pair(&self, a: &Expression, b: &Expression) -> Result<(Expr, Expr), Box<Diagnostic>> {
         let shape = self
             .hint(a)
@@ -152,13 +152,13 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// A shape by its name, of numbers and vectors.
+    /// The declared shape of a scalar, vector or matrix.
     fn stated_shape(&self, shape: &Kindred) -> Option<Shape> {
         let found = super::parameter_shape(&self.names.symbols, shape);
         found.map(|(shape, _)| shape)
     }
 
-    /// The shape of an expression that would take it from the context, if there is no context.
+    /// The shape of a context-dependent expression without a context.
     fn unhinted(&self, e: &Expression) -> Shape {
         self.elaborate(e, None)
             .map_or(Shape::SCALAR, |value| value.shape())
@@ -199,7 +199,7 @@ impl<'a> Elaborator<'a> {
                 let mut matrices = known.iter().filter(|(s, _)| !s.is_scalar());
                 let first = matrices.next();
                 match (first, matrices.next_back().or(first)) {
-                    // Their own side of unit vectors is one, the other one open.
+                    // A unit vector has one dimension of size 1; its other dimension is open.
                     (Some((a, true)), _) if a.rows != Dim::Fixed(1) => None,
                     (_, Some((b, true))) if b.cols != Dim::Fixed(1) => None,
                     (Some((a, _)), Some((b, _))) => Some(Shape {

@@ -1,25 +1,25 @@
-//! Fields of structured matrices, which are kept and varied as the list of their independent entries. Takes that
-//! list; gives the matrix that the name denotes.
+//! Fields of structured matrices. They are stored and varied as the list of their independent entries, from which the
+//! matrix is built.
 
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
 
-/// How the matrix of a field is built from the entries that are kept.
+/// How the matrix of a field is built from its stored entries.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Entries {
-    /// It is kept itself.
+    /// The matrix itself is stored.
     Own,
-    /// The vector is its diagonal.
+    /// The stored vector is its diagonal.
     Diagonal,
     /// A symmetric matrix of this size: its entries on and above the diagonal, row by row.
     Symmetric(u32),
-    /// A skew matrix of this size: of three the axial vector, of others the entries below the diagonal, row by row.
+    /// A skew matrix of this size: for size 3 its axial vector, otherwise the entries below the diagonal, row by row.
     Skew(u32),
 }
 
 impl Entries {
-    /// The shape that the name has in expressions.
+    /// The shape of the field in expressions.
     pub fn shape(self, kept: Shape) -> Shape {
         match self {
             Entries::Own => kept,
@@ -28,7 +28,7 @@ impl Entries {
         }
     }
 
-    /// The matrix made of what is kept.
+    /// The matrix built from the stored entries.
     pub fn matrix(self, symbols: &Symbols, kept: Expr) -> Expr {
         match self {
             Entries::Own => kept,
@@ -49,7 +49,7 @@ impl Entries {
     }
 }
 
-/// The sum of entries times the units at their places and at those across the diagonal, as `with` puts these together.
+/// The sum of entries times the matrix units at their position and at the transposed one, combined by `with`.
 fn made(
     symbols: &Symbols,
     n: u32,

@@ -1,4 +1,4 @@
-//! Functionals as they are declared: of the values at one site, by a path, and of all sites.
+//! Declarations of functionals: of the values at one site, by a path, and of all sites.
 
 use super::declare::Declared;
 use super::shapes;
@@ -7,7 +7,7 @@ use crate::expr::{Functional, Kind, Reach};
 use crate::syntax::ast::{Kindred, Name};
 
 impl Declared {
-    /// The kind that a declared shape denotes.
+    /// The kind of a declared shape.
     pub(super) fn kind(&self, k: &Kindred, errors: &mut Errors) -> Option<Kind> {
         let (shape, structure) = shapes::shape(&self.symbols, k, errors)?;
         Some(Kind { shape, structure })
@@ -24,7 +24,7 @@ impl Declared {
         all.find(|f| f.name == name).map(|f| f.value)
     }
 
-    /// Adds a functional, or takes its name where something of it is wrong.
+    /// Adds a functional, or only reserves its name if the declaration is faulty.
     pub(super) fn functional(
         &mut self,
         name: &Name,

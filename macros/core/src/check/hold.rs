@@ -1,5 +1,5 @@
-//! Held constraints, `hold λ: a = b;`: the quantities that may occur in them, and the shape of their multiplier.
-//! Takes the two sides, of one shape; gives the constraint, or a mistake on its tokens.
+//! Constraints `hold λ: a = b;`: the quantities that they may contain, and the shape of their multiplier. Faulty
+//! constraints are errors with the tokens where they occur.
 
 use super::declare::Declared;
 use super::messages::{self, shape_text};
@@ -11,7 +11,7 @@ use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Shift};
 use crate::syntax::ast::Name;
 
-/// The constraint; its multiplier becomes a symbol of the model.
+/// Checks a constraint; its multiplier becomes a symbol of the model.
 pub(super) fn hold(
     declared: &mut Declared,
     name: &Name,
@@ -47,8 +47,9 @@ pub(super) fn hold(
     })
 }
 
-/// The independent entries of a matrix as one vector: of a symmetric one those on and above the diagonal, row by row, of a
-/// skew one its axial vector or the entries below the diagonal, of any other all. Numbers and vectors stay.
+/// The independent entries of a matrix as one vector: for a symmetric matrix the entries on and above the diagonal,
+/// row by row; for a skew matrix its axial vector or the entries below the diagonal; otherwise all entries. Scalars
+/// and vectors are unchanged.
 fn entries(symbols: &Symbols, value: Expr) -> Expr {
     let shape = value.shape();
     let (Dim::Fixed(rows), Dim::Fixed(cols)) = (shape.rows, shape.cols) else {
@@ -87,7 +88,8 @@ fn entries(symbols: &Symbols, value: Expr) -> Expr {
     expr::sum(each.collect::<Vec<_>>(), Shape::vector(count))
 }
 
-/// Rejects constraints that depend on time: their rate of change would have a part that no velocity produces.
+/// Rejects constraints that depend on time: their rate of change would have a part that does not depend on
+/// velocities.
 pub(super) fn without_clocks(spec: &Spec) -> Result<(), Errors> {
     let clocks = spec.clocks();
     let mut errors = Errors::new();

@@ -1,16 +1,15 @@
-//! Abbreviations that lead back to themselves, so that no order of the statements defines them, and unused
-//! abbreviations.
+//! Finds circular and unused `let` definitions.
 
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::syntax::ast::{Expression, Kind, Model, Name, Statement};
 
-/// One definition, and the definitions that it uses, by their place in the list.
+/// One definition, and the positions in the list of the definitions that it uses.
 struct Let<'a> {
     name: &'a Name,
     uses: Vec<usize>,
 }
 
-/// The names of definitions that lead back to themselves; each circle is reported once.
+/// The names of circular definitions; each cycle is reported once.
 pub fn circular<'a>(model: &'a Model, errors: &mut Errors) -> Vec<&'a Name> {
     let lets = lets(model);
     let mut told: Vec<usize> = Vec::new();
@@ -72,7 +71,7 @@ fn lets(model: &Model) -> Vec<Let<'_>> {
     list.collect()
 }
 
-/// The names in an expression, functions not among them.
+/// The names in an expression, except names of functions.
 fn names(e: &Expression) -> Vec<&str> {
     match &e.kind {
         Kind::Name(n) => vec![n],
@@ -88,7 +87,7 @@ fn names(e: &Expression) -> Vec<&str> {
     }
 }
 
-/// The shortest way from a definition back to itself, if there is one: breadth first.
+/// The shortest cycle from a definition back to itself, if there is one (breadth-first search).
 fn circle(lets: &[Let], start: usize) -> Option<Vec<usize>> {
     let mut ways: Vec<(usize, Option<usize>)> = vec![(start, None)];
     let mut at = 0;

@@ -1,13 +1,13 @@
-//! Names of functions that every stepper and its state have. A configuration and an advected quantity become
-//! functions of the state, and cannot have one of these names; parameters and velocities become fields and locals
-//! only, and can.
+//! Reserved names of functions of the stepper and its state. Configurations and advected quantities become functions
+//! of the state, so they cannot have these names. Parameters and velocities become fields and local variables, so
+//! they can.
 
 use super::declare::Declared;
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::expr::shape::Shape;
 use crate::expr::symbol::Symbols;
 
-/// Methods and constants that every model has.
+/// Methods and constants of every model.
 const MEMBERS: [&str; 46] = [
     "kinetic_warning",
     "ADMITTED",
@@ -57,8 +57,8 @@ const MEMBERS: [&str; 46] = [
     "tangent_at",
 ];
 
-/// Momenta at a node, and the rounding remainders of a position and of a momentum; if there are several
-/// configurations, each with the name of its element.
+/// Momenta at a node, and the rounding remainders of a position and of a momentum. If there are several
+/// configurations, the name of the element is appended to each.
 const MOMENTA: [&str; 5] = [
     "momentum",
     "body_momentum",
@@ -80,7 +80,7 @@ pub(crate) fn name_of_function(name: &str, place: Place) -> Diagnostic {
     ))
 }
 
-/// Refuses configurations and advected quantities under such names.
+/// Rejects configurations and advected quantities with such names.
 pub(super) fn refuse(declared: &Declared, errors: &mut Errors) {
     let s = &declared.symbols;
     let elements = declared.configurations.iter().map(|c| (c.element, c.place));
@@ -129,7 +129,7 @@ fn components(declared: &Declared, errors: &mut Errors) {
         let Some((stem, digits)) = s.get(*id).ascii.rsplit_once('_') else {
             continue;
         };
-        // A quantity with components has columns of longer names.
+        // For a quantity with components, the columns have longer names.
         if !s.get(*id).shape.is_scalar() {
             continue;
         }
@@ -151,7 +151,7 @@ fn components(declared: &Declared, errors: &mut Errors) {
     }
 }
 
-/// Whether these digits count a component of a vector, or an entry of a matrix by its row and its column.
+/// Whether these digits are the index of a vector component, or the row and column of a matrix entry.
 fn is_component(digits: &str, shape: Shape, s: &Symbols) -> bool {
     let [rows, cols] = [shape.rows, shape.cols].map(|dim| s.sizes(dim).1);
     let number = |text: &str, most: usize| {

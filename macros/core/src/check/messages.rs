@@ -1,4 +1,4 @@
-//! Messages of `check` that name several things at once: the mistake, its reason, and the remedy.
+//! Error messages of `check` that state a mistake, its reason and its remedy.
 
 use super::declare::DeclaredGroup;
 use super::spec::{Configuration, Spec};
@@ -9,7 +9,7 @@ use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{Letter, Shift};
 use crate::syntax::ast::Name;
 
-/// A shape as the user writes it.
+/// A shape in the user's notation.
 pub fn shape_text(symbols: &Symbols, shape: Shape) -> String {
     let dim = |d| symbols.dim_text(d);
     if shape.is_scalar() {
@@ -21,7 +21,7 @@ pub fn shape_text(symbols: &Symbols, shape: Shape) -> String {
     }
 }
 
-/// An expression of so many nodes where so many are taken; `lets` says whether the model has any.
+/// The error for an expression with more nodes than allowed; `lets` says whether the model has `let` definitions.
 pub fn too_large(place: Place, size: u32, largest: u32, lets: bool) -> Diagnostic {
     let d = Diagnostic::new(
         place,
@@ -36,7 +36,7 @@ pub fn too_large(place: Place, size: u32, largest: u32, lets: bool) -> Diagnosti
     }
 }
 
-/// Beyond what is counted while names and shapes are checked.
+/// The error for a model that exceeds the work limit while names and shapes are checked.
 pub fn too_much_work(place: Place, excess: Option<String>) -> Diagnostic {
     let excess = excess.map(|e| format!(": {e}")).unwrap_or_default();
     Diagnostic::new(place, format!("this model is too large to derive{excess}"))
@@ -96,7 +96,7 @@ pub fn missing_constraint(
     ))
 }
 
-/// A quantity without a constraint in a model that has fields only.
+/// The error for a quantity without a constraint, in a model that has only fields.
 pub fn not_carried_by_field(
     symbols: &Symbols,
     quantity: SymbolId,
@@ -118,7 +118,7 @@ pub fn not_carried_by_field(
     ))
 }
 
-/// A constraint for a field, which has none.
+/// The error for the constraint of a field, which must not have one.
 pub fn constraint_of_field(name: &str, place: Place) -> Diagnostic {
     Diagnostic::new(
         place,
@@ -149,7 +149,7 @@ pub fn unused_velocity(spec: &Spec, c: &Configuration) -> Diagnostic {
             format!("`next({x})` does not appear in the Lagrangian: the equation of `{x}` holds none of its increments, and a step cannot be solved for it"),
         )
         .help(format!("add a kinetic term, for example `{example}`"));
-        // A term of first order in the increment of another field.
+        // The Lagrangian may contain the increment of another field, multiplied by this field at the start of the step.
         let used = crate::expr::letters(&spec.lagrangian);
         let stands = |element, shift| used.iter().any(|l| l.symbol == element && l.shift == shift);
         let mut others = spec.configurations.iter();
@@ -205,7 +205,7 @@ pub fn shifted_velocity(place: Place, velocity: &str) -> Diagnostic {
     ))
 }
 
-/// `v^2` of a vector.
+/// The error for `v^2` of a vector.
 pub fn power_of_vector(place: Place, what: &str, q: Rational) -> Diagnostic {
     let two = Rational::integer(2);
     let d = Diagnostic::new(
@@ -232,7 +232,7 @@ fn meaning(word: &str) -> Option<&'static str> {
     })
 }
 
-/// A name that the language uses.
+/// The error for a name that is reserved by the language.
 pub fn reserved(name: &Name) -> Diagnostic {
     let word = name.text.as_str();
     let means = meaning(word).unwrap_or("a function");
@@ -243,7 +243,7 @@ pub fn reserved(name: &Name) -> Diagnostic {
     })
 }
 
-/// A constraint with values at both ends of a step; `end` if all values are taken at the end.
+/// The error for a constraint with values at both ends of a step; `end` if all values are at the end.
 pub fn held_over_the_step(place: Place, end: bool) -> Diagnostic {
     if end {
         let message =

@@ -1,6 +1,6 @@
-//! From the syntax tree to a typed specification: names, shapes, sides of actions. Every message
-//! names the token and the remedy; after this stage user mistakes are only left to the
-//! certificate (an action that is none).
+//! Checks the syntax tree and turns it into a typed specification: names, shapes, sides of actions. Every error names
+//! the token and the remedy. After this stage, the only mistake left to find is an action that the certificate
+//! rejects.
 
 mod declare;
 mod elaborate;
@@ -30,13 +30,13 @@ use elaborate::Elaborator;
 pub(crate) use messages::unused_velocity;
 use spec::{Advected, Assumption, Configuration, Hold, Side, Spec, Subject};
 
-/// Largest expression tree the derivation takes on.
+/// The largest expression tree that the derivation accepts.
 const LARGEST: u32 = 1_000;
 
-/// The origin of a model: it decides what is required of it.
+/// The origin of a model, which determines its requirements.
 #[derive(Clone, Copy, PartialEq)]
 enum Extent {
-    /// As the user states it.
+    /// Declared by the user.
     Stated,
     /// An expanded chain, whose size was limited when it was expanded.
     WrittenOut,
@@ -44,7 +44,7 @@ enum Extent {
     Site,
 }
 
-/// Checks a model. Work is counted: a model that exceeds the limit fails.
+/// Checks a model. The work is limited; a model that exceeds the limit is rejected.
 pub fn check(model: &Model) -> Result<Spec, Errors> {
     counted(model, Extent::Stated)
 }
@@ -55,7 +55,8 @@ pub fn check_written_out(model: &Model) -> Result<Spec, Errors> {
     counted(model, Extent::WrittenOut).map_err(Errors::first_at_each_place)
 }
 
-/// Checks the model of one site of a chain. Its configurations need no velocity in its own Lagrangian.
+/// Checks the model of one site of a chain. The Lagrangian of the site need not contain the velocities of its
+/// configurations.
 pub fn check_site(model: &Model) -> Result<Spec, Errors> {
     counted(model, Extent::Site).map_err(Errors::first_at_each_place)
 }
@@ -69,38 +70,38 @@ fn counted(model: &Model, extent: Extent) -> Result<Spec, Errors> {
     }
 }
 
-/// Reports definitions that lead back to themselves.
+/// Reports circular definitions.
 pub fn circular_definitions(model: &Model, errors: &mut Errors) {
     lets::circular(model, errors);
 }
 
-/// The names of definitions that nothing uses.
+/// The names of unused definitions.
 pub fn unused_definitions(model: &Model) -> Vec<(String, Place)> {
     let unused = lets::unused(model).into_iter();
     unused.map(|n| (n.text.clone(), n.place)).collect()
 }
 
-/// Expressions that are numbers, in the names of a model; `None` for an expression that is not a number.
+/// Elaborates scalar expressions with the names of a model; `None` for an expression that is not scalar.
 pub fn numbers(model: &Model, list: &[&Expression]) -> Vec<Option<Expr>> {
     let names = declare::declare(model, &mut Errors::new());
     let elaborator = Elaborator::new(&names, Vec::new());
     list.iter().map(|e| elaborator.number(e).ok()).collect()
 }
 
-/// Two expressions of one shape, in the names of a model.
+/// Elaborates two expressions of equal shape with the names of a model.
 pub fn sides(model: &Model, a: &Expression, b: &Expression) -> Option<(Expr, Expr)> {
     let names = declare::declare(model, &mut Errors::new());
     Elaborator::new(&names, Vec::new()).pair(a, b).ok()
 }
 
-/// Whether two expressions are the same, in the names of a model; `false` if they do not have a common shape.
+/// Whether two expressions are equal, with the names of a model; `false` if their shapes differ.
 pub fn are_same(model: &Model, a: &Expression, b: &Expression) -> bool {
     let names = declare::declare(model, &mut Errors::new());
     let both = Elaborator::new(&names, Vec::new()).pair(a, b);
     both.is_ok_and(|(a, b)| crate::algebra::Algebra::new(&names.symbols).equal(&a, &b))
 }
 
-/// The shape of a parameter as declared, where it is one.
+/// The declared shape of a parameter, if it is valid.
 pub fn parameter_shape(symbols: &Symbols, declared: &Kindred) -> Option<(Shape, Structure)> {
     shapes::shape(symbols, declared, &mut Errors::new())
 }
@@ -312,7 +313,7 @@ fn finish(
             continue;
         };
         let side = match g.group.is_additive() {
-            // One frame is as good as another; the momentum is spatial.
+            // For an additive group both frames are equivalent; the momentum is spatial.
             true => Some(Side::Spatial),
             false => shapes::side(&declared.symbols, g, &update),
         };
@@ -388,7 +389,7 @@ fn finish(
     })
 }
 
-/// The documentation of statements that declare no symbol.
+/// The documentation of statements that do not declare a symbol.
 fn remarks(model: &Model, declared: &Declared) -> Vec<(Subject, Vec<String>)> {
     let (mut dimensions, mut assumptions) = (0, 0);
     let mut out = Vec::new();
@@ -410,7 +411,7 @@ fn remarks(model: &Model, declared: &Declared) -> Vec<(Subject, Vec<String>)> {
             Statement::Scale(_) => Some(Subject::Scale),
             Statement::Node(..) => Some(Subject::Node),
             Statement::Lagrangian(_) => Some(Subject::Lagrangian),
-            // An abbreviation is substituted where it occurs and leaves no trace.
+            // A definition is substituted where it is used, and is not stored separately.
             Statement::Let { .. }
             | Statement::Given { .. }
             | Statement::Mesh { .. }
@@ -442,7 +443,8 @@ pub fn without_velocity(spec: &Spec) -> Vec<&Configuration> {
             symbol: c.element,
             shift: Shift::NEXT,
         };
-        // Stated by the elements at both ends of the step: the reduction brings the velocity in.
+        // The Lagrangian may contain the elements at both ends of the step instead; the reduction then introduces the
+        // velocity.
         !used.contains(&velocity) && !used.contains(&next)
     };
     spec.configurations.iter().filter(is_still).collect()

@@ -1,5 +1,5 @@
-//! Names that a model cannot use: those with a fixed meaning in the language, in derivations and in Rust, and
-//! letters that look like others. Takes a name; gives what is wrong with it.
+//! Names that a model cannot use: reserved in the language, in derivations or in Rust, or with letters that look like
+//! other letters.
 
 use super::messages;
 use crate::diagnostic::{Diagnostic, Errors};
@@ -22,17 +22,17 @@ const RUST: [&str; 53] = [
     "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
 ];
 
-/// Whether Rust keeps the word for itself.
+/// Whether the word is a reserved word of Rust.
 pub fn is_rust_word(name: &str) -> bool {
     RUST.contains(&name)
 }
 
-/// The error for a name that is wrong whatever else is declared.
+/// The error for a name that is invalid regardless of the other declarations.
 pub(super) fn unusable(name: &Name) -> Option<Diagnostic> {
     let text = name.text.as_str();
     let function = FUNCTIONS.contains(&text) && !HIDEABLE.contains(&text);
     let shown = seen(text, "");
-    // A copy prints with its site in brackets then.
+    // A copy with such a name prints its site in brackets instead.
     let printed = PRINTED
         .into_iter()
         .find(|sign| !name.is_copy && seen(sign, "") == shown);
@@ -49,7 +49,7 @@ pub(super) fn unusable(name: &Name) -> Option<Diagnostic> {
     Some(Diagnostic::new(name.place, message).help("choose another name"))
 }
 
-/// The characters of two names that look like one letter and are two, with their numbers.
+/// Describes characters of two names that look the same but differ, with their code points.
 pub(super) fn foreign(a: &str, b: &str) -> Option<String> {
     let strange = |text: &str| text.chars().find(|c| twin(*c).is_some());
     let c = strange(a).or_else(|| strange(b))?;
@@ -61,7 +61,7 @@ pub(super) fn foreign(a: &str, b: &str) -> Option<String> {
     ))
 }
 
-/// Checks the model's name, which is the name of a type.
+/// Checks the model's name, which becomes the name of a type.
 pub(super) fn model_name(name: &Name, errors: &mut Errors) {
     if RUST.contains(&name.text.as_str()) {
         errors.extend(unusable(name));

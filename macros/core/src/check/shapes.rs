@@ -11,7 +11,7 @@ use crate::groups;
 use crate::syntax::ast::{Kindred, Size};
 use crate::syntax::unknown;
 
-/// Largest matrix of the language.
+/// The largest matrix size of the language.
 const LARGEST: u64 = 32;
 
 const SHAPES: [&str; 6] = ["Real", "Vec", "Sym", "Skew", "Diag", "Mat"];
@@ -147,7 +147,7 @@ pub fn shape(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Sha
     }
 }
 
-/// The shape that a name with its size glued to it means: `Vec3`, `SO3`.
+/// The shape that a name with an attached size probably means: `Vec3`, `SO3`.
 fn sized(name: &str) -> Option<String> {
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
     let size = name.strip_prefix(stem).filter(|n| !n.is_empty())?;
@@ -165,7 +165,7 @@ pub fn advected_shape(
     shape(symbols, k, errors)
 }
 
-/// The shape in which a field is kept and varied, and how its matrix is built from that.
+/// The shape in which a field is stored and varied, and how its matrix is built from it.
 pub fn field(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Shape, Entries)> {
     let (found, structure) = shape(symbols, k, errors)?;
     let column = |n: u32| match n {
@@ -216,7 +216,7 @@ fn size_text(size: &Size) -> String {
     }
 }
 
-/// A shape or a group as written.
+/// A shape or a group in the notation of the language.
 fn written(k: &Kindred) -> String {
     let sizes: Vec<String> = k.sizes.iter().map(size_text).collect();
     match sizes.is_empty() {
@@ -229,7 +229,7 @@ fn is_group(name: &str) -> bool {
     groups::families().any(|family| family == name)
 }
 
-/// A group of the table.
+/// The group that a name and a size denote.
 pub fn group(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Group> {
     let name = k.name.text.as_str();
     let all = || groups::listed("and", |_, _| true);
@@ -241,7 +241,7 @@ pub fn group(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Grou
         });
         return None;
     }
-    // If a family has few sizes, any other number is not a size at all.
+    // In a family with few sizes, any other number is an invalid size.
     let given = match k.sizes.as_slice() {
         [Size::Number(n, _)] if groups::has_few_sizes(name) => {
             u32::try_from(*n).ok().map(Dim::Fixed)
@@ -262,7 +262,7 @@ pub fn group(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Grou
     found
 }
 
-/// Body or spatial, read off the reconstruction.
+/// The side, body or spatial, of a reconstruction.
 pub fn side(symbols: &Symbols, g: &DeclaredGroup, update: &Expr) -> Option<Side> {
     let element = expr::here(symbols, g.element);
     let velocity = expr::here(symbols, g.velocity);

@@ -22,12 +22,12 @@ impl Side {
     /// Both sides, the body's first.
     pub const BOTH: [Side; 2] = [Side::Body, Side::Spatial];
 
-    /// Whether velocities are seen from the body.
+    /// Whether velocities are in the body frame.
     pub fn is_body(self) -> bool {
         self == Side::Body
     }
 
-    /// Whether velocities are seen from space.
+    /// Whether velocities are in the space frame.
     pub fn is_spatial(self) -> bool {
         self == Side::Spatial
     }
@@ -37,7 +37,7 @@ impl Side {
         self.of(Side::Spatial, Side::Body)
     }
 
-    /// The one of two that belongs to this side.
+    /// The element of a pair that belongs to this side.
     pub fn of<T>(self, body: T, space: T) -> T {
         match self {
             Side::Body => body,
@@ -50,8 +50,8 @@ impl Side {
         self.of("body", "space")
     }
 
-    /// Two factors in the order of this side: `a b` seen from the body, `b a` from space, as an
-    /// element and its velocity in `Λ Ω` and `ω Λ`.
+    /// Two factors in the order of this side: `a b` for the body side, `b a` for the spatial side. An element and its
+    /// velocity are multiplied in this order, `Λ Ω` or `ω Λ`.
     pub fn ordered<T>(self, a: T, b: T) -> (T, T) {
         match self {
             Side::Body => (a, b),
@@ -77,7 +77,7 @@ pub struct Configuration {
     pub group: Group,
     /// Body or spatial.
     pub side: Side,
-    /// Right side of its constraint.
+    /// The right side of its constraint.
     pub update: Expr,
     /// The position of the constraint.
     pub place: Place,
@@ -85,14 +85,14 @@ pub struct Configuration {
     pub name_place: Place,
     /// The position of its group.
     pub group_place: Place,
-    /// The quantity of which it is a copy, in an expanded chain.
+    /// The quantity that it is a copy of, in an expanded chain.
     pub copy: Option<CopyOf>,
 }
 
 /// A configuration of a chain at one of its sites.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct CopyOf {
-    /// The configuration as stated: the number of its first copy.
+    /// The declared configuration, by the number of its first copy.
     pub family: usize,
     /// The site, counted from 0.
     pub site: usize,
@@ -103,26 +103,26 @@ pub struct CopyOf {
 pub struct Advected {
     /// The quantity, at nodes.
     pub quantity: SymbolId,
-    /// Its definition by the configuration, if stated.
+    /// Its definition in terms of the configuration, if declared.
     pub definition: Option<Expr>,
     /// The position of the definition.
     pub definition_place: Option<Place>,
-    /// Right side of its constraint.
+    /// The right side of its constraint.
     pub update: Expr,
     /// The position of the constraint.
     pub place: Place,
     /// The position of its name in its declaration.
     pub name_place: Place,
-    /// Whether the reduction of an unreduced statement found it.
+    /// Whether the reduction found it instead of a declaration.
     pub found: bool,
 }
 
-/// A holonomic constraint that a multiplier holds at every node.
+/// A holonomic constraint, enforced at every node by a multiplier.
 #[derive(Clone, Debug)]
 pub struct Hold {
-    /// Its multiplier, at nodes: a number or a vector.
+    /// Its multiplier, at nodes: a scalar or a vector.
     pub multiplier: SymbolId,
-    /// Left side, made of configurations and advected quantities at one node.
+    /// The left side, a function of configurations and advected quantities at one node.
     pub left: Expr,
     /// Right side.
     pub right: Expr,
@@ -134,21 +134,21 @@ pub struct Hold {
     pub name_place: Place,
 }
 
-/// The reduction of a model that was stated by `Λ` and `next(Λ)`.
+/// The reduction of a model that was declared in terms of `Λ` and `next(Λ)`.
 #[derive(Clone, Debug)]
 pub struct Reduction {
     /// Terms on the edge, in velocities and advected quantities.
     pub edge: Expr,
     /// Terms at one node.
     pub nodal: Expr,
-    /// How the invariance was decided: the Lagrangian as stated is the reduced one, with every
-    /// advected quantity put in by its definition.
+    /// How the invariance was decided: with definitions substituted for advected quantities, the reduced Lagrangian
+    /// equals the declared one.
     pub known: crate::algebra::Decision,
-    /// Whether groups were stated by `next`, so that parameters were looked for that absorb them.
+    /// Whether groups were declared by `next`, so that parameters that become advected were searched.
     pub carries: bool,
 }
 
-/// A condition on the parameters, checked when they are given.
+/// A condition on the parameters, checked when their values are given.
 #[derive(Clone, Debug)]
 pub struct Assumption {
     /// Left side.
@@ -172,12 +172,12 @@ pub struct Dimension {
     pub to: u64,
 }
 
-/// A statement that declares no symbol and may be documented.
+/// A statement that does not declare a symbol and may be documented.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Subject {
     /// The dimension with this index.
     Dimension(usize),
-    /// The names of index and step.
+    /// The statement of time index and step size.
     Time,
     /// The assumption with this index.
     Assumption(usize),
@@ -196,21 +196,21 @@ pub enum Subject {
 /// A checked model.
 #[derive(Clone, Debug)]
 pub struct Spec {
-    /// Name as written.
+    /// Its name.
     pub name: String,
     /// The position of the name.
     pub name_place: Place,
     /// Documentation lines.
     pub docs: Vec<String>,
-    /// Documentation lines of statements that declare no symbol; the lines of symbols are stored with the symbols.
+    /// Documentation lines of statements that do not declare a symbol; symbols store their own lines.
     pub remarks: Vec<(Subject, Vec<String>)>,
     /// Whether it is `pub`.
     pub public: bool,
-    /// Every symbol, in order of declaration; the derivation adds its own after these.
+    /// All symbols in order of declaration; the derivation appends its own.
     pub symbols: Symbols,
     /// Name of the time index.
     pub time_index: String,
-    /// The time step.
+    /// The step size.
     pub step: SymbolId,
     /// Named dimensions.
     pub dimensions: Vec<Dimension>,
@@ -218,11 +218,11 @@ pub struct Spec {
     pub parameters: Vec<SymbolId>,
     /// The positions of their names in their declarations.
     pub parameter_places: Vec<Place>,
-    /// Conditions on them.
+    /// Conditions on the parameters.
     pub assumptions: Vec<Assumption>,
-    /// Functions that are written out, as they are stated: their calls are replaced.
+    /// User-defined functions with a formula, as declared; their calls are expanded.
     pub formulas: Vec<String>,
-    /// The definitions by `let`, in order, with their names expanded.
+    /// The `let` definitions in order, with their names expanded.
     pub lets: Vec<(String, Expr)>,
     /// Names of unused definitions, with their positions.
     pub unused_lets: Vec<(String, Place)>,
@@ -230,28 +230,28 @@ pub struct Spec {
     pub configurations: Vec<Configuration>,
     /// Advected quantities in order.
     pub advected: Vec<Advected>,
-    /// Held constraints in order.
+    /// Constraints in order.
     pub holds: Vec<Hold>,
     /// The Lagrangian as typed.
     pub typed: Expr,
     /// The value of `scale`: typed = scale x physical.
     pub scale: Option<Expr>,
-    /// The physical action of one step before nodal terms are distributed.
+    /// The physical action of one step, before nodal terms are distributed.
     pub lagrangian: Expr,
     /// The position of the Lagrangian.
     pub lagrangian_place: Place,
-    /// Its terms as they were typed, with their places.
+    /// Its terms as they were typed, with their positions.
     pub terms: Vec<(Expr, Place)>,
-    /// Whether it is one site of a chain, whose velocities may occur in terms of neighbours alone.
+    /// Whether it is one site of a chain, whose velocities may occur only in terms of neighbours.
     pub of_site: bool,
     /// The rule for nodal terms.
     pub node_rule: NodeRule,
-    /// The reduction, for a model that was stated unreduced.
+    /// The reduction, for a model that was declared unreduced.
     pub reduction: Option<Reduction>,
 }
 
 impl Spec {
-    /// Whether all configurations are fields: nothing is turned then.
+    /// Whether all configurations are fields, so that the model does not contain a nonabelian group.
     pub fn has_only_fields(&self) -> bool {
         self.configurations.iter().all(|c| c.group.is_additive())
     }
@@ -292,8 +292,8 @@ impl Spec {
         }
     }
 
-    /// The quantities at the end of an edge, elements and advected quantities, written by its start and the velocities:
-    /// in this form, the dependence on the velocities is complete.
+    /// The quantities at the end of an edge, elements and advected quantities, as functions of its start and the
+    /// velocities. In this form all dependence on the velocities is explicit.
     pub fn end_of_edge(&self) -> Vec<(Letter, Expr)> {
         let at_end = |symbol| Letter {
             symbol,

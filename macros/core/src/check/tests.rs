@@ -1,5 +1,4 @@
-//! What could be read in two ways is refused on its tokens, with how to write it; components and
-//! diagonals mean what unit vectors say.
+//! Ambiguous notation is rejected with a suggestion. Components and diagonals agree with unit vectors.
 
 mod fields;
 mod formulas;
@@ -24,7 +23,7 @@ fn checked(declarations: &str, potential: &str) -> Result<Spec, Errors> {
     check(&tokens(&source).and_then(parse)?)
 }
 
-/// The message and its remedies.
+/// The error and its suggestions.
 fn refused(declarations: &str, potential: &str) -> String {
     match checked(declarations, potential) {
         Ok(_) => format!("`{potential}` is accepted"),
@@ -36,7 +35,7 @@ fn accepted(potential: &str) -> Expr {
     checked("", potential).map_or_else(|e| panic!("{potential}: {e}"), |s| s.typed)
 }
 
-/// Asserts that both texts are one expression.
+/// Asserts that both texts are the same expression.
 fn same(a: &str, b: &str) {
     let spec = checked("", a).unwrap_or_else(|e| panic!("{a}: {e}"));
     let algebra = Algebra::new(&spec.symbols);
@@ -112,7 +111,7 @@ fn parentheses_after_what_is_no_function_are_refused() {
     ] {
         let message = refused("let part = m*g;", text);
         assert!(message.contains(said), "{text}: {message}");
-        // The list, in full, where nothing better is known.
+        // The full list of functions appears only if there is no better suggestion.
         let list = message.contains("functions: tr det log exp sqrt sin cos");
         let known = ["(a)", "(A)", "Λ*"]
             .iter()
@@ -210,7 +209,7 @@ fn a_diagonal_is_that_of_a_vector_or_of_a_matrix() {
     assert!(refused("", "tr(diag(F))").contains("square matrix"));
 }
 
-/// A body in two fields that it carries, declared as `declared` says.
+/// A body in two advected fields, declared as `declared` says.
 fn carried(declared: &str) -> Result<Spec, Errors> {
     let source = format!(
         "model Body {{ param J: Sym<3>; group Λ: SO<3> velocity Ω; {declared} \
@@ -225,7 +224,7 @@ fn advected_quantities_are_declared_together_as_apart() {
     let read = |declared: &str| carried(declared).unwrap_or_else(|e| panic!("{declared}: {e}"));
     let apart = read("/// field\nadvected A: Sym<3>; /// field\nadvected B: Sym<3>;");
     let together = read("/// field\nadvected A, B: Sym<3>;");
-    // Both symbols with their shape, structure, role and documentation, in this order, and what is made of them.
+    // Symbols with shape, structure, role and documentation, in this order, and the expressions built from them.
     assert_eq!(together.symbols, apart.symbols);
     assert_eq!(together.typed, apart.typed);
     let updates = |spec: &Spec| -> Vec<_> {
@@ -240,7 +239,7 @@ fn advected_quantities_are_declared_together_as_apart() {
         assert_eq!(symbol.docs, [" field"], "{}", symbol.name);
         assert_eq!(symbol.structure, crate::expr::shape::Structure::Symmetric);
     }
-    // The order of declaration is that of the symbols, and a shape of one is not that of the other.
+    // Symbols keep the order of declaration, and the shapes are not interchanged.
     assert_ne!(read("advected B, A: Sym<3>;").symbols, apart.symbols);
     assert_ne!(
         read("advected A: Sym<3>; advected B: Mat<3, 3>;").symbols,
@@ -290,7 +289,7 @@ fn what_stands_without_a_sign_after_a_factor_is_refused() {
         let message = refused("", text);
         assert!(message.contains(remedy), "{text}: {message}");
     }
-    // What can be read in one way only.
+    // Unambiguous notation is accepted.
     same("2 (m + g)", "2*m + 2*g");
     same("(m + g)(m - g)", "m^2 - g^2");
     same("(m^2)(m + g)", "m^3 + m^2*g");
@@ -376,12 +375,12 @@ fn what_has_no_value_anywhere_is_refused() {
             refused(declared, text)
         );
     }
-    // Whatever the expression is for.
+    // The position of the expression does not matter.
     let message = refused("param p: Real; assume log(-p^2) > 0;", "p");
     assert!(message.contains("negative or zero"), "{message}");
 }
 
-/// What is refused in n dimensions beside a term that is fine.
+/// The error for a term in n dimensions, added to a valid term.
 fn of_size(n: &str, term: &str) -> String {
     let source = format!(
         "model Body {{ {n} param J: Sym<n>; param v: Vec<n>; group Λ: SO<n> velocity Ω; \
@@ -456,7 +455,7 @@ fn definitions_in_a_circle_are_told_as_one() {
             "these definitions go in a circle: `a` uses `b`, `b` uses `c`, `c` uses `a`",
         ),
         (
-            // The circle that there is, not the way to it.
+            // The error lists the cycle, without the path that leads to it.
             "let d = a; let a = b^2; let b = sin(a);",
             "these definitions go in a circle: `a` uses `b`, `b` uses `a`",
         ),
@@ -509,6 +508,6 @@ fn what_papers_write_otherwise_is_told_as_the_language_writes_it() {
         let found = refused(declared, term);
         assert!(found.contains(said), "{declared} {term}: {found}");
     }
-    // What does not move has no rate.
+    // Quantities that do not move do not have rates.
     assert!(!refused("", "dm").contains("next"), "{}", refused("", "dm"));
 }

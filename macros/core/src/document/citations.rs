@@ -1,9 +1,9 @@
-//! What a derivation cites: where each equation of a model stands in a work, and what is wrong with it there. It is data
-//! that comes with the model; nothing here is found out from the model.
+//! Citations of a model: where a published work has each equation, and remarks on it. They are data that the model
+//! supplies; clebsch derives none of them.
 
 pub use crate::print::document::Work;
 
-/// An equation that can be cited. Those of every configuration have one citation.
+/// An equation that can be cited. One citation covers an equation of all configurations.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Place<'a> {
     /// The reconstruction of the configuration with this name.
@@ -32,19 +32,19 @@ pub enum Place<'a> {
     Continuous,
 }
 
-/// What is cited of one model.
+/// The citations of one model.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Citations {
-    /// The work that is cited.
+    /// The cited work.
     pub work: Option<Work>,
-    /// What is said of the whole model, a paragraph; empty for nothing. A name between dollar signs is mathematics.
+    /// A paragraph about the whole model, or an empty string. A name between dollar signs is mathematics.
     pub statement: &'static str,
-    /// Where equations stand in the work, and what is said of that; mathematics stands between dollar signs.
+    /// The number of each equation in the work, and remarks; text between dollar signs is mathematics.
     pub places: &'static [(Place<'static>, &'static str)],
 }
 
 impl Citations {
-    /// Nothing is cited.
+    /// No citations.
     pub const NONE: Citations = Citations {
         work: None,
         statement: "",

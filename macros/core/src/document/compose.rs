@@ -1,5 +1,5 @@
-//! The sections of a derivation, in the order of a paper: the first ones here, up to the Clebsch
-//! relations; motion, solution and what follows from them in files of their own.
+//! Composes the sections of a derivation in the order of a paper. This file writes the sections up to the Clebsch
+//! relations; other files write motion, solution and outlook.
 
 use super::citations::{Citations, Place};
 use super::sheet::{Sheet, references};
@@ -14,18 +14,18 @@ use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::{Formula, Relation};
 use crate::syntax::ast::NodeRule;
 
-/// What is told of a derivation beside its equations.
+/// What a document contains besides the equations of the derivation.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Telling<'a> {
-    /// The text of the model, where it is known.
+    /// The text of the model, if known.
     pub stated: Option<&'a str>,
-    /// Where its equations stand in a work, and what is wrong with them there.
+    /// Where a work has the equations, and remarks on them.
     pub citations: Citations,
-    /// The variational principle and the algorithm of a step before all else, as in a paper.
+    /// Whether to begin with the variational principle and the algorithm of a step, as a paper does.
     pub scheme: bool,
 }
 
-/// The derivation as a document, which cites nothing.
+/// The derivation as a document without citations.
 pub fn document(d: &Derivation) -> Document {
     let told = Telling {
         stated: None,
@@ -35,7 +35,7 @@ pub fn document(d: &Derivation) -> Document {
     document_telling(d, told)
 }
 
-/// The derivation as a document with what is asked for.
+/// The derivation as a document with the given additions.
 pub fn document_telling(d: &Derivation, told: Telling<'_>) -> Document {
     let sheet = Sheet::new(d, told.citations);
     let mut doc = Document::titled(format!("{}: discrete equations of motion", d.spec.name));
@@ -80,7 +80,7 @@ fn model(sheet: &Sheet, doc: &mut Document, told: Telling<'_>) {
     }
 }
 
-/// The text of a model without its remarks, which are no part of the statement.
+/// Removes the comments from the text of a model.
 pub fn without_remarks(stated: &str) -> String {
     let bare = |line: &str| line.split("//").next().unwrap_or("").trim_end().to_owned();
     let lines = stated
@@ -90,18 +90,18 @@ pub fn without_remarks(stated: &str) -> String {
     lines.collect::<Vec<String>>().join("\n").trim().to_owned()
 }
 
-/// What the model says of its symbols and statements.
+/// The model's documentation of its symbols and statements.
 fn meanings(sheet: &Sheet) -> Vec<Vec<Inline>> {
     let spec = &sheet.d.spec;
     let mut out: Vec<Vec<Inline>> = Vec::new();
-    // The letters that the derivation adds have no words.
+    // Letters that the derivation adds are undocumented.
     for id in spec.symbols.ids() {
         let symbol = spec.symbols.get(id);
         let doc = symbol.doc();
         if doc.is_empty() && symbol.typeset.is_none() {
             continue;
         }
-        // Without its index in time: it is named, not taken at a node.
+        // Printed without a time index: the sentence names the quantity, not its value at a node.
         let mut words: Vec<Inline> = vec![Formula::Continuous(Box::new(sheet.here(id))).into()];
         if symbol.typeset.is_some() {
             words.extend([" is ".into(), Inline::Code(symbol.name.clone())]);
@@ -139,7 +139,7 @@ fn meanings(sheet: &Sheet) -> Vec<Vec<Inline>> {
     out
 }
 
-/// What derives but is hardly meant; no section where there is nothing.
+/// The warnings, if there are any.
 fn warnings(sheet: &Sheet, doc: &mut Document) {
     let list = &sheet.d.warnings;
     if list.is_empty() {
@@ -186,7 +186,7 @@ fn constraints(sheet: &Sheet, doc: &mut Document) {
             section.equation(Formula::equal(next, sheet.math(&c.update)));
             continue;
         }
-        // Bodies have a frame of their own, deformable ones a reference shape.
+        // Rigid bodies have a body frame; linear groups describe deformations of a reference shape.
         let rigid = !c.group.is_linear();
         let (frame, product) = match (rigid, c.side.is_body()) {
             (true, true) => ("; its velocity in the body is ", true),
@@ -251,7 +251,7 @@ fn advected(sheet: &Sheet, section: &mut Section) {
     }
 }
 
-/// The label of the constraint of an advected quantity.
+/// The label of the advection constraint of quantity `j`.
 pub fn transport_label(j: usize) -> String {
     format!("transport {j}")
 }
@@ -342,7 +342,7 @@ pub fn pairing(a: Formula, b: Formula, half: bool) -> Formula {
     Formula::equal(Formula::pairing(a, b), value)
 }
 
-/// The Lagrangian divided by the scale it was typed with, term by term.
+/// The Lagrangian divided by its declared scale, term by term.
 pub fn physical(sheet: &Sheet) -> Formula {
     let terms = crate::derive::action::summands(&sheet.d.letters.symbols, &sheet.d.spec.lagrangian);
     sheet.math(&expr::sum(terms, Shape::SCALAR))
@@ -379,7 +379,7 @@ fn variations(sheet: &Sheet, doc: &mut Document) {
     }
 }
 
-/// The label of the variation of an advected quantity.
+/// The label of the variation of advected quantity `j` by configuration `i`.
 pub fn variation_label(i: usize, j: usize) -> String {
     format!("variation {i} {j}")
 }
@@ -391,7 +391,7 @@ fn relations(sheet: &Sheet, doc: &mut Document) {
     for r in &d.relations {
         let x = sheet.at(r.variable.symbol, r.variable.shift);
         let right = if r.up_to_group_multiplier {
-            // For orthogonal matrices the inverse transpose is the matrix itself.
+            // An orthogonal matrix is its own inverse transpose.
             let back = match sheet.symbols().get(r.variable.symbol).structure {
                 Structure::RigidMotion => Formula::transpose(Formula::Inverse(Box::new(x))),
                 _ => x,

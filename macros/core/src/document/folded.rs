@@ -1,5 +1,5 @@
-//! Letters of a lattice that is written out, seen from one site again: `q_3` and `q_4` become `q_{i}`
-//! and `q_{i+1}`, at an end `q_{N-1}` and `q_{N}`. All parts of a document share one table of them.
+//! Maps the letters of an expanded chain back to indexed notation: `q_3` and `q_4` become `q_{i}` and `q_{i+1}`, and
+//! `q_{N-1}` and `q_{N}` at an end. All parts of a document share one symbol table.
 
 use crate::check;
 use crate::derive::Derivation;
@@ -10,36 +10,36 @@ use crate::lattice::{Choice, ExpandedModel, Lattice};
 use crate::print::formula::Formula;
 use std::collections::BTreeMap;
 
-/// One choice of sites and ends, written out and derived.
+/// One choice of sites and end conditions, expanded and derived.
 pub(super) struct Part {
     pub choice: Choice,
     pub unfolded: ExpandedModel,
     pub d: Derivation,
-    /// The same with more sites, by which what is printed is known for every number of them.
+    /// The same choice with more sites. Comparing the two shows which formulas hold for every number of sites.
     pub longer: Option<Box<Part>>,
 }
 
-/// From where indices are read.
+/// The origin that site indices are relative to.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum From {
-    /// From this site: `i`, `i+1`.
+    /// Relative to this site: `i`, `i+1`.
     Site(usize),
-    /// From the first site: `0`, `1`.
+    /// Relative to the first site: `0`, `1`.
     First,
-    /// From the last node: `N`, `N-1`.
+    /// Relative to the last node: `N`, `N-1`.
     Last,
-    /// From this site, and what an end holds or has from that end: `i`, and beside it `0` or `N`.
+    /// Relative to this site, except that parameters and prescribed values of an end are indexed `0` or `N`.
     End(usize),
 }
 
-/// The letters of a document on a lattice.
+/// The symbols of a document on a lattice.
 pub(super) struct IndexedNotation<'a> {
     pub lattice: &'a Lattice,
     pub symbols: Symbols,
     known: BTreeMap<String, SymbolId>,
 }
 
-/// What a letter of a part is called in the model as stated, and its site.
+/// The declared name behind a letter of a part, and its site.
 struct Origin {
     name: String,
     label: usize,
@@ -47,7 +47,7 @@ struct Origin {
 }
 
 impl<'a> IndexedNotation<'a> {
-    /// With the letters of this part, whose functionals are those of all.
+    /// Starts from the symbols of this part; all parts share its functionals.
     pub(super) fn new(lattice: &'a Lattice, part: &Part) -> IndexedNotation<'a> {
         IndexedNotation {
             lattice,
@@ -56,7 +56,7 @@ impl<'a> IndexedNotation<'a> {
         }
     }
 
-    /// An expression of a part in shared letters.
+    /// An expression of a part in the shared symbols.
     pub(super) fn expression(&mut self, part: &Part, e: &Expr, from: From) -> Expr {
         let replaced: Vec<(Letter, Expr)> = expr::letters(e)
             .into_iter()
@@ -69,7 +69,7 @@ impl<'a> IndexedNotation<'a> {
         expr::substitute(&self.symbols, &e, &replaced)
     }
 
-    /// A letter of a part at an offset in time.
+    /// A letter of a part at a time offset.
     pub(super) fn letter(
         &mut self,
         part: &Part,
@@ -81,13 +81,13 @@ impl<'a> IndexedNotation<'a> {
         Formula::Expr(expr::letter(&self.symbols, id, shift))
     }
 
-    /// A derived expression, a term that is added in front.
+    /// A derived expression in the shared symbols, with a positive term first.
     pub(super) fn derived(&mut self, part: &Part, e: &Expr, from: From) -> Formula {
         let e = self.expression(part, e, from);
         Formula::Expr(expr::positive_first(&expr::shown(&self.symbols, &e)))
     }
 
-    /// The index of a site as text.
+    /// Formats the index of a site.
     pub(super) fn index(&self, part: &Part, label: usize, site: usize, from: From) -> String {
         let Some(l) = self.lattice.labels.get(label) else {
             return String::new();
@@ -98,7 +98,7 @@ impl<'a> IndexedNotation<'a> {
             std::cmp::Ordering::Less => format!("{name}-{}", origin - site),
         };
         let count = part.choice.count(label);
-        // Once around a ring.
+        // A ring wraps around.
         let around = part.choice.periodic && self.lattice.line == Some(label);
         let site = match from {
             From::End(origin) if around && site < origin => site + count,
@@ -113,14 +113,15 @@ impl<'a> IndexedNotation<'a> {
         }
     }
 
-    /// The label whose sites totals are summed over: a line, or a set that stands alone and is written out.
+    /// The label whose sites totals are summed over: the chain, or the set if it is the only label and there is no
+    /// mesh.
     pub(super) fn summed(&self) -> Option<usize> {
         let lattice = self.lattice;
         let of_set = lattice.labels.len() == 1 && lattice.meshes.is_empty();
         lattice.line.or(of_set.then_some(0))
     }
 
-    /// The label and the site of a letter; none of what an end holds or has.
+    /// The label and the site of a letter. `None` for parameters and prescribed values of an end.
     pub(super) fn site(&self, part: &Part, symbol: SymbolId) -> Option<(usize, usize)> {
         match self.end(part, symbol) {
             Some(_) => None,
@@ -128,7 +129,7 @@ impl<'a> IndexedNotation<'a> {
         }
     }
 
-    /// Which end holds or has a letter, `true` for the last one.
+    /// The end that owns a letter, as its parameter or prescribed value; `true` for the last end.
     fn end(&self, part: &Part, symbol: SymbolId) -> Option<bool> {
         let name = &part.d.letters.symbols.get(symbol).name;
         let unfolded = &part.unfolded;
@@ -173,7 +174,7 @@ impl<'a> IndexedNotation<'a> {
         )
     }
 
-    /// The shared letter of this name.
+    /// The shared symbol with this name.
     pub(super) fn named(
         &mut self,
         name: &str,
@@ -191,7 +192,7 @@ impl<'a> IndexedNotation<'a> {
         id
     }
 
-    /// Terms of the Lagrangian where they are shown; none for constants, which move nothing.
+    /// The terms of the Lagrangian as displayed; `None` for a constant, which does not affect the motion.
     pub(super) fn terms(&mut self, part: &Part) -> Vec<Option<Expr>> {
         let shown: Vec<_> = part.unfolded.summands.iter().map(|s| &s.shown).collect();
         let elaborated = check::numbers(&part.unfolded.model, &shown);
@@ -215,7 +216,7 @@ impl<'a> IndexedNotation<'a> {
         .collect()
     }
 
-    /// An expression in the letters of the checked model, which come first in those of the derivation.
+    /// Converts an expression in the symbols of the checked model. The derivation numbers these symbols first.
     fn checked(&mut self, part: &Part, e: &Expr, from: From) -> Expr {
         self.expression(part, e, from)
     }
@@ -228,13 +229,13 @@ fn part_site(from: From) -> usize {
     }
 }
 
-/// Where a letter comes from: a copy of a quantity, or what the derivation adds to one.
+/// Finds the quantity that a letter belongs to: a copy of the quantity, or a letter that the derivation adds to it.
 fn origin(lattice: &Lattice, part: &Part, symbol: SymbolId) -> Option<Origin> {
     let d = &part.d;
     let name = &d.letters.symbols.get(symbol).name;
     let of_copy = |name: &str, shown: String| {
         let copy = part.unfolded.copy(name)?;
-        // A multiplier is no quantity that is declared: constraints with neighbours stand on the line.
+        // A multiplier is not a declared quantity; constraints between neighbours belong to the chain.
         let declared = lattice.find(&copy.of).map(|q| q.label);
         let label = declared.or(lattice.line).unwrap_or(0);
         Some(Origin {
@@ -281,7 +282,8 @@ fn origin(lattice: &Lattice, part: &Part, symbol: SymbolId) -> Option<Origin> {
     None
 }
 
-/// The name of what belongs to no site: momenta and rates have the number of their configuration as stated.
+/// The name of a letter that does not belong to a site. Momenta and rates use the number of the declared
+/// configuration.
 fn beside(part: &Part, symbol: SymbolId) -> String {
     let d = &part.d;
     let name = &d.letters.symbols.get(symbol).name;
@@ -296,7 +298,7 @@ fn beside(part: &Part, symbol: SymbolId) -> String {
     name.clone()
 }
 
-/// The number of a configuration as stated, where there are several of one letter.
+/// The number of the declared configuration, if several use the same letter.
 fn number(part: &Part, of: &str) -> String {
     let mut names: Vec<&str> = Vec::new();
     for c in &part.d.spec.configurations {

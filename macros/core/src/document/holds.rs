@@ -1,5 +1,5 @@
-//! Held constraints in a derivation: what they state, how their multipliers are found, and how the momentum
-//! is projected on arrival. Takes the sheet; gives paragraphs of sections, and a section.
+//! Describes constraints in a derivation: what they state, how a step finds their multipliers, and how the momentum
+//! is projected on arrival. The functions add paragraphs to sections, and one section.
 
 use super::sheet::Sheet;
 use crate::algebra::Algebra;
@@ -13,7 +13,7 @@ use crate::expr::{self, Expr, Letter, Shift};
 use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::Formula;
 
-/// What is held, in the section of constraints.
+/// Adds the `hold` statements to the section on constraints.
 pub fn stated(sheet: &Sheet, section: &mut Section) {
     let d = sheet.d;
     if d.spec.holds.is_empty() {
@@ -42,7 +42,7 @@ fn label(j: usize) -> String {
     format!("hold {j}")
 }
 
-/// How a step holds them.
+/// Describes how a step enforces the constraints.
 pub fn held(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
     let s = sheet.symbols();
@@ -104,11 +104,11 @@ pub fn held(sheet: &Sheet, doc: &mut Document) {
     section.text(MIDDLE);
 }
 
-/// How momenta are projected.
+/// Sentences on the projection of momenta.
 pub(super) const ON_ARRIVAL: &str =
     "On arrival the momentum is projected (RATTLE): impulses along the reactions are added,";
 pub(super) const ALONG: &str = "so that the velocity on the left moves along the constraints:";
-/// What the state tells of multipliers, before the equations and behind them.
+/// The sentence before the equations for the reported multipliers; `MIDDLE` follows these equations.
 pub(super) fn no_change(d: &Derivation) -> String {
     format!(
         "The projection changes no configuration: the multiplier of the next step would supply the same impulse. The multiplier that the state shows at node {} is that of the step that ended there with the impulse of the projection over the step:",
@@ -117,7 +117,7 @@ pub(super) fn no_change(d: &Derivation) -> String {
 }
 pub(super) const MIDDLE: &str = "It approximates the multiplier at the middle of that step to second order; each of its two parts is about a half of it.";
 
-/// Velocities in the place of variations.
+/// Substitutes velocities for variations.
 fn velocities(d: &Derivation) -> Vec<(Letter, Expr)> {
     let all = d.spec.configurations.iter();
     all.zip(d.letters.variation.iter().zip(&d.letters.rate))
@@ -128,8 +128,8 @@ fn velocities(d: &Derivation) -> Vec<(Letter, Expr)> {
         .collect()
 }
 
-/// The momentum of configuration `i` by the velocity, and what it is on arrival after the projection; none where no
-/// reaction acts on it.
+/// The momentum of configuration `i` as a function of the velocity, and its value on arrival after the projection.
+/// `None` if no constraint force acts on the configuration.
 pub(super) fn projected(d: &Derivation, limit: &Limit, i: usize) -> Option<[Expr; 2]> {
     let s = &d.letters.symbols;
     let (c, xi) = (d.spec.configurations.get(i)?, d.letters.variation.get(i)?);
@@ -149,13 +149,13 @@ pub(super) fn projected(d: &Derivation, limit: &Limit, i: usize) -> Option<[Expr
     Some([along(&kinetic), expr::sub(momentum, kick)])
 }
 
-/// The rate of change of what is held, by velocities.
+/// The rate of change of the constraint function, as a function of the velocities.
 pub(super) fn rate_on_arrival(d: &Derivation, hold: &Hold) -> Expr {
     expr::substitute(&d.letters.symbols, &holds::rate(d, hold), &velocities(d))
 }
 
-/// The multiplier of constraint `j` that the state shows: that of the step before, less the impulse of the projection over
-/// the step.
+/// The reported multiplier of constraint `j`: the multiplier of the previous step minus the impulse of the projection
+/// divided by the step size.
 pub(super) fn told(d: &Derivation, j: usize) -> Expr {
     let s = &d.letters.symbols;
     let own = expr::here(s, d.spec.holds[j].multiplier);

@@ -1,5 +1,5 @@
-//! A model with labels as a paper section: its sites, the terms of its Lagrangian with their ranges,
-//! the equations of an interior site and of every end condition, what is conserved under which.
+//! Lays out a model with labels as a section of a paper: its sites, the terms of its Lagrangian with their ranges,
+//! the equations of an interior site and of each end condition, and the invariants of each choice.
 
 mod beside;
 mod card;
@@ -24,18 +24,18 @@ use crate::syntax::ast::Model;
 
 pub use card::{CardWords, InvariantWords, card_words};
 
-/// A derivation on a lattice, printed.
+/// A printed derivation on a lattice.
 pub struct Printed {
     /// The text.
     pub text: String,
-    /// What derives and is hardly meant.
+    /// Warnings about models that derive but are probably not what you meant.
     pub warnings: Vec<Warning>,
 }
 
-/// The derivation of a model with labels in a format; `stated` is its text.
+/// Prints the derivation of a model with labels in a format; `stated` is its text.
 ///
 /// # Errors
-/// Mistakes of the statement, or a model that does not derive.
+/// If a statement is invalid, or the model cannot be derived.
 pub fn printed_lattice(
     model: &Model,
     stated: &str,
@@ -73,8 +73,8 @@ pub fn printed_lattice(
     })
 }
 
-/// The choice that holds where a case makes none: a ring where `periodic` stands alone, else the
-/// first alternatives.
+/// Completes the choice of a case that sets no ends: a ring if the model declares `periodic` and no end conditions,
+/// otherwise the first alternative of each end.
 pub fn default_choice(lattice: &Lattice, choice: Choice) -> Choice {
     let ends = lattice.ends.iter().any(|e| !e.is_empty());
     match lattice.periodic.is_some() && !ends {
@@ -83,7 +83,7 @@ pub fn default_choice(lattice: &Lattice, choice: Choice) -> Choice {
     }
 }
 
-/// The default choice first, then the other kind of line, then each other end condition.
+/// The default choice first, then the other topology (open or ring), then each other end condition.
 fn parts(model: &Model, lattice: &Lattice) -> Result<Vec<Part>, Errors> {
     let open = pipeline::representative(model, lattice)?;
     let mut choices = vec![default_choice(lattice, open.clone())];
@@ -105,7 +105,7 @@ fn parts(model: &Model, lattice: &Lattice) -> Result<Vec<Part>, Errors> {
             let of_set = lattice.labels.len() == 1 && lattice.meshes.is_empty();
             let summed = lattice.line.or(of_set.then_some(0));
             if let Some(count) = summed.and_then(|i| longer.counts.get_mut(i)) {
-                // A ring keeps an odd number of sites.
+                // Two more sites keep the parity of the number of sites of a ring.
                 *count += if choice.periodic { 2 } else { 1 };
             }
             let mut part = written_out(model, lattice, choice)?;
@@ -219,7 +219,7 @@ fn sites(lattice: &Lattice, doc: &mut Document) {
     ));
 }
 
-/// `N`, `N-1`.
+/// The number of sites with an offset: `N`, `N-1`.
 fn beyond(count: &str, by: isize) -> String {
     match by {
         0 => count.to_owned(),
@@ -228,7 +228,7 @@ fn beyond(count: &str, by: isize) -> String {
     }
 }
 
-/// A term with its range.
+/// A term with its range of summation.
 fn ranged(lattice: &Lattice, range: Option<Range>, of: Formula) -> Formula {
     let label = range.and_then(|r| lattice.labels.get(r.label).map(|l| (r, l)));
     match label {
@@ -338,17 +338,17 @@ fn constraints(folded: &mut IndexedNotation, part: &Part, doc: &mut Document) {
     holds::holds(folded, part, section);
 }
 
-/// A configuration as stated, and its copies that move.
+/// A declared configuration and its unknown copies.
 pub(super) struct Stated {
     /// Its name.
     pub name: String,
-    /// Its label, where it has one.
+    /// Its label, if it has one.
     pub label: Option<usize>,
-    /// Number of the configuration that is shown, the copy at the middle site.
+    /// Number of the displayed configuration, the copy at the middle site.
     pub shown: usize,
     /// The middle site.
     pub site: usize,
-    /// Numbers of the copies that move, with their sites, in order.
+    /// Numbers and sites of the unknown copies, in order.
     pub copies: Vec<(usize, usize)>,
 }
 
@@ -363,7 +363,7 @@ fn middle(part: &Part, lattice: &Lattice, of: &str) -> usize {
     }
 }
 
-/// The configurations as stated.
+/// The declared configurations.
 pub(super) fn stated_configurations(part: &Part) -> Vec<Stated> {
     let mut out: Vec<Stated> = Vec::new();
     for (i, c) in part.d.spec.configurations.iter().enumerate() {
@@ -400,7 +400,7 @@ pub(super) fn stated_configurations(part: &Part) -> Vec<Stated> {
     out
 }
 
-/// The two equations of a copy, seen from its site or an end.
+/// The two equations of a copy, with indices relative to its site or an end.
 pub(super) fn equations(
     folded: &mut IndexedNotation,
     part: &Part,
@@ -423,7 +423,7 @@ pub(super) fn equations(
     ]
 }
 
-/// The equations of a copy as text: equal where the equations are.
+/// The equations of a copy as text; equal equations give equal text.
 pub(super) fn reading(folded: &mut IndexedNotation, part: &Part, i: usize, site: usize) -> String {
     let Some(b) = part.d.balances.get(i) else {
         return String::new();
@@ -438,7 +438,7 @@ pub(super) fn reading(folded: &mut IndexedNotation, part: &Part, i: usize, site:
     format!("{a} | {b}")
 }
 
-/// Copies whose equations read as those of the middle site, from the first to the last.
+/// The first and the last copy whose equations read like those at the middle site.
 pub(super) fn like_the_middle(
     folded: &mut IndexedNotation,
     part: &Part,
@@ -490,7 +490,7 @@ fn interior(folded: &mut IndexedNotation, part: &Part, doc: &mut Document) {
     }
 }
 
-/// `, i = 1, ..., N-1`.
+/// The range of sites of an equation: `, i = 1, ..., N-1`.
 fn range_words(
     lattice: &Lattice,
     part: &Part,
@@ -531,7 +531,7 @@ fn certificate(lattice: &Lattice, parts: &[Part], doc: &mut Document) {
     section.list(items.collect());
 }
 
-/// A paragraph of words.
+/// Adds a paragraph of plain text.
 pub(super) fn say(section: &mut Section, words: String) {
     section.paragraph([words.into()]);
 }

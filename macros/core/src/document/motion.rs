@@ -1,5 +1,5 @@
-//! Elimination of the multipliers: the momentum map at both ends of an edge, from it the discrete
-//! Euler-Poincaré equations with their coadjoint transport and diamonds, defined where they stand.
+//! Elimination of the multipliers: the momentum map at both ends of an edge, and from it the discrete Euler-Poincaré
+//! equations with coadjoint action and diamonds, each defined where it is used.
 
 use super::citations::Place;
 use super::compose::{pairing, relation_label, transport_label, variation_label};
@@ -11,8 +11,8 @@ use crate::expr::{self, Expr, Letter, Shift};
 use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::{Formula, Operator, Relation};
 
-/// What moves with a configuration at its node and stands in the action: symbol, and whether the
-/// edge that starts there and the one that ends there hold it.
+/// The quantities in the action that vary with configuration `i`: symbol, whether the outgoing edge depends on it,
+/// and whether the incoming edge does.
 fn forces(sheet: &Sheet, i: usize) -> Vec<(SymbolId, bool, bool)> {
     let d = sheet.d;
     let s = sheet.symbols();
@@ -30,7 +30,7 @@ fn forces(sheet: &Sheet, i: usize) -> Vec<(SymbolId, bool, bool)> {
         .collect()
 }
 
-/// `(∇_a ℓ_{k-1} + ∇_a ℓ_k) ◇ a` for each of them.
+/// `(∇_a ℓ_{k-1} + ∇_a ℓ_k) ◇ a` for each advected quantity.
 fn diamonds(sheet: &Sheet, i: usize) -> Vec<Formula> {
     let each = forces(sheet, i).into_iter().map(|(x, start, end)| {
         let incoming = end.then(|| sheet.gradient(-1, x));
@@ -40,7 +40,7 @@ fn diamonds(sheet: &Sheet, i: usize) -> Vec<Formula> {
             Ok([only]) => only,
             Err(both) => Formula::Sum(both),
         };
-        // What moves a field itself is the gradient.
+        // For a field, the force is the gradient itself.
         let own = |c: &Configuration| c.element == x && c.group.is_additive();
         match sheet.d.spec.configurations.iter().any(own) {
             true => gradient,
@@ -58,7 +58,7 @@ fn carried(sheet: &Sheet, c: &Configuration, i: usize, shift: Shift) -> Formula 
     }
 }
 
-/// Momentum maps: of the multipliers, and of the edge at both its ends.
+/// The section on momentum maps: of the multipliers, and of the edge at both its ends.
 pub fn momentum_maps(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
     let section = doc.section("Momentum maps");
@@ -97,7 +97,7 @@ pub fn momentum_maps(sheet: &Sheet, doc: &mut Document) {
     }
 }
 
-/// Pairing, diamond and coadjoint action, each in one sentence.
+/// Defines pairing, diamond and coadjoint action, one sentence each.
 fn definitions(sheet: &Sheet, section: &mut Section) {
     let d = sheet.d;
     let free = |base: &str| sheet.free(base);
@@ -212,7 +212,7 @@ fn definitions(sheet: &Sheet, section: &mut Section) {
     }
 }
 
-/// The momentum of the edge by the gradient in the velocity.
+/// The edge momentum as the gradient with respect to the velocity.
 fn edge(sheet: &Sheet, section: &mut Section, c: &Configuration, m: &Momentum, i: usize) {
     let product = Formula::Product(vec![
         sheet.gradient(0, c.velocity),
@@ -226,7 +226,7 @@ fn edge(sheet: &Sheet, section: &mut Section, c: &Configuration, m: &Momentum, i
             Formula::operator(Operator::Skew, product),
         ]))
     } else {
-        // By coordinates the pairing with the gradient is the reduced form itself.
+        // If the group has coordinates, the pairing with the gradient is already the reduced form.
         c.group.coordinates().is_none().then_some(product)
     };
     section.sourced(
@@ -242,7 +242,7 @@ fn edge(sheet: &Sheet, section: &mut Section, c: &Configuration, m: &Momentum, i
     );
 }
 
-/// The relation of the velocity, multiplied by the velocity on either side.
+/// Multiplies the Clebsch relation of the velocity by the velocity from either side.
 fn elimination(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize) {
     if c.group.is_additive() {
         return of_field(sheet, section, c, i);
@@ -312,7 +312,7 @@ fn elimination(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize
     section.labelled(&format!("end {i}"));
 }
 
-/// The same of a field: nothing is multiplied.
+/// Elimination for a field, where nothing needs to be multiplied.
 fn of_field(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize) {
     let relation = |symbol| Inline::reference(&relation_label(symbol));
     section.paragraph([
@@ -401,7 +401,7 @@ pub fn balance(sheet: &Sheet, doc: &mut Document) {
     }
 }
 
-/// The gradients in the diamonds, written out.
+/// Expands the gradients in the diamonds.
 fn gradients(sheet: &Sheet, section: &mut Section, i: usize) {
     let d = sheet.d;
     let s = sheet.symbols();

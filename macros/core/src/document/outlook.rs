@@ -1,5 +1,5 @@
-//! What follows from the equations: conserved quantities, the continuous equations of motion in the
-//! limit of small steps, and the list of identities that prove the derivation.
+//! Consequences of the equations: invariants, the continuous equations of motion as the step size tends to zero, and
+//! the identities that prove the derivation.
 
 use super::citations::Place;
 use super::sheet::{Sheet, references};
@@ -12,7 +12,7 @@ use crate::expr::{self, Letter, Shift, spelling};
 use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::{Formula, Relation};
 
-/// Conserved quantities and time reversal.
+/// The section on invariants and time reversal.
 pub fn invariants(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
     let section = doc.section("Invariants");
@@ -35,7 +35,7 @@ pub fn invariants(sheet: &Sheet, doc: &mut Document) {
     reversal(sheet, section);
 }
 
-/// Whether the step may be composed, and what stands in the way.
+/// States whether the step is reversible, so that steps may be composed, or why it is not.
 fn reversal(sheet: &Sheet, section: &mut Section) {
     let step = sheet.here(sheet.d.spec.step);
     let symmetric = |ends: &str| -> Vec<Inline> {
@@ -106,7 +106,7 @@ fn spectrum(sheet: &Sheet) -> Vec<Inline> {
     ]
 }
 
-/// The limit of small steps.
+/// The section on the limit of small step size.
 pub fn limit(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
     let section = doc.section("Limit of small steps");

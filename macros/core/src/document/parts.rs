@@ -1,7 +1,7 @@
-//! A derivation with rigid motions as a page prints it: equations between vectors of the Lie algebra or its
-//! dual as two, of the angular and of the linear part; homogeneous coordinates by their blocks. Takes a
-//! document and its symbols; gives both with the letters of the parts, each introduced where it first stands.
-//! Only what is printed changes.
+//! Prints rigid motions by their parts. An equation between vectors of the Lie algebra or its dual becomes two, for
+//! the angular and the linear part; homogeneous coordinates are printed by blocks. From a document and its symbols,
+//! `in_parts` returns both with the letters of the parts, and defines each letter where it first occurs. The
+//! derivation itself does not change.
 
 mod display;
 mod found;
@@ -24,14 +24,14 @@ use names::Names;
 /// How rigid motions and their momenta are printed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Motions {
-    /// By their parts, in letters of their own.
+    /// By their parts, with a letter for each part.
     InParts,
-    /// As they are.
+    /// As single letters.
     Whole,
 }
 
-/// The same document in parts and with the names of the model, `lets`, with the symbols that it is printed by; as it is
-/// where no rigid motion and no name occurs. Letters of many `sites` are introduced at one.
+/// Splits a document into parts and substitutes the model's names `lets`; returns it with its symbols. A document
+/// without rigid motions and names is returned unchanged. With `sites`, letters are defined at one site for all.
 pub fn in_parts(
     doc: Document,
     symbols: &Symbols,
@@ -65,13 +65,13 @@ pub fn in_parts(
     (doc, page.names.symbols)
 }
 
-/// Whether something in it is of rigid motions or a zero-padding inclusion.
+/// Whether an expression contains a twist or a zero-padding inclusion.
 fn has_parts(e: &Expr) -> bool {
     matches!(e.node(), Node::Inclusion(..) | Node::Map(Map::Twist, _))
         || e.children().into_iter().any(has_parts)
 }
 
-/// Every formula of a document, in order.
+/// Visits every formula of a document, in order.
 fn each_formula(doc: &Document, visit: &mut dyn FnMut(&Formula)) {
     let blocks = doc.sections.iter().flat_map(|s| &s.blocks);
     blocks.for_each(|block| each_of(block, visit));
@@ -94,12 +94,12 @@ fn each_inline(parts: &[Inline], visit: &mut dyn FnMut(&Formula)) {
     }
 }
 
-/// A section in parts: new letters are introduced behind the equations that hold them first.
+/// Splits a section into parts and defines new letters after the equations where they first occur.
 fn section(page: &mut Display, section: Section) -> Section {
     let mut blocks: Vec<Block> = Vec::new();
     for block in section.blocks {
         let equation = matches!(block, Block::Equation { .. });
-        // Equations in a row stay in a row, and a sentence that an equation stands in is ended first.
+        // Keep consecutive equations together, and finish a sentence that contains equations first.
         if !equation && !goes_on(&block) {
             blocks.extend(page.names.introduced());
         }
@@ -111,7 +111,7 @@ fn section(page: &mut Display, section: Section) -> Section {
     Section { blocks, ..section }
 }
 
-/// Whether a paragraph goes on with the sentence before, or says what its letters are.
+/// Whether a paragraph continues the previous sentence, or already defines its letters.
 fn goes_on(block: &Block) -> bool {
     let Block::Paragraph(parts) = block else {
         return false;

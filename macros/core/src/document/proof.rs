@@ -1,4 +1,4 @@
-//! The certificate as text: every identity of the proof, in order, with its two sides.
+//! Prints the certificate as text: every identity of the proof, in order, with its two sides.
 
 use super::style;
 use crate::algebra::Decision;

@@ -1,5 +1,5 @@
-//! What a step on SU(2) solves where that comes down to one equation for a number.
-//! Takes the derivation and its parts; gives the equation, its linear part and the number.
+//! The equation of a step on SU(2), if it reduces to one scalar equation: the equation, its linear part and the
+//! scalar.
 
 use super::sheet::Sheet;
 use crate::check::spec::Configuration;
@@ -8,7 +8,7 @@ use crate::expr::{self, Expr};
 use crate::print::document::{Inline, Section};
 use crate::print::formula::{Formula, Relation};
 
-/// The equation and how it is solved.
+/// Adds the equation and how it is solved.
 pub(super) fn equation(
     sheet: &Sheet,
     section: &mut Section,

@@ -1,5 +1,5 @@
-//! The scheme up front, as a paper states it before it derives it: the variational principle and the algorithm of a
-//! step. Takes the derivation; gives a section whose references lead to the equations below.
+//! The scheme before its derivation, as in a paper: a section with the variational principle and the algorithm of a
+//! step, which refers to the equations below.
 
 use super::compose::transport_label;
 use super::motion::equations_name;
@@ -8,7 +8,7 @@ use crate::expr::Shift;
 use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::{Formula, Relation};
 
-/// Puts the section behind that of the model.
+/// Inserts the section after the section on the model.
 pub fn up_front(sheet: &Sheet, doc: &mut Document) {
     let mut out = Document::default();
     let section = out.section("Scheme");
@@ -18,7 +18,7 @@ pub fn up_front(sheet: &Sheet, doc: &mut Document) {
     doc.sections.splice(place..place, out.sections);
 }
 
-/// Stationarity of the action.
+/// States that the action is stationary.
 fn principle(sheet: &Sheet, section: &mut Section) {
     let k = &sheet.d.spec.time_index;
     section.text("The variational principle is");
@@ -45,7 +45,7 @@ fn principle(sheet: &Sheet, section: &mut Section) {
     ]);
 }
 
-/// What a step does, in order.
+/// Lists the operations of a step, in order.
 fn algorithm(sheet: &Sheet, section: &mut Section) {
     let d = sheet.d;
     let configurations = &d.spec.configurations;

@@ -1,5 +1,5 @@
-//! What every section of a derivation needs: the derivation, its citations, letters that no symbol
-//! of the model bears, and the small formulas that recur.
+//! Shared by all sections of a derivation: the derivation, its citations, names that the model does not use, and
+//! common formulas.
 
 use super::citations::{Citations, Place};
 use crate::check::spec::Configuration;
@@ -9,7 +9,7 @@ use crate::expr::{self, Expr, Letter, Shift};
 use crate::print::document::Inline;
 use crate::print::formula::Formula;
 
-/// A derivation being written down.
+/// A derivation and its citations, from which sections are written.
 pub struct Sheet<'a> {
     /// The derivation.
     pub d: &'a Derivation,
@@ -18,17 +18,17 @@ pub struct Sheet<'a> {
 }
 
 impl<'a> Sheet<'a> {
-    /// Opens a derivation.
+    /// Wraps a derivation and its citations.
     pub fn new(d: &'a Derivation, citations: Citations) -> Sheet<'a> {
         Sheet { d, citations }
     }
 
-    /// The source of an equation, where one is cited.
+    /// The source of an equation, if the model cites one.
     pub fn source(&self, place: Place<'_>) -> Option<String> {
         self.citations.of(place)
     }
 
-    /// The name that the model gives a symbol.
+    /// The model's name of a symbol.
     pub fn name_of(&self, symbol: SymbolId) -> &'a str {
         &self.symbols().get(symbol).name
     }
@@ -38,12 +38,12 @@ impl<'a> Sheet<'a> {
         &self.d.letters.symbols
     }
 
-    /// An expression, like terms collected.
+    /// An expression with like terms collected.
     pub fn math(&self, e: &Expr) -> Formula {
         Formula::Expr(expr::shown(self.symbols(), e))
     }
 
-    /// A derived expression: like terms collected, a term that is added in front.
+    /// A derived expression with like terms collected and a positive term first.
     pub fn derived(&self, e: &Expr) -> Formula {
         Formula::Expr(expr::positive_first(&expr::shown(self.symbols(), e)))
     }
@@ -53,7 +53,7 @@ impl<'a> Sheet<'a> {
         Formula::Expr(expr::letter(self.symbols(), symbol, shift))
     }
 
-    /// A symbol where the equation stands.
+    /// A symbol at the node of the equation.
     pub fn here(&self, symbol: SymbolId) -> Formula {
         self.at(symbol, Shift::HERE)
     }
@@ -68,8 +68,7 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    /// A name that no symbol of the model bears, with the number of the configuration where there
-    /// are several.
+    /// A name that the model does not use, with the number of the configuration if there are several.
     pub fn name(&self, base: &str, i: usize) -> Formula {
         let many = self.d.spec.configurations.len() > 1;
         let wanted = if many {
@@ -80,13 +79,13 @@ impl<'a> Sheet<'a> {
         Formula::name(&self.symbols().fresh_name(&wanted))
     }
 
-    /// A letter that stands for anything, in a definition: its usual name unless the model has it.
+    /// A dummy letter for a definition: its usual name unless the model uses that name.
     pub fn free(&self, base: &str) -> Formula {
         Formula::name(&self.d.spec.symbols.fresh_name(base))
     }
 
-    /// The momentum map of the multipliers at node k: `J^R` of the right translation on the body
-    /// side, `J^L` of the left one on the spatial side.
+    /// The momentum map of the multipliers at node `k`: `J^R`, of right translation, on the body side; `J^L`, of left
+    /// translation, on the spatial side.
     pub fn lifted(&self, i: usize, by: i8) -> Formula {
         let many = self.d.spec.configurations.len() > 1;
         let number = if many {
@@ -107,7 +106,7 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    /// Gradient of the action of the edge that starts `by` nodes later, at node k.
+    /// The gradient, at node `k`, of the action of the edge that starts at node `k + by`.
     pub fn gradient(&self, by: i8, symbol: SymbolId) -> Formula {
         let of = format!("ℓ_{{{}}}", self.index(by));
         Formula::gradient(
@@ -119,7 +118,7 @@ impl<'a> Sheet<'a> {
         )
     }
 
-    /// `SO(3)`, `GL(n)`, `SU(2)`, `SE(3)`, `a vector of 3 components`.
+    /// The name of the group: `SO(3)`, `GL(n)`, `SU(2)`, `SE(3)`, `a vector of 3 components`.
     pub fn group(&self, c: &Configuration) -> String {
         c.group.name(&|n| self.symbols().dim_text(n).to_string())
     }
@@ -129,14 +128,14 @@ impl<'a> Sheet<'a> {
         c.group.is_of_space()
     }
 
-    /// Whether the variation of a configuration moves an advected quantity.
+    /// Whether the variation of configuration `i` changes advected quantity `j`.
     pub fn moves(&self, i: usize, j: usize) -> bool {
         let change = self.d.variations.get(i).and_then(|v| v.advected.get(j));
         change.is_some_and(|(_, e)| !e.is_zero())
     }
 }
 
-/// A list of parts of a sentence with commas and `and`.
+/// Joins parts of a sentence with commas and `and`.
 pub fn listed(parts: Vec<Vec<Inline>>) -> Vec<Inline> {
     let last = parts.len().saturating_sub(1);
     let mut out = Vec::new();
@@ -153,7 +152,7 @@ pub fn listed(parts: Vec<Vec<Inline>>) -> Vec<Inline> {
     out
 }
 
-/// Equations by their labels: `(7) and (8)`.
+/// References to equations by their labels: `(7) and (8)`.
 pub fn references(labels: &[String]) -> Vec<Inline> {
     listed(labels.iter().map(|l| vec![Inline::reference(l)]).collect())
 }

@@ -1,5 +1,5 @@
-//! What each step solves: the Moser-Veselov equation, the matrix Riccati equation it is equivalent
-//! to, the Hamiltonian matrix and the invariant subspace that solve that, and what the stepper does.
+//! The equation that each step solves: the Moser-Veselov equation, the equivalent matrix Riccati equation, its
+//! Hamiltonian matrix and invariant subspace, and the method of the stepper.
 
 use super::citations::Place;
 use super::sheet::{Sheet, listed};
@@ -13,7 +13,7 @@ use crate::expr::{self, Expr, Node};
 use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::{Formula, Relation};
 
-/// The section.
+/// The section on the solution of a step.
 pub fn moser_veselov(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
     let fields = d.spec.has_only_fields();
@@ -76,7 +76,7 @@ pub fn moser_veselov(sheet: &Sheet, doc: &mut Document) {
     method(sheet, section);
 }
 
-/// A balance that is linear in the velocity, solved for it.
+/// A balance that is linear in the velocity, solved for the velocity.
 fn linear(
     sheet: &Sheet,
     section: &mut Section,
@@ -113,7 +113,7 @@ fn linear(
     section.equation(Formula::equal(sheet.here(c.velocity), sheet.math(&solved)));
 }
 
-/// The letter that stands for the factor: the factor itself where that is one letter.
+/// A letter for the factor, or the factor itself if it is a letter; and whether the letter is a new name.
 fn factor(sheet: &Sheet, mv: &MoserVeselov, i: usize) -> (Formula, bool) {
     match mv.factor.node() {
         Node::Letter(_) => (Formula::Expr(mv.factor.clone()), false),
@@ -121,7 +121,7 @@ fn factor(sheet: &Sheet, mv: &MoserVeselov, i: usize) -> (Formula, bool) {
     }
 }
 
-/// `C^T`, which is `C` where it is symmetric.
+/// `C^T`, written `C` if the factor is symmetric.
 fn transposed(mv: &MoserVeselov, c: &Formula) -> Formula {
     if mv.symmetric {
         c.clone()
@@ -130,7 +130,7 @@ fn transposed(mv: &MoserVeselov, c: &Formula) -> Formula {
     }
 }
 
-/// The letter of the edge momentum, which is that of the node where nothing is taken off it.
+/// The letter of the edge momentum: that of the node momentum if the two are equal.
 fn edge(sheet: &Sheet, mv: &MoserVeselov, i: usize) -> Formula {
     match sheet.d.letters.node_momentum.get(i) {
         Some(mu) if mv.rest.is_zero() => sheet.here(*mu),
@@ -192,7 +192,7 @@ fn equation(
     reason(sheet, section, c, mv, i, coupled);
 }
 
-/// Why the equation is closed, or by what it is coupled to the others.
+/// Why the equation is closed, or which quantities couple it to the other equations.
 fn reason(
     sheet: &Sheet,
     section: &mut Section,
@@ -355,7 +355,7 @@ fn riccati(sheet: &Sheet, section: &mut Section, c: &Configuration, mv: &MoserVe
     ]);
 }
 
-/// What is degenerate, where the kinetic energy is for all parameters.
+/// The rank of the kinetic energy, if it is degenerate for all parameters.
 fn degenerate(sheet: &Sheet) -> Option<String> {
     let kinetic = sheet.d.kinetic.as_ref().filter(|k| !k.first_order)?;
     let (rank, n) = kinetic.degenerate()?;
@@ -364,7 +364,7 @@ fn degenerate(sheet: &Sheet) -> Option<String> {
     ))
 }
 
-/// What the emitted stepper does, or why there is none.
+/// Describes the method of the emitted stepper, or why none is emitted.
 fn method(sheet: &Sheet, section: &mut Section) {
     let d = sheet.d;
     if let Some(refused) = emit::refusal(d) {
@@ -395,7 +395,7 @@ fn method(sheet: &Sheet, section: &mut Section) {
         ]);
         return;
     }
-    // What the motion carries stands still in the body.
+    // An advected factor is constant in the body frame.
     let carried = d.solve.riccati.iter().any(|r| match r {
         StepEquation::Exact(mv) | StepEquation::Coupled(mv) => {
             expr::contains_role(sheet.symbols(), &mv.factor, Role::Advected)
@@ -464,7 +464,7 @@ fn method(sheet: &Sheet, section: &mut Section) {
     }
 }
 
-/// Says which balances have one solution only, and for which parameters.
+/// States which balances have a unique solution, and for which parameters.
 fn unique(sheet: &Sheet, section: &mut Section) {
     let d = sheet.d;
     let one = |spec: &Spec, section: &mut Section| {

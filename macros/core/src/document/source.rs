@@ -1,5 +1,4 @@
-//! The model as text of the language, in one canonical layout: what is stored with results, and
-//! what derives the same model again.
+//! The canonical text of a model. It is stored with results, and derives the same model again.
 
 use crate::check::spec::{Assumption, Configuration, Spec, Subject};
 use crate::derive::Derivation;
@@ -144,7 +143,7 @@ pub fn source(d: &Derivation) -> String {
     out
 }
 
-/// Increments of fields as the language has them: `next(X) - X`.
+/// Increments of fields in the notation of the language: `next(X) - X`.
 fn increments(spec: &Spec) -> Vec<(Letter, Expr)> {
     let s = &spec.symbols;
     let fields = spec.configurations.iter().filter(|c| c.group.is_additive());

@@ -1,5 +1,5 @@
-//! The geometry behind the invariants: the Lie-Poisson bracket of the reduced space, the count of
-//! its Casimirs, and the Lax form of a free body. Takes a derivation; adds sections.
+//! The geometry behind the invariants: the Lie-Poisson bracket of the reduced space, the number of its Casimirs, and
+//! the Lax form of a free body. Each function adds a section.
 
 use super::sheet::Sheet;
 use crate::derive::Derivation;
@@ -18,7 +18,7 @@ fn braces(sheet: &Sheet, first: &Expr, second: &Expr) -> Formula {
     ])
 }
 
-/// How a model that was stated unreduced was reduced.
+/// Describes the reduction of a model that was declared unreduced.
 pub fn reduction(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
     if !d.spec.reduction.as_ref().is_some_and(|r| r.carries) {
@@ -47,7 +47,7 @@ pub fn reduction(sheet: &Sheet, doc: &mut Document) {
     );
 }
 
-/// What a quantity is that no parameter of the model names: it is made of one configuration alone.
+/// The meaning of an advected quantity that does not come from a parameter: it depends on one configuration only.
 fn meaning(sheet: &Sheet, definition: &Expr) -> Option<String> {
     let d = sheet.d;
     let mut all = d.spec.configurations.iter();
@@ -74,7 +74,7 @@ fn meaning(sheet: &Sheet, definition: &Expr) -> Option<String> {
     })
 }
 
-/// A unit vector in an expression.
+/// A unit vector in an expression, if there is one.
 fn unit(e: &Expr) -> Option<(Dim, u8)> {
     match e.node() {
         Node::Unit(n, axis) => Some((*n, *axis)),
@@ -82,7 +82,7 @@ fn unit(e: &Expr) -> Option<(Dim, u8)> {
     }
 }
 
-/// The bracket, row by row.
+/// The section on the bracket, row by row.
 pub fn bracket(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
     let section = match d.bracket.holds_elements {
@@ -170,7 +170,7 @@ fn listed(c: &Count) -> String {
     }
 }
 
-/// The counts of a model whose size has only a name.
+/// The counts for a model whose dimension is symbolic.
 fn by_size(d: &Derivation, counts: &[Count], section: &mut Section) {
     let name = d.spec.dimensions.first().map_or("", |n| n.name.as_str());
     let each = counts.iter().map(|c| {
@@ -211,7 +211,7 @@ fn by_size(d: &Derivation, counts: &[Count], section: &mut Section) {
     });
 }
 
-/// The Lax form of the step.
+/// The section on the Lax form of the step.
 pub fn lax(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
     let Some(lax) = &d.integrability.lax else {

@@ -6,11 +6,11 @@ use core::fmt;
 /// The numbers of sites and the end conditions of one chain.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Choice {
-    /// For each label: the number of segments of an open line, of sites of a ring or a set.
+    /// For each label: the number of segments of an open chain, or of sites of a ring or a set.
     pub counts: Vec<usize>,
     /// Whether the chain is a ring.
     pub periodic: bool,
-    /// Which alternative holds at the first and at the last site.
+    /// Which alternative applies at the first and at the last site.
     pub ends: [usize; 2],
 }
 
@@ -115,7 +115,7 @@ impl Choice {
         self
     }
 
-    /// With so many segments or sites of a label.
+    /// Sets the number of segments or sites of a label.
     ///
     /// # Errors
     /// The label does not exist, or the requested number is too small.
@@ -147,10 +147,10 @@ impl Choice {
         Ok(self)
     }
 
-    /// Closed to a ring.
+    /// Closes the chain to a ring.
     ///
     /// # Errors
-    /// The model does not say `periodic;`.
+    /// The model does not declare `periodic;`.
     pub fn with_ring(mut self, lattice: &Lattice) -> Result<Choice, Refusal> {
         if lattice.periodic.is_none() {
             let line = lattice.line.and_then(|i| lattice.labels.get(i));
@@ -161,7 +161,7 @@ impl Choice {
         Ok(self)
     }
 
-    /// With this end condition at the first or the last site.
+    /// Sets the end condition at the first or the last site.
     ///
     /// # Errors
     /// The alternative does not exist.
@@ -186,18 +186,18 @@ impl Choice {
         }
     }
 
-    /// The number of a label.
+    /// The number chosen for a label.
     pub fn count(&self, label: usize) -> usize {
         self.counts.get(label).copied().unwrap_or(0)
     }
 
-    /// How many sites a kind of sites of a label has.
+    /// The number of sites of a kind that a label has.
     pub fn sites(&self, lattice: &Lattice, label: usize, sites: Sites) -> usize {
         let open = lattice.line == Some(label) && !self.periodic;
         self.count(label) + usize::from(open && sites == Sites::Nodes)
     }
 
-    /// How many sites a quantity has.
+    /// The number of sites of a quantity.
     pub fn sites_of(&self, lattice: &Lattice, q: &Quantity) -> usize {
         self.sites(lattice, q.label, q.sites)
     }
@@ -216,7 +216,7 @@ impl Choice {
         }
     }
 
-    /// How the choice reads: `i = 4, periodic`.
+    /// Describes the choice: `i = 4, periodic`.
     pub fn words(&self, lattice: &Lattice) -> String {
         let counts = lattice.labels.iter().zip(&self.counts);
         let mut words: Vec<String> = counts

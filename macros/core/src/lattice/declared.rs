@@ -47,14 +47,14 @@ pub struct Label {
     pub grid: bool,
 }
 
-/// A quantity that lives at the sites of a label.
+/// A quantity at the sites of a label.
 #[derive(Clone, Debug)]
 pub struct Quantity {
     /// Its name.
     pub name: Name,
     /// Its label, by number.
     pub label: usize,
-    /// At which of its sites.
+    /// The kind of sites that it is defined at.
     pub sites: Sites,
     /// Its kind.
     pub kind: Kind,
@@ -75,26 +75,26 @@ pub struct Lattice {
     pub line: Option<usize>,
     /// Where the chain is declared periodic.
     pub periodic: Option<Place>,
-    /// The end conditions at the first and at the last site; none: the natural ones.
+    /// The end conditions at the first and at the last site; if empty, the natural ones.
     pub ends: [Vec<Alternative>; 2],
     /// The quantities at sites.
     pub quantities: Vec<Quantity>,
     /// Functionals of all sites, each after the functionals that it depends on.
     pub meshes: Vec<Mesh>,
-    /// Names of numbers, at sites or not.
+    /// Names of scalars, at sites or not.
     pub(super) numbers: BTreeSet<String>,
-    /// Names that move, at sites or not.
+    /// Names of moving quantities, at sites or not.
     pub(super) moving: BTreeSet<String>,
     /// Velocities of groups, at sites or not.
     pub(super) velocities: BTreeSet<String>,
-    /// Every name that is declared.
+    /// All declared names.
     pub(super) declared: BTreeSet<String>,
 }
 
-/// The name of the end condition of a chain that states none.
+/// The name of the end condition of a chain that declares none.
 const NATURAL: &str = "free";
 
-/// Names of ends that prescribe something; an end that states nothing cannot have them.
+/// Names that suggest a prescribed end. An end condition that states nothing cannot have such a name.
 const HOLDING: [&str; 6] = ["clamped", "closed", "fixed", "held", "pinned", "wall"];
 
 impl Lattice {
@@ -108,7 +108,7 @@ impl Lattice {
         }
     }
 
-    /// The quantity of this name.
+    /// The quantity with this name.
     pub fn find(&self, name: &str) -> Option<&Quantity> {
         self.quantities.iter().find(|q| q.name.text == name)
     }
@@ -124,7 +124,7 @@ impl Lattice {
         self.find(base)
     }
 
-    /// The field whose values lie in a domain.
+    /// The field whose values lie in a domain, that is, the particle positions.
     pub fn places(&self) -> Option<&Quantity> {
         self.quantities.iter().find(|q| q.domain.is_some())
     }
@@ -139,7 +139,7 @@ impl Lattice {
         self.labels.get(label).is_some_and(|l| l.grid)
     }
 
-    /// The line.
+    /// The label of the chain.
     pub fn line_label(&self) -> Option<&Label> {
         self.line.and_then(|i| self.labels.get(i))
     }
@@ -240,7 +240,7 @@ impl Lattice {
         }
     }
 
-    /// Names of numbers and of what moves.
+    /// Collects the names of scalars and of moving quantities.
     fn names(&mut self, model: &Model) {
         let mut time_step = "h".to_owned();
         for statement in &model.statements {
@@ -400,7 +400,7 @@ impl Lattice {
         }
     }
 
-    /// Whether there are such sites.
+    /// Whether the model has sites of this kind.
     fn knows(&self, at: &At) -> bool {
         match &at.site {
             Site::Nodes | Site::Segments => self.line.is_some(),
@@ -474,7 +474,7 @@ impl Lattice {
         *list = alternatives.to_vec();
     }
 
-    /// Parameters of end conditions, indices and numbers of sites have names of their own.
+    /// Parameters of end conditions, indices and numbers of sites must not reuse other names.
     fn check_names(&mut self, model: &Model, errors: &mut Errors) {
         let known: Vec<&Name> = model
             .statements
@@ -546,7 +546,7 @@ impl Lattice {
     }
 }
 
-/// The statement at nodes of a configuration that is declared without sites; nothing of other names.
+/// The statement, rewritten at nodes, of a configuration that is declared without sites; `None` for other names.
 fn elsewhere(model: &Model, name: &Name) -> Option<String> {
     model.statements.iter().find_map(|s| match s {
         Statement::Field {
@@ -572,7 +572,7 @@ fn elsewhere(model: &Model, name: &Name) -> Option<String> {
     })
 }
 
-/// Where a statement puts what it declares.
+/// The sites of what a statement declares.
 fn at_of(statement: &Statement) -> Option<&At> {
     match statement {
         Statement::Param { at, .. }

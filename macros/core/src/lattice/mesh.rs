@@ -1,5 +1,5 @@
-//! Functionals of all sites as a model declares them: what computes each, of which field or other functional, and
-//! of which constants. Mistakes in the declarations are reported here.
+//! Functionals of all sites as a model declares them: the function that computes each, the field or functional it
+//! depends on, and its constants. Mistakes in the declarations are reported here.
 
 #[cfg(test)]
 mod tests;
@@ -20,9 +20,9 @@ pub enum Source {
 /// A functional of all sites.
 #[derive(Clone, Debug)]
 pub struct Mesh {
-    /// Its values, by this name.
+    /// The name of its values.
     pub name: Name,
-    /// The path of Rust of what computes it.
+    /// The Rust path of the function that computes it.
     pub path: String,
     /// The quantity it depends on.
     pub of: Source,
@@ -54,7 +54,7 @@ struct Supplied {
     kind: Known,
 }
 
-/// One of cells in the plane, which is invariant under equal shifts of all positions.
+/// A functional of cells in the plane, which is invariant under equal shifts of all positions.
 const fn cells(name: &'static str, data: usize) -> Supplied {
     let (of_functional, kind) = (false, Known::Cells);
     Supplied {
@@ -65,7 +65,7 @@ const fn cells(name: &'static str, data: usize) -> Supplied {
     }
 }
 
-/// One of a grid.
+/// A functional on a grid.
 const fn grid(name: &'static str, of_functional: bool) -> Supplied {
     let (data, kind) = (1, Known::Grid);
     Supplied {
@@ -90,7 +90,7 @@ const SUPPLIED: [Supplied; 10] = [
 ];
 
 impl Lattice {
-    /// Reads the functionals, once everything that they may be made of is known.
+    /// Reads the functionals, after everything they may depend on has been read.
     pub(super) fn functionals(&mut self, model: &Model, errors: &mut Errors) {
         let parameters = parameters(model);
         for statement in &model.statements {
@@ -166,7 +166,8 @@ impl Lattice {
         }
     }
 
-    /// One field has a domain, at a set of sites; nothing holds a functional but the Lagrangian.
+    /// Checks that at most one field has a domain, at a set of sites. Constraints, assumptions and advected quantities must
+    /// not contain functionals.
     fn domains(&self, model: &Model, parameters: &[Parameter], errors: &mut Errors) {
         let is_mesh = |s: &&Statement| matches!(s, Statement::Mesh { .. });
         let stated = model.statements.iter().filter(is_mesh).count();
@@ -333,7 +334,8 @@ impl Lattice {
         )))
     }
 
-    /// Checks that a functional of the runtime has an argument of the right kind, and is declared where its values are.
+    /// Checks that a functional of the runtime has an argument of the right kind, and is declared at the sites of its
+    /// values.
     fn supplied(
         &self,
         known: &Supplied,
@@ -472,7 +474,7 @@ fn parameters(model: &Model) -> Vec<Parameter> {
 
 type Checked<T> = Result<T, Box<Diagnostic>>;
 
-/// How it is written.
+/// An example of a declaration.
 fn example(name: &str) -> String {
     let call = match name {
         "voronoi_area" => "mesh A: Real at a = voronoi_area(X)",

@@ -29,7 +29,7 @@ pub(crate) use unfold::{LARGEST, definitions, inlined};
 use crate::diagnostic::Diagnostic;
 use crate::syntax::ast::{Model, Statement};
 
-/// Whether a model is stated with labels.
+/// Whether a model is declared with labels.
 pub fn has_labels(model: &Model) -> bool {
     model.statements.iter().any(|s| match s {
         Statement::Label { .. }

@@ -7,7 +7,7 @@ use crate::syntax::ast::Name;
 pub struct Copied {
     /// The name in the expanded model.
     pub name: String,
-    /// The name in the model as stated.
+    /// The declared name.
     pub of: String,
     /// The site, counted from 0.
     pub site: usize,
@@ -18,7 +18,7 @@ pub fn copy_name(of: &str, site: usize) -> String {
     format!("{of}_{site}")
 }
 
-/// The same of a declared name, typeset with its site as an index.
+/// The copy of a declared name, typeset with its site as an index.
 pub(super) fn copy(of: &Name, site: usize) -> Name {
     let typeset = of.typeset.as_ref();
     Name {

@@ -15,12 +15,12 @@ pub(super) fn summand(e: &Expression) -> Option<&Expression> {
     }
 }
 
-/// Whether an expression holds a sum over sites.
+/// Whether an expression contains a sum over sites.
 pub(super) fn has_sum(e: &Expression) -> bool {
     summand(e).is_some() || parts(e).into_iter().any(has_sum)
 }
 
-/// Whether a model holds constraints and has sums over sites in them, or in abbreviations that may be written there.
+/// Whether a model has a constraint, and a sum over sites in a constraint or in a `let` that a constraint may use.
 pub(crate) fn holds_sums(model: &Model) -> bool {
     let holds = |s: &Statement| matches!(s, Statement::Hold { .. });
     let sums = |s: &Statement| {
@@ -45,7 +45,7 @@ pub(super) fn parts(e: &Expression) -> Vec<&Expression> {
     }
 }
 
-/// The same expression of other parts, in the order of [`parts`].
+/// The expression with other subexpressions, in the order of [`parts`].
 pub(super) fn with_parts(e: &Expression, mut new: impl Iterator<Item = Expression>) -> Expression {
     let mut one = |a: &Expression| Box::new(new.next().unwrap_or_else(|| a.clone()));
     let kind = match &e.kind {
@@ -64,7 +64,7 @@ pub(super) fn with_parts(e: &Expression, mut new: impl Iterator<Item = Expressio
     Expression { kind, place }
 }
 
-/// The names that it holds.
+/// The names in the expression.
 pub(super) fn names(e: &Expression) -> Vec<&str> {
     match &e.kind {
         Kind::Name(n) => vec![n],

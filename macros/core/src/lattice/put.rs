@@ -1,5 +1,5 @@
-//! Puts the copies of one site into an expression: every letter of the chain becomes the copy at its own site.
-//! Across the seam of a ring it receives the offset of its field, and prescribed quantities do not move.
+//! Substitutes the copies at one site into an expression: each quantity of the chain becomes its copy. Across the
+//! seam of a ring the copy is shifted by the offset of its field; prescribed quantities do not move.
 
 use super::choice::Choice;
 use super::declared::{Lattice, Quantity, Sites};
@@ -14,28 +14,28 @@ use std::collections::BTreeMap;
 pub(super) enum Still {
     /// A parameter of the same name.
     Given,
-    /// The velocity of what is given.
+    /// The identity, for the velocity of a prescribed configuration.
     Identity,
-    /// A definition by what is given.
+    /// A definition in terms of prescribed values.
     Defined(Expression),
 }
 
 /// Copies that do not move, by name.
 pub(super) type Pinned = BTreeMap<String, Still>;
 
-/// Where an expression is put.
+/// The site of a substitution.
 pub(super) struct SiteSubstitution<'a> {
     /// The labels, with their quantities and ends.
     pub lattice: &'a Lattice,
-    /// Its sites and ends.
+    /// The chosen sites and ends.
     pub choice: &'a Choice,
     /// The copies that do not move.
     pub pinned: &'a Pinned,
     /// Names of an end condition, with their names in the expanded model.
     pub locals: &'a [(String, String)],
-    /// The index.
+    /// The index of the site.
     pub site: isize,
-    /// Whether the index is the last node, where a segment is the last one.
+    /// Whether the index is the last node; a segment is then the last segment.
     pub at_last: bool,
 }
 
@@ -95,7 +95,7 @@ impl SiteSubstitution<'_> {
         }
         let Some(q) = self.lattice.find(n) else {
             return match self.is_name_of_a_copy(n) {
-                // It is a name in the expanded model, but not in the model as stated.
+                // The name exists in the expanded model, but not in the model as declared.
                 true => Err(Box::new(
                     Diagnostic::new(place, format!("`{n}` is not declared")).help(
                         "a quantity is named as it is declared, and stands at the site of the term",
@@ -235,7 +235,7 @@ fn named(text: String, e: &Expression) -> Expression {
     }
 }
 
-/// Whether a name in the expression is such a one.
+/// Whether any name in the expression satisfies `is`.
 pub(crate) fn any_name(e: &Expression, is: &dyn Fn(&str) -> bool) -> bool {
     e.name_that(is).is_some()
 }

@@ -10,9 +10,9 @@ use crate::syntax::unknown::PAIRS;
 /// The offsets of the letters of an expression from its index.
 #[derive(Clone, Default, Debug)]
 pub(super) struct Reach {
-    /// The label, where there is one.
+    /// The label, if there is one.
     pub label: Option<usize>,
-    /// Kind of sites and offset of every letter, sorted, once.
+    /// Kind of sites and offset of every letter, sorted, without repetitions.
     pub letters: Vec<(Sites, isize)>,
     /// The sites that the term is explicitly summed over.
     pub over: Option<Sites>,
@@ -25,20 +25,20 @@ pub struct Range {
     pub label: usize,
     /// The first index.
     pub from: isize,
-    /// The last index, beyond the number of segments or sites.
+    /// The last index, relative to the number of segments or sites.
     pub to: isize,
 }
 
 impl Range {
-    /// The indices themselves, for this many.
+    /// The indices for this number of segments or sites.
     pub fn indices(self, count: usize) -> impl Iterator<Item = isize> {
         let count = isize::try_from(count).unwrap_or(isize::MAX);
         self.from..=count.saturating_add(self.to)
     }
 }
 
-/// Whether an expression holds letters of one neighbour only, all on one side at one distance: alone it
-/// would be a term of that site, and beside others it is part of a difference.
+/// Whether all letters of an expression belong to the same neighbour. As a whole term, the expression would be a term
+/// of that site; within a sum it is part of a difference.
 pub(super) fn of_one_neighbour(lattice: &Lattice, e: &Expression) -> bool {
     let Ok(found) = reach(lattice, e) else {
         return false;
@@ -121,8 +121,8 @@ fn walk(lattice: &Lattice, e: &Expression, by: isize, found: &mut Reach) -> Resu
     }
 }
 
-/// The error if a term of the Lagrangian is not linear in its sum over stated sites: such a sum states over which
-/// sites the term is summed, and is not a number of the whole chain.
+/// The error for a term of the Lagrangian that is not linear in its sum over declared sites. Such a sum only selects
+/// the sites of the term; it is not a number of the whole chain.
 pub(super) fn beside_sum(lattice: &Lattice, e: &Expression) -> Option<Diagnostic> {
     let refused = |at: &Expression, what: &str| {
         let message = format!(
@@ -165,7 +165,7 @@ pub(super) fn beside_sum(lattice: &Lattice, e: &Expression) -> Option<Diagnostic
     }
 }
 
-/// An index is not a quantity.
+/// An error if a name is an index or a count, which is not a quantity.
 fn named(lattice: &Lattice, name: &str, place: Place) -> Result<(), Diagnostic> {
     let is = |l: &&super::Label| l.index.text == name || l.count.text == name;
     match lattice.labels.iter().find(is) {
@@ -192,7 +192,7 @@ fn mixed(lattice: &Lattice, a: usize, b: usize, place: Place) -> Diagnostic {
         .help("terms of different labels are summed each over its own: write them as two terms")
 }
 
-/// `next(x, i)`: a quantity at the sites of a chain.
+/// `next(x, i)` needs a quantity at the sites of a chain.
 fn neighbour(
     lattice: &Lattice,
     inner: &Expression,

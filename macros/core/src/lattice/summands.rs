@@ -1,7 +1,7 @@
-//! The summands of a Lagrangian as they were typed. Numbers before a sum are multiplied into it and nothing else is
-//! expanded, so that `(next(q, i) - q)^2` stays one term of a segment. Below the top level, a sum with a term of
-//! one neighbour alone, as in `next(q, i) - q`, is a difference and also stays whole. So do the two terms of a
-//! difference in time, `next(q) - q`.
+//! The summands of a Lagrangian as typed. Scalars in front of a sum are multiplied into it and nothing else is
+//! expanded, so that `(next(q, i) - q)^2` stays one term of a segment. Below the top level, a sum that contains a
+//! term of one neighbour only, as in `next(q, i) - q`, is a difference and stays whole. So do the two terms of a time
+//! difference, `next(q) - q`.
 
 use super::declared::Lattice;
 use super::range::of_one_neighbour;
@@ -22,7 +22,7 @@ fn split(lattice: &Lattice, e: &Expression, top: bool) -> Vec<Expression> {
                 true => vec![None; terms.len()],
                 false => differences(terms),
             };
-            // A bracket among the terms, or a definition, is below the top.
+            // A bracket among the terms, or a definition, is below the top level.
             let parts = terms.iter().zip(&together).enumerate();
             let parts = parts.flat_map(|(i, ((minus, t), partner))| match partner {
                 Some(j) if *j < i => Vec::new(),
@@ -95,7 +95,7 @@ fn in_words(e: &Expression) -> (bool, String) {
     (later, format!("{head}({})", words.join(", ")))
 }
 
-/// A product with one factor that is a sum, all of them numbers.
+/// Expands a product of scalars in which one factor is a sum.
 fn product(lattice: &Lattice, e: &Expression, factors: &[Expression]) -> Vec<Expression> {
     if !factors.iter().all(|f| is_number(lattice, f)) {
         return vec![e.clone()];
@@ -142,7 +142,7 @@ fn with_constants(lattice: &Lattice, e: &Expression, terms: Vec<Expression>) -> 
     moving
 }
 
-/// Whether this holds for an expression or a part of it.
+/// Whether `holds` is true for an expression or a part of it.
 fn contains(e: &Expression, holds: &dyn Fn(&Expression) -> bool) -> bool {
     holds(e) || e.parts().into_iter().any(|part| contains(part, holds))
 }
@@ -151,7 +151,7 @@ fn is_moving(lattice: &Lattice, e: &Expression) -> bool {
     matches!(&e.kind, Kind::Name(n) if lattice.moving.contains(n))
 }
 
-/// Whether it is a velocity, or something at the next node in time.
+/// Whether it is a velocity, or a quantity at the next time node.
 fn is_of_the_edge(lattice: &Lattice, e: &Expression) -> bool {
     match &e.kind {
         Kind::Name(n) => lattice.velocities.contains(n),
@@ -176,7 +176,7 @@ fn negated(e: Expression) -> Expression {
     Expression { kind, place }
 }
 
-/// Whether an expression is a number, as far as its form says.
+/// Whether an expression is scalar, as far as its form shows.
 fn is_number(lattice: &Lattice, e: &Expression) -> bool {
     match &e.kind {
         Kind::Number(_) | Kind::Constant(_) | Kind::Component(..) => true,

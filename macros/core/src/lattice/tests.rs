@@ -1,4 +1,4 @@
-//! Lattices written out against models of several bodies typed by hand, and what is refused.
+//! Compares expanded chains with models of several bodies written by hand, and checks rejected models.
 
 use super::{Choice, Lattice};
 use crate::derive::warnings::Topic;
@@ -44,8 +44,8 @@ fn by_hand(source: &str) -> String {
     document::printed(&derive_source(source).unwrap(), Format::Text)
 }
 
-/// Parameters are declared in another order, which is that of factors in the limit; what is derived
-/// before it is the same.
+/// The two models declare parameters in different order, which determines the order of factors in the limit.
+/// Everything derived before the limit must be equal.
 fn same_equations(found: &str, hand: &str) {
     let part = |text: &str| {
         let after = text.split("Discrete Lagrangian").nth(1).unwrap();
@@ -62,7 +62,7 @@ fn same_equations(found: &str, hand: &str) {
     assert_eq!(found.lines().count(), hand.lines().count());
 }
 
-/// Tops in a row, with these pairs of neighbours.
+/// Tops in a row, coupled in these pairs.
 fn row_of_tops(count: usize, pairs: &[(usize, usize)]) -> String {
     let mut text = "model Tops { param s: Real; param J, C: Sym<3>; param g, z: Vec<3>;".to_owned();
     for j in 0..count {
@@ -141,7 +141,7 @@ fn the_seam_of_a_ring_carries_the_offset() {
     same_equations(&found, &by_hand(hand));
 }
 
-/// The first message on a model whose middle part is this.
+/// The first error for a model with these statements.
 fn refused(middle: &str) -> String {
     let source = format!(
         "model M {{ label i in 0..N; label a in 0..P; param u: Real at a; param m: Real; field q: Real at nodes; {middle} }}"
@@ -372,7 +372,7 @@ fn a_sum_that_is_held_is_the_sum_typed_by_hand() {
     let lattice = chosen(&beads("hold c: sum(m*φ) = X;"), 2, false, ["free", "free"]);
     let sum = "hold c: m_0*φ_0 + m_1*φ_1 + m_2*φ_2 = X;";
     assert!(lattice.contains(sum), "{lattice}");
-    // Of distances at segments, of squares at nodes.
+    // Distances at segments, and squares at nodes.
     let several = "hold c: R = 2*sum(dot(next(φ, i) - φ, next(φ, i) - φ)) - sum(dot(φ, φ), nodes);";
     let lattice = chosen(&beads(several), 1, false, ["free", "free"]);
     let wanted = "R = 2*dot(φ_1 - φ_0, φ_1 - φ_0) - dot(φ_0, φ_0) - dot(φ_1, φ_1);";
@@ -476,7 +476,7 @@ fn a_parameter_of_nodes_that_stands_at_segments_is_used() {
             .unwrap()
             .text
     };
-    // Of an open line the last node has no segment.
+    // On an open chain, the last node does not have a segment.
     let used = told("*a");
     assert!(!used.contains("never used"), "{used}");
     assert!(told("").contains("the parameter `a` is never used"));
@@ -559,7 +559,7 @@ fn a_smoother_without_a_length_smooths_over_alpha() {
         );
         let model = parse_source(&source).unwrap();
         let printed = document::printed_lattice(&model, &source, Format::Text, 100);
-        // What follows the statement.
+        // The text after the statement.
         let text = printed.unwrap().text;
         text.split_once("Sites\n").map(|(_, rest)| rest.to_owned())
     };

@@ -1,5 +1,5 @@
-//! Expands a model with labels, for chosen numbers of sites and end conditions: a model of as many bodies, each
-//! with a name of its own, whose Lagrangian is the sum over the sites that exist.
+//! Expands a model with labels, for chosen numbers of sites and end conditions, into a model with that many bodies.
+//! Each body has its own name, and the Lagrangian is the sum over the existing sites.
 
 mod definitions;
 mod holds;
@@ -32,51 +32,51 @@ use warned::without_a_ring;
 /// The largest expanded Lagrangian, in quantities, numbers and operations.
 pub(crate) const LARGEST: usize = 60_000;
 
-/// The largest number of copies of quantities.
+/// The maximum number of copies of quantities.
 const MOST_COPIES: usize = 20_000;
 
-/// One term of the Lagrangian as stated, definitions put in.
+/// One term of the declared Lagrangian, after substitution of definitions.
 #[derive(Clone, Debug)]
 pub struct Summand {
     /// The term.
     pub stated: Expression,
     /// The sites that it is summed over; `None` if it is not summed.
     pub range: Option<Range>,
-    /// The end condition that it belongs to: whether of the last site, and which.
+    /// The end condition that it belongs to: whether of the last site, and its number.
     pub end: Option<(bool, usize)>,
     /// The largest distance between its letters, in sites.
     pub width: usize,
-    /// Kind of sites and offset of its letters, seen from its index.
+    /// Kind of sites and offset of its letters, relative to its index.
     pub letters: Vec<(Sites, isize)>,
-    /// The term at the site where it is shown: the middle one of its range.
+    /// The term at the displayed site, the middle of its range.
     pub shown: Expression,
-    /// That site.
+    /// The displayed site.
     pub site: usize,
-    /// Whether it holds values of functionals of all sites.
+    /// Whether it contains values of functionals of all sites.
     pub of_functionals: bool,
 }
 
-/// A constraint as stated, and the sites at which it has a multiplier.
+/// A declared constraint, and the sites at which it has a multiplier.
 #[derive(Clone, Debug)]
 pub struct StatedHold {
     /// The name of its multiplier.
     pub name: String,
     /// The indices of its copies.
     pub range: Range,
-    /// Kind of sites and offset of its letters, seen from its index.
+    /// Kind of sites and offset of its letters, relative to its index.
     pub letters: Vec<(Sites, isize)>,
 }
 
 /// An expanded model.
 #[derive(Clone, Debug)]
 pub struct ExpandedModel {
-    /// The model of as many bodies.
+    /// The model with one body for each site.
     pub model: Model,
     /// The names of all copies.
     pub copies: Vec<Copied>,
     /// Parameters of end conditions: the name in the expanded model, the stated name, whether it belongs to the last site.
     pub end_parameters: Vec<(String, String, bool)>,
-    /// Names of the copies that are given at an end.
+    /// Names of the copies that are prescribed at an end.
     pub given: Vec<String>,
     /// The terms of the Lagrangian.
     pub summands: Vec<Summand>,
@@ -86,14 +86,14 @@ pub struct ExpandedModel {
     pub totals: Vec<StatedTotal>,
     /// Warnings about terms that are probably not intended.
     pub warnings: Vec<Warning>,
-    /// The names in the whole statement, whatever the choice.
+    /// The names in all statements, including the end conditions that were not chosen.
     named: warned::Named,
 }
 
-/// Writes a model out.
+/// Expands a model.
 ///
 /// # Errors
-/// Mistakes of the statement, on its tokens.
+/// Mistakes in the model, with the tokens where they occur.
 pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<ExpandedModel, Errors> {
     let mut errors = Errors::new();
     circular_definitions(model, &mut errors);
@@ -174,7 +174,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The end conditions that hold, with whether each is of the last site.
+    /// The chosen end conditions, and whether each is at the last site.
     fn ends(&self) -> Vec<(bool, usize, &'a Alternative)> {
         if self.choice.periodic || self.lattice.line.is_none() {
             return Vec::new();
@@ -317,7 +317,7 @@ impl<'a> Writer<'a> {
         );
     }
 
-    /// The parameters of the end condition that holds at this end.
+    /// The parameters of the chosen end condition at this end.
     fn end_parameters(&mut self, at: &Name) {
         for (last, _, alternative) in self.ends() {
             if last == (at.text == "0") {
@@ -338,13 +338,13 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The number of the first or the last node.
+    /// The index of the first or the last node.
     fn last_site(&self, last: bool) -> usize {
         let line = self.lattice.line.unwrap_or(0);
         if last { self.choice.count(line) } else { 0 }
     }
 
-    /// Copies of parameters, fields and advected quantities.
+    /// Declares the copies of parameters, fields and advected quantities.
     fn declared(&mut self, statement: &Statement, names: &[Name], docs: &[String]) {
         let first = names.first().and_then(|n| self.lattice.find(&n.text));
         if first.is_none() {
@@ -490,7 +490,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Both sides of an assumption, at every site where they differ.
+    /// Both sides of an assumption, once for each site at which they differ.
     fn both(&mut self, left: &Expression, right: &Expression) -> Vec<(Expression, Expression)> {
         let whole = Expression {
             kind: Kind::Sum(vec![(false, left.clone()), (true, right.clone())]),
@@ -515,7 +515,7 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// Whether the Lagrangian or an assumption holds a name.
+/// Whether the Lagrangian, its scale or an assumption contains a name.
 fn is_used(model: &Model, name: &Name) -> bool {
     let used = |e: &Expression| any_name(e, &|n| n == name.text);
     model.statements.iter().any(|s| match s {
@@ -538,12 +538,12 @@ impl ExpandedModel {
         self.summands.iter().map(|s| s.width).max().unwrap_or(0)
     }
 
-    /// The name of an invariant without the list of all copies, its words apart.
+    /// The name of an invariant with stated names instead of copies, its words separated.
     pub fn plain(&self, name: &str) -> String {
         let mut words: Vec<&str> = Vec::new();
         let mut rest = name;
         while !rest.is_empty() {
-            // A place that a turn is about is named beside the copies that turn.
+            // A position after `about` is named even if the rotating copies were named before.
             let place = words.last() == Some(&"about");
             match self.copied(rest) {
                 Some((word, behind, copy)) => {
@@ -562,8 +562,8 @@ impl ExpandedModel {
         words.join(" ")
     }
 
-    /// Splits a name that begins with a copy or a parameter of an end: the name as stated, the rest, and whether it is
-    /// a copy. Names may contain underscores: the longest match counts.
+    /// Splits a name that begins with a copy or a parameter of an end: the declared name, the rest, and whether it is
+    /// a copy. Names may contain underscores, so the longest match is used.
     fn copied<'n>(&self, name: &'n str) -> Option<(&'n str, &'n str, bool)> {
         let sited = |of: &str| {
             let behind = name.strip_prefix(of)?.strip_prefix('_')?;
@@ -588,12 +588,12 @@ impl ExpandedModel {
         end.or_else(|| copies.max_by_key(|(word, ..)| word.len()))
     }
 
-    /// The copy of this name.
+    /// The copy with this name.
     pub fn copy(&self, name: &str) -> Option<&Copied> {
         self.copies.iter().find(|c| c.name == name)
     }
 
-    /// Which sites a quantity has, seen from a choice: the sites of its kind.
+    /// Whether a quantity is at the segments of a chain.
     pub fn is_segment(lattice: &Lattice, of: &str) -> bool {
         lattice.find(of).is_some_and(|q| q.sites == Sites::Segments)
     }

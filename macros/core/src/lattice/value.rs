@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 /// A function of a number, with its name.
 type Function = (&'static str, fn(f64) -> f64);
 
-/// Functions that site data may hold.
+/// Functions allowed in site data.
 const FUNCTIONS: [Function; 12] = [
     ("sin", f64::sin),
     ("cos", f64::cos),
@@ -24,7 +24,7 @@ const FUNCTIONS: [Function; 12] = [
     ("sign", |x| if x == 0.0 { 0.0 } else { x.signum() }),
 ];
 
-/// An expression that was read.
+/// An expression for site data.
 #[derive(Clone, Debug)]
 pub struct SiteData {
     expression: Expression,
@@ -50,15 +50,15 @@ impl SiteData {
         Ok(SiteData { expression })
     }
 
-    /// Its value, with the values of names.
+    /// Evaluates the expression with the values of names.
     ///
     /// # Errors
-    /// A name without a value, or an operation that numbers do not have.
+    /// A name without a value, or an operation that is not defined for numbers.
     pub fn value(&self, of: &Names<'_>) -> Result<f64, String> {
         self.value_and_slopes(of, &|_, _| None)
     }
 
-    /// The same where names have slopes, `slope(S, 1)`, as [`SiteData::slopes`] lists them.
+    /// Evaluates with the slopes of names, `slope(S, 1)`, as [`SiteData::slopes`] lists them.
     ///
     /// # Errors
     /// As [`SiteData::value`]; an undefined slope.
@@ -77,10 +77,10 @@ impl SiteData {
         out
     }
 
-    /// The slopes in it: of what, along which direction, counted from 1.
+    /// The slopes in the expression: name and direction, counted from 1.
     ///
     /// # Errors
-    /// One of the slopes is not a name with a direction that is written as a number.
+    /// One of the slopes is not a name with a numeric direction.
     pub fn slopes(&self) -> Result<Vec<(String, u64)>, String> {
         let mut out = Vec::new();
         self.expression.each(&mut |e| {
@@ -100,7 +100,7 @@ pub type Names<'a> = dyn Fn(&str) -> Option<f64> + 'a;
 /// The slopes of names along directions.
 pub type Slopes<'a> = dyn Fn(&str, u64) -> Option<f64> + 'a;
 
-/// The function of a name and a direction.
+/// The function for the slope of a name along a direction.
 const SLOPE: &str = "slope";
 
 struct Given<'a> {
@@ -202,7 +202,7 @@ fn value(e: &Expression, of: &Given<'_>) -> Result<f64, String> {
     })
 }
 
-/// The replacement for an undefined name that other languages have.
+/// Suggests a replacement for an undefined name that other languages define.
 #[must_use]
 pub fn instead_of(name: &str) -> Option<String> {
     match unknown::name(name) {
@@ -222,7 +222,7 @@ pub fn translated(text: &str) -> Option<String> {
     SiteData::read(&out).ok().map(|_| out)
 }
 
-/// The text without a module before names: `sin(x)` of `np.sin(x)`.
+/// Removes a module prefix from names: `np.sin(x)` becomes `sin(x)`.
 fn without_module(text: &str, module: &str) -> String {
     let prefix = format!("{module}.");
     let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
@@ -240,7 +240,7 @@ fn without_module(text: &str, module: &str) -> String {
     out
 }
 
-/// Whether the advice in a help text can be written here.
+/// Whether the suggestion of a help text is valid site data.
 fn is_of_sites(help: &str) -> bool {
     let Some(Ok(data)) = help.split('`').nth(1).map(SiteData::read) else {
         return false;

@@ -1,44 +1,44 @@
-//! A derivation as a document: sections of paragraphs, numbered equations, lists and code.
-//! Built by the derivation, printed by the renderers; holds no layout.
+//! A derivation as a document: sections of paragraphs, numbered equations, lists and code. The derivation builds it
+//! and the renderers print it; it does not contain layout.
 
 use super::formula::Formula;
 
-/// A document on one model.
+/// A document about one model.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Document {
     /// Title.
     pub title: String,
-    /// The work that sources of equations are places in.
+    /// The work that the sources of equations refer to.
     pub work: Option<Work>,
-    /// Remarks on the model as data, for what reads documents by program.
+    /// Warnings about the model as data, for programs that read documents.
     pub remarks: Vec<Remark>,
     /// Sections in order.
     pub sections: Vec<Section>,
 }
 
-/// A work that is cited, with its entries in bibliographies.
+/// A cited work, with its bibliography entries.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Work {
-    /// How sentences name it: `thesis` in `thesis (2.85)`.
+    /// Its name in sentences: `thesis` in `thesis (2.85)`.
     pub named: &'static str,
-    /// As `\cite` calls it.
+    /// Its key for `\cite`.
     pub key: &'static str,
-    /// Its entry for BibTeX.
+    /// Its BibTeX entry.
     pub entry: &'static str,
-    /// The same in `thebibliography`.
+    /// Its text in `thebibliography`.
     pub item: &'static str,
 }
 
-/// What is remarked of a model, at which of its tokens.
+/// A remark on a model, with its position in the model's text.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Remark {
-    /// A word for what it is about, fixed over versions.
+    /// A topic word that is stable across versions.
     pub topic: &'static str,
-    /// What is the matter.
+    /// The problem.
     pub message: String,
-    /// What to do.
+    /// Suggested fixes.
     pub help: Vec<String>,
-    /// Line and column, counted from 1, in the text of the model, where they are known.
+    /// Line and column in the text of the model, counted from 1, if known.
     pub at: (usize, usize),
 }
 
@@ -47,7 +47,7 @@ pub struct Remark {
 pub struct Section {
     /// Title.
     pub title: String,
-    /// Whether a paper has it in its appendix.
+    /// Whether it belongs in an appendix.
     pub appendix: bool,
     /// Blocks in order.
     pub blocks: Vec<Block>,
@@ -58,35 +58,35 @@ pub struct Section {
 pub enum Block {
     /// A paragraph.
     Paragraph(Vec<Inline>),
-    /// A displayed equation; it is numbered when printed.
+    /// A displayed equation; printing numbers it.
     Equation {
-        /// What is displayed.
+        /// The formula.
         formula: Formula,
-        /// Where it comes from, e.g. `thesis (2.85)`; mathematics in it stands between dollar signs.
+        /// Its source, e.g. `thesis (2.85)`; text between dollar signs is mathematics.
         tag: Option<String>,
         /// A remark below it.
         note: Option<String>,
-        /// What [`Inline::Reference`] calls it.
+        /// The label by which [`Inline::Reference`] refers to it.
         label: Option<String>,
     },
     /// A bulleted list.
     List(Vec<Vec<Inline>>),
-    /// Text printed as it is.
+    /// Preformatted text.
     Code(String),
 }
 
-/// A part of a sentence. Spaces between parts are written in the plain text.
+/// A part of a sentence. `Plain` text includes the spaces between parts.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Inline {
     /// Words.
     Plain(String),
-    /// A piece of a model's text.
+    /// Code from a model's text.
     Code(String),
-    /// Words on notation that is another one on a terminal than on a page.
+    /// Words on notation that differs between plain text and typeset formats.
     Notation {
-        /// On a terminal.
+        /// In plain text.
         line: String,
-        /// On a page.
+        /// In typeset formats.
         page: String,
     },
     /// Mathematics.
@@ -95,18 +95,18 @@ pub enum Inline {
     Reference {
         /// Its label.
         label: String,
-        /// Its number, once the document is printed; 0 before.
+        /// Its number; 0 until the document is numbered.
         number: usize,
     },
 }
 
-/// A source of an equation in words.
+/// The source of an equation as plain words.
 pub(super) fn plain(tag: &str) -> String {
     tag.replace('$', "")
 }
 
 impl Block {
-    /// The same block with every part of its sentences changed. Equations and code stay as they are.
+    /// Applies `change` to every part of the block's sentences. Equations and code stay unchanged.
     #[must_use]
     pub fn with_parts(self, mut change: impl FnMut(Inline) -> Inline) -> Block {
         let mut sentence =
@@ -138,7 +138,7 @@ impl From<Formula> for Inline {
 }
 
 impl Inline {
-    /// A sentence in which pieces of a model's text stand between backticks.
+    /// Parses a sentence in which text between backticks is code.
     pub fn marked(text: &str) -> Vec<Inline> {
         let pieces = text.split('`').enumerate();
         pieces
@@ -150,7 +150,7 @@ impl Inline {
             .collect()
     }
 
-    /// A sentence in which a name between dollar signs is mathematics; it may have a sign.
+    /// Parses a sentence in which a name between dollar signs is mathematics; the name may have a minus sign.
     pub fn with_names(text: &str) -> Vec<Inline> {
         let name = |piece: &str| match piece.strip_prefix('-') {
             Some(rest) => Formula::neg(Formula::name(rest)),
@@ -165,7 +165,7 @@ impl Inline {
             .collect()
     }
 
-    /// The number of the equation with this label.
+    /// A reference to the equation with this label.
     pub fn reference(label: &str) -> Inline {
         Inline::Reference {
             label: label.to_owned(),
@@ -175,7 +175,7 @@ impl Inline {
 }
 
 impl Document {
-    /// The same with the numbers of its equations filled into the references to them.
+    /// Fills the equation numbers into the references.
     pub fn numbered(&self) -> Document {
         let equations = self.sections.iter().flat_map(|s| &s.blocks);
         let labels: Vec<Option<&String>> = equations
@@ -234,7 +234,7 @@ impl Section {
         self
     }
 
-    /// Adds a paragraph of words only.
+    /// Adds a paragraph of plain words.
     pub fn text(&mut self, words: &str) -> &mut Section {
         self.paragraph([words.into()])
     }
@@ -261,7 +261,7 @@ impl Section {
         self
     }
 
-    /// Puts a remark below the last block, if that is an equation.
+    /// Adds a remark to the last block, if that block is an equation.
     pub fn noted(&mut self, remark: &str) -> &mut Section {
         if let Some(Block::Equation { note, .. }) = self.blocks.last_mut() {
             *note = Some(remark.to_owned());
@@ -269,7 +269,7 @@ impl Section {
         self
     }
 
-    /// Names the last block, if that is an equation, for references.
+    /// Sets the reference label of the last block, if that block is an equation.
     pub fn labelled(&mut self, name: &str) -> &mut Section {
         if let Some(Block::Equation { label, .. }) = self.blocks.last_mut() {
             *label = Some(name.to_owned());
@@ -277,7 +277,7 @@ impl Section {
         self
     }
 
-    /// Adds an equation, with its source where there is one.
+    /// Adds an equation, with its source if there is one.
     pub fn sourced(&mut self, formula: impl Into<Formula>, source: Option<String>) -> &mut Section {
         match source {
             Some(source) => self.cited(formula, &source),
@@ -291,7 +291,7 @@ impl Section {
         self
     }
 
-    /// Adds text that is printed as it is.
+    /// Adds preformatted text.
     pub fn code(&mut self, text: impl Into<String>) -> &mut Section {
         self.blocks.push(Block::Code(text.into()));
         self

@@ -1,6 +1,6 @@
-//! Displayed mathematics above expressions: relations, momenta carried by `Ad*`, diamonds,
-//! gradients, variations, pairings and the words between them. A closed tree that every renderer
-//! prints; expressions are its leaves.
+//! Displayed mathematics above the level of expressions: relations, coadjoint action, diamonds, gradients,
+//! variations, pairings, and words between formulas. A formula is a closed tree with expressions as leaves; every
+//! renderer prints it.
 
 mod mapped;
 
@@ -12,8 +12,8 @@ use crate::expr::{Expr, Letter};
 pub enum Formula {
     /// An expression, with its time indices.
     Expr(Expr),
-    /// A name that is no symbol of the model, e.g. `S_d`, `T^*G`. Greek words become letters,
-    /// trailing digits of the base a subscript.
+    /// A name that is not a symbol of the model, e.g. `S_d`, `T^*G`. Greek words become letters, and trailing digits
+    /// of the base become a subscript.
     Name {
         /// The letter or word, e.g. `ℓ`, `Omega`, `Diff`.
         base: String,
@@ -22,15 +22,15 @@ pub enum Formula {
         /// Superscript as text, e.g. `R`.
         sup: Option<String>,
     },
-    /// `a = b = ...`, one relation between all of them in order.
+    /// `a = b = ...`: one relation between consecutive members.
     Relation(Vec<Formula>, Relation),
-    /// `a + b + ...`; a term that is a [`Formula::Neg`] is subtracted.
+    /// `a + b + ...`; a [`Formula::Neg`] term is subtracted.
     Sum(Vec<Formula>),
     /// `a - b`.
     Diff(Box<Formula>, Box<Formula>),
     /// `-a`.
     Neg(Box<Formula>),
-    /// A product in order.
+    /// A product, in order.
     Product(Vec<Formula>),
     /// A quotient.
     Quotient(Box<Formula>, Box<Formula>),
@@ -75,13 +75,13 @@ pub enum Formula {
     Rate(Box<Formula>),
     /// A matrix by its blocks, row by row.
     Matrix(Vec<Vec<Formula>>),
-    /// The same in continuous time: no letter bears a time index.
+    /// The formula in continuous time: letters do not have time indices.
     Continuous(Box<Formula>),
     /// `∇_x ℓ`, the gradient in the pairing `tr(Aᵀ B)`.
     Gradient {
         /// Name of the function; scripts as in [`Formula::name`].
         of: String,
-        /// The variable.
+        /// The variable of differentiation.
         wrt: Letter,
     },
     /// `δa`, a first variation.
@@ -90,10 +90,10 @@ pub enum Formula {
     Tangent {
         /// Name of the parameter.
         parameter: String,
-        /// What is differentiated.
+        /// The differentiated formula.
         of: Box<Formula>,
     },
-    /// A named operator on one argument.
+    /// A named operator applied to one argument.
     Operator(Operator, Box<Formula>),
     /// The skew matrix of a vector.
     HatOf(Box<Formula>),
@@ -117,13 +117,13 @@ pub enum Formula {
         /// The summand.
         of: Box<Formula>,
     },
-    /// Brackets where none are needed.
+    /// Brackets even where they are not needed.
     Grouped(Box<Formula>),
     /// Formulas separated by commas.
     List(Vec<Formula>),
-    /// Relations below one another under one number, aligned at their signs.
+    /// Relations on separate lines under one number, aligned at their signs.
     Rows(Vec<Formula>),
-    /// Formulas and words side by side, e.g. a relation, `for all`, a letter.
+    /// Formulas and words in sequence, e.g. a relation, `for all`, a letter.
     Sequence(Vec<Formula>),
     /// Words.
     Text(String),
@@ -156,7 +156,7 @@ pub enum Relation {
     Implies,
 }
 
-/// Operators written by their name before an argument in brackets.
+/// Operators written as a name with an argument in brackets.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Operator {
     /// The trace.
@@ -184,7 +184,7 @@ impl From<Expr> for Formula {
 }
 
 impl Formula {
-    /// A name with scripts in the notation of LaTeX: `M_k`, `ℓ_{k+1}`, `J^R_k`.
+    /// A name with scripts in LaTeX notation: `M_k`, `ℓ_{k+1}`, `J^R_k`.
     pub fn name(text: &str) -> Formula {
         let parsed = super::name::parse(text);
         Formula::Name {
@@ -232,7 +232,7 @@ impl Formula {
         Formula::Rate(Box::new(a.into()))
     }
 
-    /// The same without time indices.
+    /// The formula without time indices.
     pub fn continuous(a: impl Into<Formula>) -> Formula {
         Formula::Continuous(Box::new(a.into()))
     }
@@ -268,7 +268,7 @@ impl Formula {
         Formula::Variation(Box::new(a.into()))
     }
 
-    /// A named operator on its argument.
+    /// A named operator applied to its argument.
     pub fn operator(operator: Operator, a: impl Into<Formula>) -> Formula {
         Formula::Operator(operator, Box::new(a.into()))
     }

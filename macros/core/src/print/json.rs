@@ -1,5 +1,5 @@
-//! JSON: the structure of a document, every formula as Unicode, LaTeX and MathML. Written by hand
-//! with keys in a fixed order, so that equal documents give equal bytes.
+//! JSON: the structure of a document, with every formula as Unicode, LaTeX and MathML. Keys have a fixed order, so
+//! that equal documents give equal bytes.
 
 use super::document::{Block, Document, Inline, Remark, plain};
 use super::formula::Formula;

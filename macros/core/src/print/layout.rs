@@ -1,5 +1,5 @@
-//! The layout of mathematics: what stands beside, below, above or inside what. Brackets are
-//! already decided; renderers spell it in their own signs.
+//! The layout of mathematics: what is placed next to, below, above or inside what. Brackets are already decided;
+//! renderers write the layout in their own notation.
 
 use super::formula::Relation;
 
@@ -8,7 +8,7 @@ use super::formula::Relation;
 pub(super) enum Layout {
     /// A letter in Unicode, or a name of several letters set as one.
     Identifier(String),
-    /// A name that its declaration typesets: in LaTeX, and as far as its signs are known.
+    /// A name with a declared typesetting: its LaTeX, and its layout as far as the commands are known.
     Typeset(String, Box<Layout>),
     /// Digits, or a vulgar fraction.
     Number(String),
@@ -18,15 +18,15 @@ pub(super) enum Layout {
     Text(String),
     /// An operator or a separator.
     Sign(Sign),
-    /// Side by side.
+    /// Items next to each other.
     Row(Vec<Layout>),
     /// Scripts on a base.
     Script {
-        /// What carries them.
+        /// The base.
         base: Box<Layout>,
-        /// Below right.
+        /// Subscript.
         sub: Option<Box<Layout>>,
-        /// Above right.
+        /// Superscript.
         sup: Option<Box<Layout>>,
     },
     /// Numerator above denominator.
@@ -35,11 +35,11 @@ pub(super) enum Layout {
     Root(Box<Layout>),
     /// A hat on top.
     Hat(Box<Layout>),
-    /// Between brackets.
+    /// A layout in brackets.
     Fenced(Fence, Box<Layout>),
-    /// A matrix of entries, row by row, in its brackets.
+    /// A matrix of entries, row by row, with its brackets.
     Grid(Vec<Vec<Layout>>),
-    /// A place where a long line may break.
+    /// A possible line break.
     Break(Strength),
 }
 
@@ -60,17 +60,17 @@ pub(super) enum Sign {
     Nabla,
     Delta,
     Sum,
-    /// The root sign where there is no bar over its argument.
+    /// The root sign without a bar over its argument.
     Root,
-    /// `|` of an evaluation at a point.
+    /// The `|` of an evaluation at a point.
     Bar,
     /// The star of a dual.
     Star,
-    /// The wedge of a hat that is too long to be drawn.
+    /// The wedge that replaces a hat over a long argument.
     Wedge,
     /// The space between an operator and its argument.
     Apply,
-    /// The space between an operator sign and what it acts on.
+    /// The space between an operator sign and its operand.
     Operand,
     /// A narrow space.
     Thin,
@@ -90,19 +90,19 @@ pub(super) enum Fence {
     Bars,
 }
 
-/// Which break of a line is taken first.
+/// The kinds of line breaks, in order of preference.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub(super) enum Strength {
     /// Before a relation sign.
     Relation,
-    /// Before a plus or minus, after a comma.
+    /// Before a plus or minus sign, or after a comma.
     Term,
-    /// Before a further factor: where no term ends.
+    /// Before a factor, within a term.
     Factor,
 }
 
 impl Layout {
-    /// Side by side; one alone stays itself.
+    /// Items in a row; a single item is returned as it is.
     pub fn row(mut parts: Vec<Layout>) -> Layout {
         match (parts.len(), parts.pop()) {
             (1, Some(only)) => only,
@@ -127,7 +127,7 @@ impl Layout {
         }
     }
 
-    /// With a superscript, beside the subscript if there is one.
+    /// Adds a superscript, next to an existing subscript.
     pub fn superscript(self, sup: Layout) -> Layout {
         let (base, sub) = match self {
             Layout::Script {
@@ -147,7 +147,7 @@ impl Layout {
         }
     }
 
-    /// Whether it is higher than a line of letters.
+    /// Whether it is taller than a line of letters.
     pub fn is_tall(&self) -> bool {
         match self {
             Layout::Fraction(..) | Layout::Grid(_) => true,

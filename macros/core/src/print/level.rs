@@ -1,9 +1,8 @@
-//! Precedence: how tightly a layout holds together, and where that asks for brackets. The only
-//! place that puts them.
+//! Operator precedence of layouts. All brackets are added here.
 
 use super::layout::{Fence, Layout};
 
-/// How tightly a layout holds together, loosest first.
+/// Precedence levels, loosest binding first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub(super) enum Level {
     /// Words and lists.
@@ -20,7 +19,7 @@ pub(super) enum Level {
     Dot,
     /// A product.
     Product,
-    /// A quotient on the line.
+    /// A quotient with a slash.
     Slash,
     /// `Ad*_g μ`, a sum over an index.
     Application,
@@ -32,7 +31,7 @@ pub(super) enum Level {
     Atom,
 }
 
-/// A layout and how tightly it holds together.
+/// A layout and its precedence.
 #[derive(Clone, Debug)]
 pub(super) struct Laid {
     pub layout: Layout,
@@ -62,7 +61,7 @@ impl Laid {
         self.bracketed_unless(bare)
     }
 
-    /// As a factor; only the `last` one may extend to the right.
+    /// As a factor; only the `last` factor may be open to the right.
     pub fn factor(self, last: bool) -> Layout {
         let bare = match self.level {
             Level::Loose | Level::Relation | Level::Sum | Level::Signed | Level::Infix => false,
@@ -74,13 +73,13 @@ impl Laid {
         self.bracketed_unless(bare)
     }
 
-    /// Beside `·`, `×` or `◇`.
+    /// As an operand of `·`, `×` or `◇`.
     pub fn operand(self) -> Layout {
         let bare = self.level >= Level::Gradient;
         self.bracketed_unless(bare)
     }
 
-    /// Under a superscript.
+    /// As the base of a superscript.
     pub fn base(self) -> Layout {
         let bare = self.level == Level::Atom;
         self.bracketed_unless(bare)

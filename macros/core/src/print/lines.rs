@@ -1,25 +1,25 @@
-//! Breaking a displayed formula into lines: at every further relation, then before the signs of
-//! the longest parts, least deep in brackets first. The same for text and for typeset formats.
+//! Breaks a displayed formula into lines: at every relation after the first, then before signs in the longest parts,
+//! with the outermost brackets first. Text and typeset formats share this algorithm.
 
 use super::layout::{Fence, Layout, Sign, Strength};
 
-/// What a line is made of: brackets are opened, so that a line may end inside them.
+/// A piece of a line. Opening and closing brackets are separate, so that a line may end inside them.
 #[derive(Clone, Debug)]
 pub(super) enum Piece<'a> {
-    /// Something that is not broken.
+    /// A layout that is not broken.
     Whole(&'a Layout),
-    /// An opening bracket; `true` around something higher than a line.
+    /// An opening bracket; `true` if its content is taller than a line.
     Open(Fence, bool),
     /// A closing bracket.
     Close(Fence, bool),
-    /// A place to break, this deep in brackets.
+    /// A possible break at this depth of brackets.
     Break(Strength, usize),
 }
 
 /// A line.
 #[derive(Clone, Debug)]
 pub(super) struct Line<'a> {
-    /// How deep in brackets it starts.
+    /// The depth of brackets at which it starts.
     pub depth: usize,
     /// Whether it starts at a relation sign.
     pub relation: bool,
@@ -30,29 +30,29 @@ pub(super) struct Line<'a> {
 /// A formula in lines.
 #[derive(Clone, Debug)]
 pub(super) struct Lines<'a> {
-    /// What stands before the first relation sign; empty if the lines are not aligned to one.
+    /// The left side before the first relation sign; empty if the lines are not aligned to one.
     pub left: Vec<Piece<'a>>,
     /// The lines.
     pub lines: Vec<Line<'a>>,
 }
 
-/// What one bracket more is worth in empty line, in percent of a line.
+/// The cost of each further bracket level, as unused width in percent of a line.
 const DEPTH_COST: usize = 30;
 
-/// Which part of a line is short.
+/// A segment counts as short if it takes at most `1 / SHORT_END` of a line.
 const SHORT_END: usize = 8;
 
-/// How a format measures its lines, in units of its own.
+/// How a format measures its lines, in its own units.
 pub(super) struct Ruler<'r> {
-    /// The widest line.
+    /// The maximum width of a line.
     pub limit: usize,
     /// The width of a piece.
     pub measure: &'r dyn Fn(&Piece) -> usize,
-    /// What a line that goes on is indented, this deep in brackets, aligned to a relation or not.
+    /// The indentation of a continuation line at a depth of brackets, and aligned to a relation or not.
     pub indent: &'r dyn Fn(usize, bool) -> usize,
 }
 
-/// The formula in lines; `None` if it fits on one.
+/// Breaks the formula into lines; `None` if it fits on one.
 pub(super) fn broken<'a>(layout: &'a Layout, ruler: &Ruler) -> Option<Lines<'a>> {
     let (limit, measure) = (ruler.limit, ruler.measure);
     let mut pieces = Vec::new();
@@ -70,7 +70,7 @@ pub(super) fn broken<'a>(layout: &'a Layout, ruler: &Ruler) -> Option<Lines<'a>>
             last.push(piece);
         }
     }
-    // A left side beyond half a line leaves no room to align to.
+    // A left side wider than half a line does not leave room for alignment.
     let aligned = segments.len() > 1 && segments.first().is_some_and(|s| width(s) <= limit / 2);
     let left = if aligned {
         segments.remove(0)
@@ -81,7 +81,7 @@ pub(super) fn broken<'a>(layout: &'a Layout, ruler: &Ruler) -> Option<Lines<'a>>
     let mut lines: Vec<Line> = Vec::new();
     for (i, segment) in segments.into_iter().enumerate() {
         let relation = aligned || i > 0;
-        // A short end such as `= 0` stays on the line where there is room.
+        // A short end such as `= 0` stays on the line if there is room.
         let needed = width(&segment);
         if let Some(last) = lines.last_mut()
             && needed <= limit / SHORT_END
@@ -100,12 +100,12 @@ pub(super) fn broken<'a>(layout: &'a Layout, ruler: &Ruler) -> Option<Lines<'a>>
     Some(Lines { left, lines })
 }
 
-/// The formula in lines of so many points, indented by a quad for each bracket and one more.
+/// Breaks the formula into lines of this many points, indented by one quad and another for each bracket level.
 pub(super) fn typeset(layout: &Layout, points: usize) -> Option<Lines<'_>> {
     within(layout, 10 * points)
 }
 
-/// The same in tenths of a point.
+/// The same with the limit in tenths of a point.
 fn within(layout: &Layout, limit: usize) -> Option<Lines<'_>> {
     let ruler = Ruler {
         limit,
@@ -115,11 +115,12 @@ fn within(layout: &Layout, limit: usize) -> Option<Lines<'_>> {
     broken(layout, &ruler)
 }
 
-/// Part of a line beyond which a left side is too wide for the signs of other relations to stand below its own.
+/// A left side is too wide for the other relation signs to align with its own if it takes more than `1 / WIDE_LEFT`
+/// of a line.
 const WIDE_LEFT: usize = 4;
 
-/// Relations below one another in lines of so many points, their signs aligned; one with a wide left side begins where
-/// the right sides of the others do.
+/// Breaks relations into lines of this many points with aligned relation signs. A relation with a wide left side
+/// begins where the right sides of the others begin.
 pub(super) fn group(layouts: &[Layout], points: usize) -> Vec<Lines<'_>> {
     let limit = 10 * points;
     let width = |pieces: &[Piece]| pieces.iter().map(Piece::width).sum::<usize>();
@@ -183,14 +184,14 @@ fn flatten<'a>(layout: &'a Layout, depth: usize, out: &mut Vec<Piece<'a>>) {
     }
 }
 
-/// Where a segment stands.
+/// The position of a segment.
 struct Segment {
     relation: bool,
     aligned: bool,
     room: usize,
 }
 
-/// Cuts one segment greedily; of the breaks that fit, the cheapest is taken.
+/// Breaks one segment greedily, at the cheapest break that fits.
 fn split<'a>(mut rest: Vec<Piece<'a>>, at: &Segment, ruler: &Ruler, out: &mut Vec<Line<'a>>) {
     let (mut depth, mut relation, mut room) = (0, at.relation, at.room);
     loop {
@@ -201,12 +202,12 @@ fn split<'a>(mut rest: Vec<Piece<'a>>, at: &Segment, ruler: &Ruler, out: &mut Ve
             if let Piece::Break(strength, deep) = piece
                 && i > 0
             {
-                // A product is torn where nothing else is left.
+                // Breaking within a product is a last resort.
                 let torn = match strength {
                     Strength::Factor => ruler.limit / 2,
                     Strength::Relation | Strength::Term => 0,
                 };
-                // Later is better on the line, earlier beyond its end.
+                // On the line, a later break is better; beyond its end, an earlier one.
                 let empty = if used <= room {
                     room - used
                 } else {
@@ -248,8 +249,8 @@ impl Piece<'_> {
     }
 }
 
-/// The pieces before the bracket that closes one opened just before them, and those after it;
-/// `None` if it is closed on another line.
+/// Splits the pieces at the bracket that closes the one opened just before them: those inside and those after. `None`
+/// if the bracket closes on another line.
 pub(super) fn enclosed<'p, 'a>(
     rest: &'p [Piece<'a>],
 ) -> Option<(&'p [Piece<'a>], &'p [Piece<'a>])> {

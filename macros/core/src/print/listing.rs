@@ -1,18 +1,20 @@
-//! The text of a model in lines that fit on a page: a statement goes on at its terms, indented, as one would type it.
+//! Breaks the text of a model into lines that fit on a page. A statement continues at its terms, indented as one
+//! would type it.
 
-/// Spaces by which the next line of a statement is indented, and once more for each bracket that is open.
+/// Spaces of indentation of a continued statement, and again for each open bracket.
 const INDENT: usize = 4;
 
-/// What one bracket more is worth in empty line, in percent of a line: rather a short line than a term that is torn.
+/// The cost of each further bracket level, as unused width in percent of a line. It favours a short line over a
+/// broken term.
 const DEPTH_COST: usize = 60;
 
-/// The same for a break after `=` or before a factor, where no term ends.
+/// The additional cost of a break after `=` or before a factor, within a term.
 const INSIDE_COST: usize = 90;
 
-/// What stands at the beginning of a remark.
+/// The start of a comment.
 const REMARK: &str = "//";
 
-/// The lines of a text, none wider than `limit` where that can be; `measure` gives the width of a character.
+/// Breaks a text into lines no wider than `limit` where possible; `measure` gives the width of a character.
 pub(super) fn fitted(code: &str, limit: usize, measure: &dyn Fn(char) -> usize) -> Vec<String> {
     code.lines()
         .flat_map(|line| match line.trim_start().starts_with(REMARK) {
@@ -22,11 +24,11 @@ pub(super) fn fitted(code: &str, limit: usize, measure: &dyn Fn(char) -> usize) 
         .collect()
 }
 
-/// One line in several.
+/// Breaks one line into several.
 fn statement(line: &str, limit: usize, measure: &dyn Fn(char) -> usize) -> Vec<String> {
     let own = line.chars().take_while(|c| *c == ' ').count();
     let (mut rest, mut indent) = (line.trim_start().to_owned(), own);
-    // Brackets that the lines before have left open.
+    // Brackets that are still open from the previous lines.
     let mut open = 0;
     let mut braces = 0;
     let mut out = Vec::new();
@@ -50,15 +52,15 @@ fn statement(line: &str, limit: usize, measure: &dyn Fn(char) -> usize) -> Vec<S
     }
 }
 
-/// A place to break.
+/// A possible break.
 struct Cut {
-    /// The byte before which.
+    /// The byte offset before which the line breaks.
     at: usize,
-    /// How many brackets are open there.
+    /// The number of open brackets there.
     depth: usize,
 }
 
-/// Of the breaks that fit, the cheapest; beyond the end, the first.
+/// The cheapest break that fits, otherwise the first one beyond the limit.
 fn cheapest(
     rest: &str,
     open: usize,
@@ -98,7 +100,8 @@ fn cheapest(
     best.map(|(_, cut)| cut)
 }
 
-/// Whether a line may end between these: `Some(false)` where a statement, a term or an argument does, `Some(true)` inside one.
+/// Whether a line may break between these texts: `Some(false)` at the end of a statement, term or argument,
+/// `Some(true)` within one, `None` if it may not.
 fn place(before: &str, after: &str) -> Option<bool> {
     let sign = |s: &str| after.starts_with(s);
     let term = before.ends_with(' ') && (sign("+ ") || sign("- "));
@@ -111,7 +114,7 @@ fn place(before: &str, after: &str) -> Option<bool> {
     }
 }
 
-/// Whether the next statement begins behind this.
+/// Whether the next statement begins after this text.
 fn ends_statement(before: &str) -> bool {
     before.trim_end().ends_with([';', '{'])
 }

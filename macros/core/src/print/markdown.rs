@@ -1,15 +1,15 @@
-//! Markdown documents: with mathematics in LaTeX as GitHub renders it, or in MathML for rustdoc.
-//! One paragraph is one line, so that a change of a word changes one line.
+//! Markdown documents, with mathematics in LaTeX as GitHub renders it, or in MathML for rustdoc. Each paragraph is
+//! one line, so that a change of a word changes one line.
 
 use super::document::{Block, Document, Inline, plain};
 use super::formula::Formula;
 use super::latex::{self, Dialect};
 use super::{Page, mathml};
 
-/// How mathematics is written.
+/// The notation of mathematics.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Math {
-    /// Between dollars and backticks, and in fenced blocks.
+    /// LaTeX between dollar signs and backticks, and in fenced blocks.
     GitHub,
     /// As MathML elements.
     MathMl,
@@ -65,7 +65,7 @@ fn equation(page: &Page, f: &Formula, number: usize, math: Math) -> String {
             let body = latex::display(page, f, Dialect::GitHub);
             fenced(&format!("{body} \\tag{{{number}}}"), "math")
         }
-        // A `div` opens a block that Markdown leaves alone up to the next empty line.
+        // A `div` opens a block in which Markdown is not interpreted until the next empty line.
         Math::MathMl => format!(
             "<div style=\"display:flex;align-items:center;overflow-x:auto\">\
              <div style=\"flex:1\">{}</div><span>({number})</span></div>\n",
@@ -96,7 +96,7 @@ fn sentence(page: &Page, parts: &[Inline], math: Math) -> String {
         .collect()
 }
 
-/// Words of a sentence, on one line, with everything that would be markup escaped.
+/// Words of a sentence on one line, with Markdown's special characters escaped.
 fn text(words: &str) -> String {
     let mut out = String::new();
     for c in words.chars() {
@@ -110,7 +110,7 @@ fn text(words: &str) -> String {
             _ => out.push(c),
         }
     }
-    // A sentence must not start a list: `- ...`, `1. ...`.
+    // A sentence must not be read as a list item: `- ...`, `1. ...`.
     let digits = out.chars().take_while(char::is_ascii_digit).count();
     match out.chars().nth(digits) {
         Some('-' | '+') if digits == 0 => format!("\\{out}"),

@@ -1,5 +1,5 @@
-//! Presentation MathML on one line, for rustdoc: the tags are plain, and every character of the
-//! text that Markdown could take for markup is written as a numeric entity.
+//! Presentation MathML on one line, for rustdoc. Tags are plain, and characters that Markdown could interpret are
+//! written as numeric entities.
 
 use super::Page;
 use super::formula::Formula;
@@ -32,7 +32,7 @@ pub(super) fn display(page: &Page, f: &Formula) -> String {
     format!("<math display=\"block\">{body}</math>")
 }
 
-/// The rows of a table, aligned at the signs of relations.
+/// The rows of a table, aligned at relation signs.
 fn rows(broken: &lines::Lines) -> String {
     let mut rows = String::new();
     for (i, row) in broken.lines.iter().enumerate() {
@@ -103,7 +103,7 @@ fn element(layout: &Layout) -> String {
     }
 }
 
-/// Any number of elements, for inside a row.
+/// Any number of elements, within a row.
 fn content(layout: &Layout) -> String {
     match layout {
         Layout::Row(parts) => parts.iter().map(content).collect(),
@@ -115,7 +115,7 @@ fn tagged(tag: &str, text: &str) -> String {
     format!("<{tag}>{}</{tag}>", escape(text))
 }
 
-/// All ASCII punctuation that Markdown or HTML might read becomes numeric.
+/// Escapes ASCII punctuation that Markdown or HTML might interpret.
 pub(super) fn escape(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
@@ -136,7 +136,7 @@ fn sign(sign: Sign) -> String {
         Sign::Plus => mo("+"),
         Sign::Minus => mo("−"),
         Sign::Negative => "<mo form=\"prefix\">−</mo>".to_owned(),
-        // An invisible product with the space of print behind it.
+        // Invisible multiplication, with the usual space after it.
         Sign::Times => "<mo lspace=\"0\" rspace=\"0.17em\">&#8290;</mo>".to_owned(),
         Sign::Dot => mo("·"),
         Sign::Cross => mo("×"),
@@ -194,7 +194,7 @@ fn pieces(list: &[Piece]) -> String {
     out
 }
 
-/// One bracket of a pair on different lines; it must not stretch to the height of its line.
+/// One bracket of a pair whose brackets are on different lines; it must not stretch to the height of its line.
 fn parted(form: &str, bracket: &str) -> String {
     format!("<mo form=\"{form}\" stretchy=\"false\">{bracket}</mo>")
 }

@@ -1,9 +1,9 @@
-//! Printers: expressions, formulas and whole documents as plain text, LaTeX, Markdown, MathML or
-//! JSON, and expressions as model text. What is printed is always the expression that was written
-//! or named, never an expanded normal form.
+//! Printers of expressions, formulas and whole documents as plain text, LaTeX, Markdown, MathML or JSON, and of
+//! expressions as model text. Expressions are printed as they were written or named, never in an expanded normal
+//! form.
 //!
-//! One path serves every format: [`formula`](mod@formula) and [`expr`](crate::expr) trees are composed to a
-//! layout (brackets, scripts, fractions; decided once), which each renderer only spells.
+//! All formats share one path: [`formula`](mod@formula) and [`expr`](crate::expr) trees are composed into a layout,
+//! with brackets, scripts and fractions decided, and each renderer only writes the layout.
 
 mod compose;
 pub mod document;
@@ -35,14 +35,14 @@ pub use latex::standalone;
 pub use statement::statement;
 pub use unicode::lowered;
 
-/// What a document is written in.
+/// The output format of a document.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Format {
     /// Plain text in Unicode for a terminal.
     Text,
-    /// LaTeX with the package amsmath.
+    /// LaTeX with amsmath.
     Latex,
-    /// Markdown with mathematics as GitHub shows it.
+    /// Markdown with mathematics for GitHub.
     Markdown,
     /// Markdown with mathematics in MathML, for rustdoc.
     MathMl,
@@ -53,14 +53,14 @@ pub enum Format {
 /// How letters and lines are printed.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Style {
-    /// Name of the time index; letters that live in time bear it as subscript. Empty: no
-    /// subscript where the equation stands, only the offset elsewhere.
+    /// Name of the time index, the subscript of time-dependent letters. If empty, letters at the node of the equation
+    /// do not have a subscript, and other letters show only their offset.
     pub time_index: String,
-    /// Names of the label indices, for rods and particles; empty where a model has none.
+    /// Names of the label indices, for rods and particles; empty if the model does not have labels.
     pub label_indices: Vec<String>,
-    /// Columns of a line of plain text.
+    /// Columns in a line of plain text.
     pub columns: usize,
-    /// Points of a displayed line in LaTeX, Markdown and MathML: the width of a page, less the number of an equation.
+    /// Points in a displayed line in LaTeX, Markdown and MathML: the text width minus the equation number.
     pub points: usize,
 }
 
@@ -70,14 +70,14 @@ impl Default for Style {
             time_index: "k".to_owned(),
             label_indices: Vec::new(),
             columns: 100,
-            // The lines of the class `article` have 345.
+            // Class `article` has lines of 345 points.
             points: 310,
         }
     }
 }
 
 impl Style {
-    /// The usual style with this time index.
+    /// The default style with this time index.
     pub fn new(time_index: &str) -> Style {
         Style {
             time_index: time_index.to_owned(),
@@ -86,7 +86,7 @@ impl Style {
     }
 }
 
-/// A whole document, ending in a newline. Equations are numbered from 1 through all sections.
+/// Prints a whole document, ending in a newline. Equations are numbered from 1 across all sections.
 pub fn render(document: &Document, symbols: &Symbols, style: &Style, format: Format) -> String {
     let page = Page { symbols, style };
     let document = &read::for_readers(&page, document.clone()).numbered();
@@ -99,13 +99,13 @@ pub fn render(document: &Document, symbols: &Symbols, style: &Style, format: For
     }
 }
 
-/// One expression on one line: plain text; LaTeX for math mode, without dollar signs; Markdown and
-/// MathML as they stand inside a sentence; JSON as an object of the three spellings.
+/// Prints one expression on one line: plain text; LaTeX for math mode, without dollar signs; Markdown and MathML as
+/// used within a sentence; JSON as an object with the three notations.
 pub fn expression(e: &Expr, symbols: &Symbols, style: &Style, format: Format) -> String {
     formula(&Formula::Expr(e.clone()), symbols, style, format)
 }
 
-/// One formula on one line, as [`expression`] prints.
+/// Prints one formula on one line, in the formats of [`expression`].
 pub fn formula(f: &Formula, symbols: &Symbols, style: &Style, format: Format) -> String {
     let page = Page { symbols, style };
     match format {
@@ -117,7 +117,7 @@ pub fn formula(f: &Formula, symbols: &Symbols, style: &Style, format: Format) ->
     }
 }
 
-/// Plain text as it stands, in the typewriter face of a format; as it is on a terminal.
+/// Preformatted text, in the typewriter face of a format; unchanged in plain text.
 pub fn code(text: &str, style: &Style, format: Format) -> String {
     let symbols = Symbols::default();
     let page = Page {
@@ -131,7 +131,7 @@ pub fn code(text: &str, style: &Style, format: Format) -> String {
     }
 }
 
-/// What every renderer needs: the symbols and the style.
+/// Shared by all renderers: the symbols and the style.
 struct Page<'a> {
     symbols: &'a Symbols,
     style: &'a Style,
@@ -150,12 +150,12 @@ impl Page<'_> {
         self.composer(stacked).formula(f).layout
     }
 
-    /// Whether an equation says nothing, as `0 = 0` does.
+    /// Whether an equation is trivial, such as `0 = 0`.
     fn says_nothing(&self, f: &Formula) -> bool {
         self.composer(false).says_nothing(f)
     }
 
-    /// The layout with fractions on the line, `a/b`.
+    /// The layout with inline fractions, `a/b`.
     fn linear(&self, f: &Formula) -> layout::Layout {
         self.compose(f, false)
     }

@@ -4,7 +4,7 @@ use super::layout::{Layout, Sign};
 
 pub(super) use crate::expr::spelling::{letter, parse};
 
-/// The text of a script, such as `k+1` or `ref`, in its tokens.
+/// Lays out the text of a script, such as `k+1` or `ref`, token by token.
 pub(super) fn script(text: &str) -> Layout {
     let mut row = Vec::new();
     let mut rest = text.chars().peekable();

@@ -1,5 +1,5 @@
-//! What a document has for its readers alone: equations that say nothing are left out, and names in sentences are spelt
-//! as in equations, with Greek letters for Greek words. Takes a document; gives one.
+//! Prepares a document for human readers: omits trivial equations, and spells names in sentences as in equations,
+//! with Greek letters for Greek words.
 
 use super::Page;
 use super::document::{Block, Document, Inline, Section};
@@ -7,7 +7,7 @@ use super::formula::Formula;
 use crate::expr::spelling;
 use std::collections::BTreeMap;
 
-/// The same document as it is read.
+/// The document in the form for human readers.
 pub(super) fn for_readers(page: &Page, document: Document) -> Document {
     let names = Names::of(page);
     let sections = document.sections.into_iter().map(|section| {
@@ -26,7 +26,7 @@ pub(super) fn for_readers(page: &Page, document: Document) -> Document {
     }
 }
 
-/// A block without equations that say nothing; none where nothing is left. Equations that others refer to stay.
+/// The block without trivial equations; `None` if it becomes empty. Equations with a label are kept.
 fn telling(page: &Page, block: Block) -> Option<Block> {
     let Block::Equation {
         formula,
@@ -55,10 +55,10 @@ fn telling(page: &Page, block: Block) -> Option<Block> {
     })
 }
 
-/// The sign of a variation, before a name.
+/// The sign of a variation before a name.
 const VARIATION: char = 'δ';
 
-/// Names of symbols that have Greek words in them, and how a sentence spells them.
+/// Names of symbols with Greek words, and their spelling in sentences.
 struct Names(BTreeMap<String, String>);
 
 impl Names {
@@ -91,7 +91,7 @@ impl Names {
         }
     }
 
-    /// Words with the names among them spelt as in equations.
+    /// Words in which names are spelt as in equations.
     fn words(&self, words: &str) -> String {
         let mut out = String::new();
         let mut name = String::new();
@@ -108,7 +108,7 @@ impl Names {
         out
     }
 
-    /// A word of a sentence, a name or the variation of one.
+    /// A word of a sentence, which may be a name or the variation of one.
     fn word(&self, word: &str) -> String {
         let varied = word.strip_prefix(VARIATION).and_then(|of| self.0.get(of));
         match (self.0.get(word), varied) {

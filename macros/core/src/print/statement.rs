@@ -1,6 +1,5 @@
-//! Expressions in the language of models, so that parsing the text gives the same expression
-//! again. Takes the names as they were declared; brackets stand wherever the constructors of
-//! expressions would otherwise group differently.
+//! Writes expressions in the model language, with names as declared. Parsing the text gives the same expression
+//! again, so brackets are added wherever the expression constructors would otherwise group differently.
 
 use super::Style;
 use crate::algebra::Rational;
@@ -8,18 +7,16 @@ use crate::expr::shape::Dim;
 use crate::expr::symbol::Symbols;
 use crate::expr::{Applied, Expr, Map, Node, Part};
 
-/// An expression as model text, e.g. `-(tr(J*Ω)/h) - h*dot(gU, Γ)`. Time offsets are written
-/// `next(...)` and `prev(...)`, label offsets with the name of the label from `style`. `Id`, `0`
-/// and `E1` take their shape from where they stand.
+/// Writes an expression as model text, e.g. `-(tr(J*Ω)/h) - h*dot(gU, Γ)`. Time offsets become `next(...)` and
+/// `prev(...)`; label offsets use the label names of `style`. `Id`, `0` and `E1` take their shape from the context.
 pub fn statement(e: &Expr, symbols: &Symbols, style: &Style) -> String {
     Writer { symbols, style }.write(e).text
 }
 
-/// Axes whose unit vectors have names, `E1` to `E3`; a component along another is written by its
-/// index.
+/// Axes with named unit vectors, `E1` to `E3`; components along other axes are written by index.
 const NAMED_AXES: u32 = 3;
 
-/// How tightly the text holds together for the parser, loosest first.
+/// Precedence of text in the model language, loosest binding first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Tightness {
     Sum,
@@ -81,7 +78,7 @@ impl Writer<'_> {
             Node::Identity(_) => operand("Id".to_owned()),
             Node::Zero(_) => operand("0".to_owned()),
             Node::Unit(_, axis) => operand(format!("E{}", u32::from(*axis) + 1)),
-            // Derived expressions hold them, statements do not.
+            // Only derived expressions contain inclusions; statements do not.
             Node::Inclusion(..) => operand("ι".to_owned()),
             Node::Sum(terms) => Written::new(self.sum(terms), Sum),
             Node::Neg(a) => Written::new(self.negated(a), Minus),
@@ -92,7 +89,7 @@ impl Writer<'_> {
             Node::Inverse(a) => Written::new(format!("{}^-1", self.base(a)), Postfix),
             Node::Trace(a) => operand(self.call("tr", &[a])),
             Node::Det(a) => operand(self.call("det", &[a])),
-            // The language has no word for it; no statement holds one.
+            // The language does not have a word for the adjugate, and statements do not contain one.
             Node::Adjugate(a) => {
                 operand(format!("(det({})*{}^-1)", self.write(a).text, self.base(a)))
             }
@@ -121,13 +118,13 @@ impl Writer<'_> {
                     Map::Translation => "pos",
                     Map::Twist => "twist",
                     Map::Diagonal => "diag",
-                    // Derived expressions hold it, statements do not.
+                    // Occurs in derived expressions only, not in statements.
                     Map::DiagonalOf => "diagonal",
                 },
                 &[a],
             )),
             Node::Given(a) => operand(self.functional(a)),
-            // Derived expressions hold it, statements do not.
+            // Occurs in derived expressions only, not in statements.
             Node::PullBack(a, which, seed) => {
                 let (f, seed) = (self.functional(a), self.write(seed).text);
                 operand(format!("pull_back({f}, {}, {seed})", u32::from(*which) + 1))
@@ -135,7 +132,7 @@ impl Writer<'_> {
         }
     }
 
-    /// `f(x, y)`, and derivatives around it, which no statement holds.
+    /// `f(x, y)`, wrapped in its derivatives. Statements do not contain derivatives.
     fn functional(&self, a: &Applied) -> String {
         let arguments: Vec<&Expr> = a.arguments.iter().collect();
         let name = &self.symbols.functional(a.functional).name;
@@ -151,7 +148,7 @@ impl Writer<'_> {
         format!("{name}({})", texts.join(", "))
     }
 
-    /// A component along an axis that has no name of its own.
+    /// A component along an axis without a named unit vector.
     fn component(&self, a: &Expr, axis: &Expr) -> Option<String> {
         let count = |e: &Expr| match e.node() {
             Node::Unit(_, axis) => Some(u32::from(*axis) + 1),
@@ -185,8 +182,8 @@ impl Writer<'_> {
         Written::new(format!("{}^{exponent}", self.base(a)), Tightness::Postfix)
     }
 
-    /// A minus and what follows it. The minus binds to the first factor only, and the
-    /// constructors carry it out of a product, but into a sum and into a lone number.
+    /// A minus sign and its operand. The minus binds to the first factor only. The constructors move it out of a
+    /// product, but into a sum or a single number.
     fn negated(&self, a: &Expr) -> String {
         let carried = |first: Option<&Expr>| !matches!(first.map(Expr::node), Some(Node::Sum(_)));
         let bare = match a.node() {
@@ -226,7 +223,7 @@ impl Writer<'_> {
         text
     }
 
-    /// A factor between asterisks; what is itself a product keeps its brackets.
+    /// A factor between asterisks; a product as a factor keeps its brackets.
     fn factor(&self, f: &Expr) -> String {
         self.write(f).at_least(Tightness::Postfix)
     }
@@ -235,8 +232,8 @@ impl Writer<'_> {
         let (numbers, matrices): (Vec<&Expr>, Vec<&Expr>) =
             factors.iter().partition(|f| f.shape().is_scalar());
         let mut parts: Vec<String> = numbers.iter().map(|f| self.factor(f)).collect();
-        // A row times a column would become a number of its own before the next factor comes: a
-        // column is grouped with the row behind it, and numbers with the row before it.
+        // A row times a column would become a number before the next factor. So a column is grouped with the row
+        // after it, and numbers with the row before it.
         let mut words: Vec<String> = Vec::new();
         let mut list = matrices.iter().peekable();
         while let Some(f) = list.next() {
@@ -263,7 +260,7 @@ impl Writer<'_> {
     fn quotient(&self, a: &Expr, b: &Expr) -> String {
         let bottom = self.write(b).at_least(Tightness::Postfix);
         match a.node() {
-            // A quotient over a divisor would be joined to one quotient.
+            // The constructors would merge a quotient over a divisor into one quotient.
             Node::Quotient(..) => format!("(1/{bottom})*({})", self.write(a).text),
             Node::Number(q) if q.denominator() == 1 => {
                 format!("{}/{bottom}", self.write(a).at_least(Tightness::Minus))

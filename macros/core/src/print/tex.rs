@@ -1,5 +1,5 @@
-//! Names in LaTeX as layouts, for formats that are no LaTeX: letters, Greek and other signs, scripts,
-//! accents and fonts. What is not known is shown by its name.
+//! Parses LaTeX names into layouts for formats other than LaTeX: letters, Greek and other signs, scripts, accents and
+//! fonts. Unknown commands are shown by name.
 
 use super::layout::{Layout, Sign};
 use crate::expr::symbol::GREEK;
@@ -22,7 +22,7 @@ const SIGNS: [(&str, &str); 14] = [
     ("perp", "⊥"),
 ];
 
-/// Accents by the character above, as the name alone shows it.
+/// Accents and their combining characters.
 const ACCENTS: [(&str, char); 6] = [
     ("bar", '\u{304}'),
     ("overline", '\u{304}'),
@@ -32,14 +32,14 @@ const ACCENTS: [(&str, char); 6] = [
     ("ddot", '\u{308}'),
 ];
 
-/// The layout of a name; factors side by side become a row.
+/// The layout of a name; several pieces become a row.
 pub(super) fn layout(latex: &str) -> Layout {
     row(&mut Rest(latex.chars().peekable()), false)
 }
 
 struct Rest<'a>(std::iter::Peekable<std::str::Chars<'a>>);
 
-/// Everything up to a closing brace, or the end.
+/// Parses up to a closing brace, or to the end.
 fn row(rest: &mut Rest, inside: bool) -> Layout {
     let mut parts: Vec<Layout> = Vec::new();
     while let Some(c) = rest.0.next() {
@@ -67,7 +67,7 @@ fn row(rest: &mut Rest, inside: bool) -> Layout {
     Layout::row(spaced)
 }
 
-/// A subscript, also below what has a superscript already.
+/// Adds a subscript, also to a base that already has a superscript.
 fn below(base: Layout, script: Layout) -> Layout {
     match base {
         Layout::Script {
@@ -83,7 +83,7 @@ fn below(base: Layout, script: Layout) -> Layout {
     }
 }
 
-/// What a script or a command applies to: a group in braces, or one piece.
+/// The argument of a script or a command: a group in braces, or one piece.
 fn argument(rest: &mut Rest) -> Layout {
     while rest.0.next_if(|c| c.is_whitespace()).is_some() {}
     match rest.0.next() {
@@ -116,11 +116,11 @@ fn command(rest: &mut Rest) -> Layout {
         word.push(c);
     }
     if word.is_empty() {
-        // `\,` and the like: a space.
+        // `\,` and similar commands: a space.
         rest.0.next();
         return Layout::Sign(Sign::Thin);
     }
-    // The plain letters of the engine are the curly ones of LaTeX.
+    // The engine's plain Greek letters correspond to LaTeX's `\var...` forms.
     let signs = SIGNS
         .map(|(name, sign)| (name, sign.to_owned()))
         .into_iter();
@@ -150,7 +150,7 @@ fn command(rest: &mut Rest) -> Layout {
     }
 }
 
-/// The accent stands on a letter; over anything longer it is left out.
+/// Places an accent on a single letter; longer layouts omit it.
 fn accented(layout: Layout, accent: char) -> Layout {
     match layout {
         Layout::Identifier(mut s) if s.chars().count() == 1 => {

@@ -1,5 +1,5 @@
-//! Plain text in Unicode: formulas on the line with real subscripts and superscripts where the
-//! characters exist, `_{...}` and `^{...}` where not; documents wrapped for a terminal.
+//! Plain text in Unicode: formulas on one line, with Unicode subscripts and superscripts where characters exist and
+//! `_{...}` and `^{...}` where not; documents wrapped for a terminal.
 
 use super::Page;
 use super::compose::parts::equations;
@@ -8,10 +8,10 @@ use super::formula::{Formula, Relation};
 use super::layout::{Fence, Layout, Sign};
 use super::lines::{self, Piece, Ruler};
 
-/// A space that a line of text is not broken at.
+/// A space at which text does not break.
 const HARD_SPACE: char = '\u{a0}';
 
-/// Columns before a displayed equation, for its number.
+/// Columns for the number of a displayed equation.
 const MARGIN: usize = 8;
 
 /// A layout on one line.
@@ -35,7 +35,7 @@ pub(super) fn line(layout: &Layout) -> String {
                 line(base) + &sub + &sup
             }
         }
-        // The composer writes these three on the line; the spelling is there for completeness.
+        // For plain text the composer never produces these layouts; the match is complete anyway.
         Layout::Fraction(a, b) => format!("({})/({})", line(a), line(b)),
         Layout::Root(a) => format!("√({})", line(a)),
         Layout::Hat(a) => format!("hat({})", line(a)),
@@ -106,7 +106,7 @@ fn brackets(fence: Fence) -> (char, char) {
     }
 }
 
-/// The digits of a number as subscripts: `₁₂` of `12`; nothing where there are other characters.
+/// The digits of a number as subscripts, `₁₂` for `12`; `None` if there are other characters.
 pub fn lowered(digits: &str) -> Option<String> {
     let digits = digits.chars();
     digits
@@ -166,7 +166,7 @@ fn columns(text: &str) -> usize {
     text.chars().count()
 }
 
-/// A displayed formula in lines of at most `limit` columns, continued after the relation sign.
+/// A displayed formula in lines of at most `limit` columns; continuation lines align after the relation sign.
 pub(super) fn display(page: &Page, f: &Formula, limit: usize) -> Vec<String> {
     if let Formula::Rows(parts) = f {
         let lines = parts.iter().flat_map(|part| display(page, part, limit));
@@ -283,7 +283,7 @@ fn words(page: &Page, parts: &[Inline]) -> String {
     text
 }
 
-/// Wraps text, the first line after `first`, the others after `next`.
+/// Wraps text; the first line begins with `first`, the others with `next`.
 fn fill(out: &mut String, text: &str, limit: usize, first: &str, next: &str) {
     let mut row = first.to_owned();
     let mut empty = true;

@@ -1,13 +1,13 @@
-//! How wide mathematics is in print, in tenths of a point: the characters of Computer Modern at ten points and the
-//! spaces that TeX puts around signs. What is not known to a tenth is taken wide: a line that ends early is no mistake.
+//! Estimates the printed width of mathematics in tenths of a point, from the characters of Computer Modern at ten
+//! points and TeX's spacing around signs. Unknown widths are overestimated, since a line that ends early is harmless.
 
 use super::layout::{Fence, Layout, Sign};
 use super::lines::Piece;
 
-/// The size at which mathematics is set.
+/// The size of mathematics.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Size {
-    /// In a line of its own: sums have limits above and below, fractions are of full size.
+    /// Displayed: sums have limits above and below, and fractions are full size.
     Display,
     /// In a sentence, a numerator or a matrix.
     Text,
@@ -18,7 +18,7 @@ pub(super) enum Size {
 }
 
 impl Size {
-    /// That of scripts.
+    /// The size of scripts.
     fn script(self) -> Size {
         match self {
             Size::Display | Size::Text => Size::Script,
@@ -26,7 +26,7 @@ impl Size {
         }
     }
 
-    /// That of numerators.
+    /// The size of numerators.
     fn above(self) -> Size {
         match self {
             Size::Display => Size::Text,
@@ -34,7 +34,7 @@ impl Size {
         }
     }
 
-    /// A width at ten points in this size; small letters are wider for their height.
+    /// Scales a width at ten points to this size; smaller letters are relatively wider.
     fn scaled(self, width: usize) -> usize {
         match self {
             Size::Display | Size::Text => width,
@@ -49,25 +49,25 @@ impl Size {
     }
 }
 
-/// Small letters of mathematics, `a` to `z`.
+/// Lower-case italic letters, `a` to `z`.
 const ITALIC: [usize; 26] = [
     53, 43, 44, 53, 47, 60, 52, 58, 35, 47, 56, 32, 88, 60, 49, 51, 48, 48, 47, 37, 58, 53, 75, 58,
     53, 51,
 ];
 
-/// Capitals of mathematics, `A` to `Z`, as they lean.
+/// Italic capitals, `A` to `Z`, including their slant.
 const CAPITALS: [usize; 26] = [
     75, 81, 79, 86, 80, 78, 79, 92, 52, 65, 92, 69, 108, 92, 80, 78, 80, 77, 67, 73, 80, 81, 109,
     91, 81, 76,
 ];
 
-/// Small upright letters, `a` to `z`.
+/// Lower-case upright letters, `a` to `z`.
 const UPRIGHT: [usize; 26] = [
     50, 56, 45, 56, 45, 34, 51, 56, 28, 31, 53, 28, 84, 56, 50, 56, 53, 40, 40, 39, 56, 54, 73, 53,
     54, 45,
 ];
 
-/// Small Greek letters that are not about 60 wide.
+/// Lower-case Greek letters whose width differs from about 60.
 const GREEK: [(char, usize); 14] = [
     ('γ', 58),
     ('δ', 50),
@@ -85,7 +85,7 @@ const GREEK: [(char, usize); 14] = [
     ('ω', 63),
 ];
 
-/// The height of a line of letters is enclosed by brackets this wide.
+/// The width of a bracket around content of normal height.
 fn bracket(fence: Fence) -> usize {
     match fence {
         Fence::Round | Fence::Angle => 39,
@@ -93,7 +93,7 @@ fn bracket(fence: Fence) -> usize {
     }
 }
 
-/// One bracket, around something higher than a line or not.
+/// The width of a bracket; `tall` if its content is taller than a line.
 fn delimiter(fence: Fence, tall: bool) -> usize {
     match tall {
         true => 96,
@@ -101,14 +101,14 @@ fn delimiter(fence: Fence, tall: bool) -> usize {
     }
 }
 
-/// A letter of mathematics.
+/// The width of an italic letter.
 fn letter(c: char) -> usize {
     let place = |first: u8| usize::from(u8::try_from(c).unwrap_or(first).saturating_sub(first));
     match c {
         'a'..='z' => ITALIC[place(b'a')],
         'A'..='Z' => CAPITALS[place(b'A')],
         'ℓ' => 42,
-        // Accents stand on letters.
+        // Accents do not add width.
         '\u{300}'..='\u{36f}' => 0,
         '0'..='9' => 50,
         'Α'..='Ω' => 79,
@@ -116,7 +116,7 @@ fn letter(c: char) -> usize {
     }
 }
 
-/// A letter of a word.
+/// The width of an upright letter.
 pub(super) fn upright(c: char) -> usize {
     let place = |first: u8| usize::from(u8::try_from(c).unwrap_or(first).saturating_sub(first));
     match c {
@@ -147,7 +147,7 @@ fn sign(sign: Sign, size: Size) -> usize {
         Sign::Delta => (50, 0),
         Sign::Slash | Sign::Star => (50, 0),
         Sign::Bar => (34, 0),
-        // Spaces that are written have one width in all sizes.
+        // Explicit spaces have the same width in all sizes.
         Sign::Times | Sign::Thin => return 17,
         Sign::Wide => return 28,
         Sign::Operand | Sign::Apply => (0, 0),
@@ -158,7 +158,7 @@ fn sign(sign: Sign, size: Size) -> usize {
     size.scaled(glyph) + if size.is_spaced() { around } else { 0 }
 }
 
-/// How wide a layout is.
+/// The width of a layout.
 pub(super) fn width(layout: &Layout, size: Size) -> usize {
     let go = |a: &Layout| width(a, size);
     match layout {
@@ -201,7 +201,7 @@ pub(super) fn width(layout: &Layout, size: Size) -> usize {
 }
 
 impl Piece<'_> {
-    /// How wide it is on a line of its own.
+    /// The width on a displayed line.
     pub fn width(&self) -> usize {
         match self {
             Piece::Whole(layout) => width(layout, Size::Display),
@@ -218,7 +218,7 @@ mod tests {
     use crate::print::formula::{Formula, Operator, Relation};
     use crate::print::{Page, Style};
 
-    /// Boxes as LaTeX measured them, by `\wd` of `$\displaystyle ...$` in points.
+    /// Widths that LaTeX measured with `\wd` for `$\displaystyle ...$`, in points.
     #[test]
     fn formulas_are_as_wide_as_latex_sets_them() {
         let name = Formula::name;
@@ -239,7 +239,7 @@ mod tests {
                     Operator::Trace,
                     Formula::Product(vec![Formula::transpose(name("P_{k+1}")), difference]),
                 ),
-                // The first of the boxes without its `\frac{1}{2}\,`.
+                // The first measured box without its `\frac{1}{2}\,`.
                 117.1 - 9.1,
             ),
             (Formula::Product(vec![grouped, name("μ_k")]), 53.2),
@@ -267,7 +267,7 @@ mod tests {
         for (formula, points) in cases {
             let estimate = width(&page.stacked(&formula), Size::Display);
             let estimate = u32::try_from(estimate).map_or(0.0, f64::from) / 10.0;
-            // Never less than a point short, and by a tenth too wide at most.
+            // The estimate may be at most one point too small, and about a tenth too large.
             let within = estimate > points - 1.0 && estimate < 1.1 * points + 3.0;
             assert!(within, "{formula:?}: {estimate} for {points}");
         }

@@ -11,14 +11,14 @@ pub struct Name {
     pub text: String,
     /// Its token.
     pub place: Place,
-    /// How it is typeset, in LaTeX, where a declaration says so, and the token that does.
+    /// Its LaTeX, if a declaration gives it, and the token of that LaTeX.
     pub typeset: Option<(String, Place)>,
-    /// Whether it is the name of a copy at a site, which the model does not write.
+    /// Whether it names a copy at a site and does not occur in the model text.
     pub is_copy: bool,
 }
 
 impl Name {
-    /// How it is typeset, where a declaration says so.
+    /// Its LaTeX, if a declaration gives it.
     pub fn latex(&self) -> Option<String> {
         self.typeset.as_ref().map(|(text, _)| text.clone())
     }
@@ -33,16 +33,16 @@ pub struct Expression {
     pub place: Place,
 }
 
-/// Kinds of expressions.
+/// The kinds of expressions.
 #[derive(Clone, Debug)]
 pub enum Kind {
     /// A number.
     Number(Rational),
-    /// A number that exact arithmetic does not follow.
+    /// A number outside the range of exact arithmetic.
     Constant(Constant),
     /// A name.
     Name(String),
-    /// An expression with a required shape: an argument or a value of a function that is written out.
+    /// An expression with a required shape: the argument or value of a user-defined function.
     Shaped(Box<Expression>, Kindred),
     /// A sum of signed terms: `true` marks a term that is subtracted.
     Sum(Vec<(bool, Expression)>),
@@ -50,7 +50,7 @@ pub enum Kind {
     Product(Vec<Expression>),
     /// A quotient.
     Quotient(Box<Expression>, Box<Expression>),
-    /// The opposite.
+    /// The negative.
     Neg(Box<Expression>),
     /// `x^T`.
     Transpose(Box<Expression>),
@@ -83,7 +83,7 @@ pub struct Kindred {
 }
 
 impl Kindred {
-    /// As it is written: `Vec<3>`.
+    /// Its text: `Vec<3>`.
     pub fn text(&self) -> String {
         let sizes = self.sizes.iter().map(|size| match size {
             Size::Number(n, _) => n.to_string(),
@@ -96,7 +96,7 @@ impl Kindred {
         }
     }
 
-    /// How many components a number or a vector of known size has; nothing of other shapes.
+    /// The number of components of a scalar or a vector of known size; `None` for other shapes.
     pub fn components(&self) -> Option<usize> {
         match (self.name.text.as_str(), self.sizes.as_slice()) {
             ("Real", []) => Some(1),
@@ -105,7 +105,7 @@ impl Kindred {
         }
     }
 
-    /// The shape of a number, at this place.
+    /// The shape of a scalar, at this position.
     pub fn number(place: Place) -> Kindred {
         Kindred {
             name: Name {
@@ -120,7 +120,7 @@ impl Kindred {
     }
 }
 
-/// How purely nodal terms enter the action of a step.
+/// How nodal terms enter the action of a step.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum NodeRule {
     /// Half on each adjacent edge: second order.
@@ -147,7 +147,7 @@ pub enum Comparison {
 }
 
 impl Comparison {
-    /// The opposite of an inequality.
+    /// The negation of an inequality.
     pub fn opposite(self) -> Option<Comparison> {
         match self {
             Comparison::Equal => None,
@@ -159,7 +159,7 @@ impl Comparison {
     }
 }
 
-/// Which sites of a label hold a quantity.
+/// The sites of a label at which a quantity is defined.
 #[derive(Clone, Debug)]
 pub enum Site {
     /// The nodes of the chain.
@@ -179,25 +179,25 @@ pub struct At {
     pub place: Place,
 }
 
-/// One way to end a chain: `pinned { φ = given; }`.
+/// An end condition of a chain: `pinned { φ = given; }`.
 #[derive(Clone, Debug)]
 pub struct Alternative {
     /// Its name, by which a case chooses it.
     pub name: Name,
     /// Parameters of its own.
     pub params: Vec<(Vec<Name>, Kindred)>,
-    /// Configurations that are given at this end.
+    /// Configurations that are prescribed at this end.
     pub given: Vec<Name>,
     /// Its terms in the Lagrangian.
     pub terms: Vec<Expression>,
 }
 
-/// Where places of particles lie: `on torus(L)`, `on box`.
+/// The domain of particle positions: `on torus(L)`, `on box`.
 #[derive(Clone, Debug)]
 pub enum Extent {
     /// A torus, with the name of its lengths.
     Torus(Name),
-    /// A box, each direction of which closes on itself or ends in walls, as the case says.
+    /// A box; in each direction a case makes it periodic or bounded by walls.
     Box(Place),
 }
 
@@ -237,7 +237,7 @@ pub enum Statement {
     Time {
         /// Name of the index.
         index: Name,
-        /// Name of the step.
+        /// Name of the step size.
         step: Name,
     },
     /// `param a, b: SHAPE;`
@@ -246,7 +246,7 @@ pub enum Statement {
         names: Vec<Name>,
         /// Their shape.
         shape: Kindred,
-        /// Where they live along a label.
+        /// Its sites along a label.
         at: Option<At>,
     },
     /// `assume CONDITION;`
@@ -266,7 +266,7 @@ pub enum Statement {
         name: Name,
         /// The group.
         group: Kindred,
-        /// Where it lives along a label.
+        /// Its sites along a label.
         at: Option<At>,
         /// Its velocity.
         velocity: Name,
@@ -277,20 +277,20 @@ pub enum Statement {
         names: Vec<Name>,
         /// Their shape.
         shape: Kindred,
-        /// Where they live along a label.
+        /// Its sites along a label.
         at: Option<At>,
         /// The parameter by which the value grows once around a ring.
         offset: Option<Name>,
-        /// Where the values lie, for fields of places of particles.
+        /// The domain of the values, for fields of particle positions.
         domain: Option<Extent>,
     },
     /// `advected Γ, S: SHAPE;`, `advected Γ: SHAPE = EXPR;`
     Advected {
-        /// The quantities: one, where there is a definition.
+        /// The quantities; only one if there is a definition.
         names: Vec<Name>,
         /// Their shape.
         shape: Kindred,
-        /// Where they live along a label.
+        /// Its sites along a label.
         at: Option<At>,
         /// The definition.
         definition: Option<Expression>,
@@ -323,24 +323,24 @@ pub enum Statement {
         arguments: Vec<Kindred>,
         /// Its value.
         value: Kindred,
-        /// The Rust path of the function; its own name if it is written out.
+        /// The Rust path of the function; its own name if it is defined by a formula.
         path: Name,
-        /// Its definition, if it is written out: an expression for each component.
+        /// Its formulas, one expression for each component; empty if it is not defined by a formula.
         components: Vec<Expression>,
-        /// The same as it was written, between the quotes.
+        /// The text of the formulas between the quotes.
         texts: Vec<String>,
-        /// The word `case`, if the case gives the definition: there are no components until it does.
+        /// The word `case`, if the case defines the function; its formulas are then empty until the case is read.
         by_case: Option<Place>,
     },
     /// `grid n;`
     Grid(Name),
     /// `mesh A: SHAPE at a = FUNCTIONAL(X);`
     Mesh {
-        /// Its values, by this name.
+        /// The name of its values.
         name: Name,
         /// Its shape at one site.
         shape: Kindred,
-        /// At which sites.
+        /// Its sites.
         at: Option<At>,
         /// The functional that computes it: a name of the runtime, or a Rust path.
         path: Name,

@@ -1,5 +1,5 @@
-//! Calls of functions that are written out. Takes a model as it was written; gives the same with each call replaced by the
-//! expression at its argument, so that the engine differentiates it.
+//! Expands calls of functions that are defined by a formula. Each call in the model becomes the formula at its
+//! argument, so that the engine can differentiate it.
 
 use super::ast::{Expression, Kind, Kindred, Model, Name, Statement};
 use super::formula::{foreign, names, signature};
@@ -7,7 +7,7 @@ use crate::diagnostic::{Diagnostic, Errors};
 use crate::lattice::LARGEST;
 use std::cell::Cell;
 
-/// A function with its components.
+/// A function defined by a formula.
 struct Formula {
     name: Name,
     argument: Kindred,
@@ -16,7 +16,7 @@ struct Formula {
 }
 
 impl Formula {
-    /// Its value where it is called.
+    /// The value of a call.
     fn called(&self, argument: &Expression) -> Expression {
         let names = names(&self.argument);
         let place = argument.place;
@@ -64,7 +64,7 @@ impl Formula {
     }
 }
 
-/// The model with calls of such functions replaced by their definitions.
+/// Expands all calls of such functions in a model.
 pub(super) fn written_out(mut model: Model) -> Result<Model, Errors> {
     let stated = formulas(&model)?;
     if stated.is_empty() {
@@ -91,7 +91,7 @@ pub(super) fn written_out(mut model: Model) -> Result<Model, Errors> {
     }
 }
 
-/// The functions that the model writes out, made of their arguments and of what is constant.
+/// The functions that the model defines by formulas, which may contain only their argument and constants.
 fn formulas(model: &Model) -> Result<Vec<Formula>, Errors> {
     let mut errors = Errors::new();
     let mut found = Vec::new();
@@ -142,8 +142,8 @@ fn formulas(model: &Model) -> Result<Vec<Formula>, Errors> {
     errors.propagate().map(|()| found)
 }
 
-/// The constants that a function may contain besides its argument: parameters, definitions, the step and the
-/// spacing, unit vectors.
+/// The constants that a formula may contain besides its argument: parameters, definitions, step size, spacing and
+/// unit vectors.
 fn constants(model: &Model) -> Vec<&str> {
     let mut all = vec!["Id", "E1", "E2", "E3", "h"];
     for statement in &model.statements {
@@ -199,7 +199,7 @@ fn by_others(mut open: Vec<Formula>, room: &Cell<Option<usize>>) -> Result<Vec<F
     errors.propagate().map(|()| done)
 }
 
-/// Tells of functions without an argument, or with several.
+/// Reports functions that are used without an argument or with several arguments.
 fn misused(e: &Expression, formulas: &[Formula], errors: &mut Errors) {
     let of = |name: &str| formulas.iter().find(|f| f.name.text == name);
     e.each(&mut |e| match &e.kind {
@@ -222,7 +222,8 @@ fn misused(e: &Expression, formulas: &[Formula], errors: &mut Errors) {
     });
 }
 
-/// Calls replaced, those within arguments first, while there is room for so many quantities, numbers and operations.
+/// Expands calls, inner calls first, as long as the expanded size stays within `room` quantities, numbers and
+/// operations.
 fn put_in(e: &Expression, formulas: &[Formula], room: &Cell<Option<usize>>) -> Expression {
     e.replaced(&|e| {
         let Kind::Call(name, arguments) = &e.kind else {
@@ -233,7 +234,8 @@ fn put_in(e: &Expression, formulas: &[Formula], room: &Cell<Option<usize>>) -> E
             return None;
         };
         let argument = put_in(argument, formulas, room);
-        // It is not expanded if the result could be too large: each of its names becomes at most the argument.
+        // A call is not expanded if the result could be too large: each name in the formula becomes at most the
+        // argument.
         let own: usize = formula.components.iter().map(Expression::size).sum();
         let most = own.saturating_mul(argument.size() + 1);
         let left = room.get().filter(|left| most <= *left);
@@ -243,7 +245,7 @@ fn put_in(e: &Expression, formulas: &[Formula], room: &Cell<Option<usize>>) -> E
                 .as_ref()
                 .and_then(|(left, called)| left.checked_sub(called.size())),
         );
-        // A call that is left alone is not looked into again.
+        // A call that was not expanded is not searched again.
         Some(called.map_or_else(|| e.clone(), |(_, called)| called))
     })
 }

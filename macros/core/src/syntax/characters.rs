@@ -1,15 +1,15 @@
-//! Characters that papers use and the language does not: a typographic minus, subscripts, primes. In a file they
-//! are found here, where the text could not be split into tokens.
+//! Characters that papers use but the language does not: a typographic minus, subscripts, primes. In a file they must
+//! be reported before the text is split into tokens, which fails on them.
 
 use super::delimiters::place;
 use super::text;
 use super::unknown::RADIANS;
 use crate::diagnostic::{Diagnostic, Place};
 
-/// The advice for a prime, as papers write it.
+/// The advice for a prime used as in papers.
 pub(super) const PRIME: &str = "write `(next(x) - x)/h` for a rate of change, `next(x)` for the value at the next node, `A^T` for a transpose";
 
-/// How the language writes a character that papers use.
+/// The notation of the language for a character that papers use.
 fn written(c: char) -> Option<&'static str> {
     Some(match c {
         '−' | '–' | '—' | '‐' => "write the minus of the keyboard, `-`",
@@ -37,14 +37,14 @@ fn written(c: char) -> Option<&'static str> {
     })
 }
 
-/// A sign of products or of the transpose within a name, which Rust takes for one of its letters.
+/// A product or transpose sign within a name, where Rust accepts it as a letter.
 pub(super) fn within(name: &str, place: Place) -> Option<Diagnostic> {
     let c = name.chars().find(|c| matches!(c, '·' | 'ᵀ'))?;
     let d = Diagnostic::new(place, format!("`{c}` is not a character of the language"));
     Some(d.help(written(c)?))
 }
 
-/// The first character outside of remarks and texts that no token has.
+/// The first character outside comments and strings that cannot belong to a token.
 pub(super) fn foreign(source: &str) -> Option<Diagnostic> {
     let mut found = None;
     let (text, _) = text::read(source, |at, c| {

@@ -1,18 +1,17 @@
-//! The ratio of a circle to its diameter by its name. Takes a model; gives the same with `pi` and `π` replaced by that number, where it
-//! declares no quantity of the name.
+//! Replaces `pi` and `π` in a model by the number, unless the model declares a quantity of that name.
 
 use super::ast::{Expression, Kind, Model, Name, Statement};
 use crate::expr::Constant;
 
-/// How it may be written.
+/// The names of the number.
 const NAMES: [&str; 2] = ["pi", "π"];
 
-/// Whether an undeclared name denotes this number.
+/// Whether an undeclared name denotes the number.
 pub(crate) fn is_meant(name: &str) -> bool {
     NAMES.contains(&name)
 }
 
-/// The model with the number in the place of its name.
+/// Replaces the name by the number.
 pub(super) fn named(mut model: Model) -> Model {
     let time = model.statements.iter().find_map(|s| match s {
         Statement::Time { index, step } => Some([index.text.clone(), step.text.clone()]),

@@ -1,11 +1,11 @@
-//! Finds parentheses, brackets and braces without a partner. A compiler finds them before it calls a macro; in a
-//! file they are found here, where the text could not be split into tokens.
+//! Finds unmatched parentheses, brackets and braces in a file, where they would prevent splitting the text into
+//! tokens. In a macro, the compiler reports them before the call.
 
 use super::text;
 use crate::diagnostic::{Diagnostic, Place};
 use proc_macro2::{Span, TokenStream};
 
-/// The error for an opening delimiter that is not closed. It names what follows instead, if anything does.
+/// The error for an opening delimiter that is not closed; it names the text before which it should be closed, if any.
 pub(super) fn not_closed(opening: char, place: Place, before: Option<(&str, Place)>) -> Diagnostic {
     let closing = partner(opening);
     let message = match before {
@@ -22,7 +22,7 @@ pub(super) fn not_closed(opening: char, place: Place, before: Option<(&str, Plac
     d
 }
 
-/// The closing delimiter of an opening one, and the other way round.
+/// The matching delimiter of an opening or closing one.
 fn partner(c: char) -> char {
     match c {
         '(' => ')',
@@ -41,13 +41,13 @@ struct Opening {
     ends: Option<(usize, char)>,
 }
 
-/// A delimiter without partner.
+/// An unmatched delimiter.
 enum Unmatched {
     Opening(Opening),
     Closing(usize, char),
 }
 
-/// The first delimiter of the text without a partner, if there is one.
+/// The first unmatched delimiter of the text, if there is one.
 pub(super) fn unmatched(source: &str) -> Option<Diagnostic> {
     let mut open: Vec<Opening> = Vec::new();
     let mut fault = None;
@@ -58,7 +58,7 @@ pub(super) fn unmatched(source: &str) -> Option<Diagnostic> {
             delimiter: c,
             ends: None,
         }),
-        // A statement cannot continue inside parentheses: the missing delimiter belongs before this.
+        // A statement cannot end inside parentheses: the missing delimiter belongs before this.
         ';' => {
             if let Some(inner) = open.last_mut().filter(|o| o.delimiter != '{') {
                 inner.ends.get_or_insert((at, c));
@@ -74,7 +74,7 @@ pub(super) fn unmatched(source: &str) -> Option<Diagnostic> {
         },
         _ => {}
     });
-    // A string without an end hides what follows it.
+    // An unterminated string hides the text after it.
     let left = open.pop().filter(|_| whole);
     match fault.or(left.map(Unmatched::Opening))? {
         Unmatched::Opening(o) => {
@@ -95,7 +95,7 @@ pub(super) fn unmatched(source: &str) -> Option<Diagnostic> {
     }
 }
 
-/// The place of one character: the place of the only token of a text that is blank up to there.
+/// The position of one character, obtained from a text that is blank up to that character.
 pub(super) fn place(text: &str, at: usize) -> Option<Place> {
     let before = text.get(..at)?.chars();
     let mut blank: String = before.map(|c| if c == '\n' { c } else { ' ' }).collect();
@@ -164,7 +164,7 @@ mod tests {
                 1,
                 "this `}` closes nothing: no `{` is open here",
             ),
-            // Nothing in comments and literals counts, whatever a backslash is replaced by.
+            // Delimiters in comments and literals do not count, also where backslashes are replaced.
             (
                 "// (\n/* [ */ model M {\n  param a as \"\\chi(\"; let b = (a;\n}",
                 3,

@@ -11,13 +11,13 @@ use crate::algebra::Rational;
 use crate::diagnostic::Diagnostic;
 use crate::expr::Constant;
 
-/// Words that end an expression because the statement continues with them.
+/// Words that end an expression, since the statement continues with them.
 const FOLLOWING: [&str; 4] = ["at", "on", "periodic", "in"];
 
-/// More transposes and powers on one operand than anybody writes.
+/// The maximum number of transposes and powers of one operand.
 const MOST_POSTFIXES: usize = 16;
 
-/// Largest exponent, of either sign.
+/// The largest absolute value of an exponent.
 const LARGEST_EXPONENT: i64 = 256;
 
 type Parsed = Result<Expression, Diagnostic>;
@@ -28,7 +28,7 @@ pub fn expression(c: &mut Cursor) -> Parsed {
     let mut minus = false;
     loop {
         terms.push((minus, product(c)?));
-        // `->`, `==` and the like are not sums.
+        // `->` and similar signs are not sums.
         if c.is_punct('-') && matches!(c.peek_at(1), Some(Token::Punct('>', _))) {
             break;
         }
@@ -174,7 +174,7 @@ fn postfix(c: &mut Cursor) -> Parsed {
     Err(c.unexpected("an operator").help(remedy))
 }
 
-/// After `[`: one index or two, counted from 1.
+/// After `[`: one or two indices, counted from 1.
 fn indices(c: &mut Cursor) -> Result<Vec<u64>, Diagnostic> {
     let remedy = "components are counted from 1: `v[1]` of a vector, `A[1, 2]` of a matrix";
     let mut list = Vec::new();
@@ -260,7 +260,7 @@ fn too_large(c: &Cursor) -> Diagnostic {
     .help("write the power by `exp` and `log`")
 }
 
-/// Largest numerator and denominator of a number that is exact in products and powers with others: those have 37 digits.
+/// Numbers with at most this numerator and denominator are exact; products and powers of them fit into 37 digits.
 const EXACT: i128 = 1_000_000;
 
 /// The value of a decimal literal; `None` if it is infinite.
@@ -317,7 +317,7 @@ fn operand(c: &mut Cursor) -> Parsed {
         }
         Some(Token::Name(_)) => {
             let name = c.name("a name")?;
-            // Whether it is a function is decided by `check`, which knows what is declared.
+            // `check`, which knows the declarations, decides whether the name is a function.
             if !matches!(c.peek(), Some(Token::Open('('))) {
                 return Ok(Expression {
                     place: name.place,

@@ -1,5 +1,4 @@
-//! Functions that are given by what they are: `given b(Vec<2>): Real = "A*cos(2*pi*x/L)";`, here or in a case.
-//! Takes the text in quotes; gives the expression, and how such functions are stated.
+//! Functions defined by a formula in quotes, in the model or in a case: `given b(Vec<2>): Real = "A*cos(2*pi*x/L)";`.
 
 use super::ast::{Expression, Kind, Kindred, Model, Name, Statement};
 use super::token::{Cursor, Token};
@@ -9,10 +8,11 @@ const ONLY: &str =
     "a function that is written out takes one number or vector of known size, and gives one";
 const OTHERWISE: &str = "give functions of matrices or of several arguments by a path of Rust; x, y, z are the components of the argument in `given b(Vec<2>): Real = \"x*y\";`";
 
-/// The components of a vector by letters, as a paper calls the place.
+/// The component names of a position vector.
 const LETTERS: [&str; 3] = ["x", "y", "z"];
 
-/// After `=`: one expression in quotes, or a list of them for the components of a vector; empty if a path follows.
+/// After `=`: one expression in quotes, or a list of expressions for the components of a vector; empty if a path
+/// follows.
 pub(super) fn components(c: &mut Cursor) -> Result<Vec<(String, Expression)>, Diagnostic> {
     if !c.take_delimiter('[') {
         let is_text = matches!(c.peek(), Some(Token::Literal(t)) if t.ends_with('"'));
@@ -59,7 +59,7 @@ fn read(text: &str) -> Result<Expression, Diagnostic> {
     })
 }
 
-/// Puts all of an expression at one place.
+/// Sets the position of an expression and all its parts.
 fn put_at(e: &mut Expression, place: Place) {
     e.place = place;
     if let Kind::Call(name, _) = &mut e.kind {
@@ -70,7 +70,7 @@ fn put_at(e: &mut Expression, place: Place) {
     }
 }
 
-/// The expressions of a function in quotes, of a vector as a list: as models and cases write them.
+/// The quoted formulas of a function, as models and cases write them; a list for a vector.
 pub fn in_quotes(components: &[String]) -> String {
     let quoted: Vec<String> = components.iter().map(|c| format!("{c:?}")).collect();
     match quoted.as_slice() {
@@ -79,7 +79,7 @@ pub fn in_quotes(components: &[String]) -> String {
     }
 }
 
-/// The argument of such a function, and the number of its components; an error for other functions.
+/// The argument of such a function, and the number of components of its value; an error for other functions.
 pub(super) fn signature<'k>(
     name: &Name,
     arguments: &'k [Kindred],
@@ -91,7 +91,7 @@ pub(super) fn signature<'k>(
     }
 }
 
-/// How such functions are stated, without the word that ends a statement.
+/// The declarations of such functions, without the final `;`.
 pub fn stated(model: &Model) -> Vec<String> {
     let kind = |k: &Kindred| match k.components() {
         Some(n) if k.name.text == "Vec" => format!("Vec<{n}>"),
@@ -121,14 +121,14 @@ pub fn stated(model: &Model) -> Vec<String> {
     model.statements.iter().filter_map(of).collect()
 }
 
-/// A function that the case gives, before it is given.
+/// A function that a case must define.
 #[derive(Clone, Debug)]
 pub struct Open {
     /// Its name.
     pub name: Name,
-    /// Its argument, a number or a vector.
+    /// Its argument, a scalar or a vector.
     pub argument: Kindred,
-    /// How many components it has.
+    /// The number of components of its value.
     pub components: usize,
     /// Whether its definition is already filled in.
     pub is_filled: bool,
@@ -136,10 +136,10 @@ pub struct Open {
     pub at: (usize, usize),
 }
 
-/// The functions of a model that the case gives.
+/// The functions of a model that a case must define.
 ///
 /// # Errors
-/// A function whose argument or value no expression can have.
+/// A function whose argument or value a formula cannot have.
 pub fn open(model: &Model) -> Result<Vec<Open>, Diagnostic> {
     let mut all = Vec::new();
     for statement in &model.statements {
@@ -166,11 +166,10 @@ pub fn open(model: &Model) -> Result<Vec<Open>, Diagnostic> {
     Ok(all)
 }
 
-/// Whether a text is an expression in the components of such an argument; what is wrong of it otherwise. `known` are the names
-/// that it may hold beside them.
+/// Checks that a text is a formula in the components of an argument. `known` accepts other names that it may contain.
 ///
 /// # Errors
-/// A text that cannot be read, or the first unknown name.
+/// A text that cannot be parsed, or the first unknown name.
 pub fn check(text: &str, argument: &Kindred, known: &dyn Fn(&str) -> bool) -> Result<(), String> {
     let parsed = read(text).map_err(|wrong| wrong.text())?;
     if let Some(name) = parsed.call_that(&|n| !super::FUNCTIONS.contains(&n)) {
@@ -185,7 +184,7 @@ pub fn check(text: &str, argument: &Kindred, known: &dyn Fn(&str) -> bool) -> Re
     }
 }
 
-/// The error if an expression contains anything but the argument and `known` names.
+/// The error if an expression contains a name that is neither a component of the argument nor `known`.
 pub(super) fn foreign(
     e: &Expression,
     argument: &Kindred,
@@ -210,7 +209,7 @@ pub(super) fn foreign(
     ))
 }
 
-/// The possible names of each component of the argument.
+/// The names of each component of the argument.
 pub(super) fn names(argument: &Kindred) -> Vec<Vec<String>> {
     let n = argument.components().unwrap_or(0);
     (0..n)

@@ -1,4 +1,4 @@
-//! Statements of label lines: `label`, `end` with its alternatives, and `at` behind a shape.
+//! Parses statements of chains and sets: `label`, `end` with its alternatives, and `at` after a shape.
 
 use super::ast::{Alternative, At, Name, Site, Statement};
 use super::expression::expression;
@@ -51,7 +51,7 @@ pub(super) fn at(c: &mut Cursor) -> Result<Option<At>, Diagnostic> {
     Ok(Some(At { site, place }))
 }
 
-/// `i = 0 { ... }`, up to its brace: no `;` follows.
+/// `i = 0 { ... }`, which ends at its brace without `;`.
 pub(super) fn end(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     let remedy = "an end reads `end i = 0 { free; pinned { φ = given; } }`, and `end i = N { ... }` at the other one";
     let label = c

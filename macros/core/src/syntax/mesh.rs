@@ -1,5 +1,5 @@
-//! Statements of functionals of all sites: `mesh`, and `on` behind a field of places. A smoother that names no length
-//! smooths over `alpha`.
+//! Parses `mesh`, the declaration of a functional of all sites, and `on` after a field of positions. A smoother
+//! without a length uses `alpha`.
 
 use super::ast::{Extent, Kindred, Model, Name, Statement};
 use super::label;
@@ -38,11 +38,11 @@ pub(super) fn mesh(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     })
 }
 
-/// The length over which a smoother smooths that names none.
+/// The length of a smoother that names none.
 const LENGTH: &str = "alpha";
 
-/// Adds `alpha` after the argument of smoothers without a length. It is a parameter of the model: the model's own,
-/// if it declares one.
+/// Adds the argument `alpha` to smoothers without a length. It is a parameter of the model, added unless the model
+/// declares one.
 pub(super) fn with_lengths(mut model: Model) -> Model {
     let mut asked = None;
     for s in &mut model.statements {

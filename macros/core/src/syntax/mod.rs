@@ -1,5 +1,5 @@
-//! From tokens to a spanned syntax tree: a flat token list, a Pratt parser for expressions, one
-//! function for each statement. Knows no names and no shapes; those are `check`'s.
+//! Parses tokens into a syntax tree with positions: a flat token list, a Pratt parser for expressions, and one
+//! function for each statement. Names and shapes are resolved later, by `check`.
 
 pub mod ast;
 mod called;
@@ -31,19 +31,19 @@ pub const FUNCTIONS: [&str; 33] = [
     "prev", "rate", "sum", "Tr", "quat", "rot", "pos",
 ];
 
-/// Functions that a declared name hides: models without these groups use the words freely.
+/// Functions that a declared name may hide, so that models without these groups can use the words.
 pub const HIDEABLE: [&str; 5] = ["quat", "rot", "pos", "I1", "I2"];
 
-/// The functions that models of this version can use, as a message lists them.
+/// The functions that models of this version can use, as listed in messages.
 pub const AVAILABLE: &str = "tr det log exp sqrt sin cos sinh cosh tanh abs sign inv sym skew diag hat vee dot cross perp re im quat rot pos I1 I2 next";
 
-/// Parses one model: `[pub] model NAME { ... }`, documentation before it.
+/// Parses one model, `[pub] model NAME { ... }`, with its documentation.
 pub fn parse(tokens: TokenStream) -> Result<Model, Errors> {
     let mut cursor = Cursor::new(tokens)?;
     statement::model(&mut cursor)
 }
 
-/// Parses a text that is one expression.
+/// Parses a text as one expression.
 pub fn expression(source: &str) -> Result<ast::Expression, Errors> {
     let mut cursor = Cursor::new(tokens(source)?)?;
     let parsed = expression::expression(&mut cursor)?;
@@ -58,10 +58,10 @@ pub fn expression(source: &str) -> Result<ast::Expression, Errors> {
     }
 }
 
-/// Longest text that is read, in bytes: a source with a model may also contain other things.
+/// Maximum length of a text in bytes; a source with a model may also contain other items.
 const LONGEST_TEXT: usize = 250_000;
 
-/// The tokens of a text.
+/// Splits a text into tokens.
 pub fn tokens(source: &str) -> Result<TokenStream, Errors> {
     if source.len() > LONGEST_TEXT {
         let message = format!(

@@ -1,4 +1,4 @@
-//! The contents of an expression: names in it, its size, and the same expression with parts of it replaced.
+//! Traversal of expressions: names, size, and replacement of parts.
 
 use super::ast::{Expression, Extent, Kind, Name, Statement};
 
@@ -20,7 +20,7 @@ impl Expression {
         }
     }
 
-    /// The same, to be changed.
+    /// Its direct subexpressions, mutable.
     pub(super) fn parts_mut(&mut self) -> Vec<&mut Expression> {
         match &mut self.kind {
             Kind::Number(_) | Kind::Constant(_) | Kind::Name(_) => Vec::new(),
@@ -37,7 +37,7 @@ impl Expression {
         }
     }
 
-    /// The first name of a quantity that is such a one.
+    /// The first name of a quantity that satisfies `is`.
     pub(crate) fn name_that(&self, is: &dyn Fn(&str) -> bool) -> Option<&str> {
         match &self.kind {
             Kind::Name(n) => is(n).then_some(n),
@@ -45,12 +45,12 @@ impl Expression {
         }
     }
 
-    /// The first function of these that is called.
+    /// The first called function among these.
     pub(crate) fn call_of(&self, of: &[&str]) -> Option<&str> {
         self.call_that(&|name| of.contains(&name))
     }
 
-    /// The first function that is called and is such a one.
+    /// The first called function that satisfies `is`.
     pub(crate) fn call_that(&self, is: &dyn Fn(&str) -> bool) -> Option<&str> {
         match &self.kind {
             Kind::Call(name, _) if is(&name.text) => Some(&name.text),
@@ -58,7 +58,7 @@ impl Expression {
         }
     }
 
-    /// Visits it and everything in it.
+    /// Visits the expression and all its subexpressions.
     pub fn each(&self, visit: &mut dyn FnMut(&Expression)) {
         visit(self);
         for part in self.parts() {
@@ -66,20 +66,19 @@ impl Expression {
         }
     }
 
-    /// How many quantities, numbers and operations it has.
+    /// The number of quantities, numbers and operations.
     pub(crate) fn size(&self) -> usize {
         1 + self.parts().into_iter().map(Self::size).sum::<usize>()
     }
 
-    /// The expression with parts replaced by the results of `of`, larger parts first. Replacements are not searched
-    /// again.
+    /// Replaces parts by the results of `of`, larger parts first. Replacements are not searched again.
     pub(crate) fn replaced(&self, of: &dyn Fn(&Expression) -> Option<Expression>) -> Expression {
         let mut out = self.clone();
         out.replace(of);
         out
     }
 
-    /// The same in place.
+    /// Replaces parts in place.
     pub(crate) fn replace(&mut self, of: &dyn Fn(&Expression) -> Option<Expression>) {
         match of(self) {
             Some(put) => *self = put,
@@ -92,7 +91,7 @@ impl Expression {
 }
 
 impl Statement {
-    /// The names that it declares, except the names of ends and of counts of sites.
+    /// The names that it declares, except names of ends and of numbers of sites.
     pub(crate) fn declared(&self) -> Vec<&Name> {
         match self {
             Statement::Param { names, .. } | Statement::Advected { names, .. } => {
@@ -123,7 +122,7 @@ impl Statement {
         }
     }
 
-    /// Every expression in it, including functions that are written out.
+    /// All its expressions, including formulas of functions.
     pub(crate) fn expressions(&self) -> Vec<&Expression> {
         match self {
             Statement::Assume { left, right, .. } | Statement::Hold { left, right, .. } => {
@@ -151,7 +150,7 @@ impl Statement {
         }
     }
 
-    /// Every expression in it, to be changed.
+    /// All its expressions, mutable.
     pub(crate) fn expressions_mut(&mut self) -> Vec<&mut Expression> {
         match self {
             Statement::Assume { left, right, .. } | Statement::Hold { left, right, .. } => {

@@ -1,5 +1,5 @@
-//! Statements and the model around them, one function for each keyword. A broken statement is
-//! reported and skipped up to its `;`, so that one run shows every mistake.
+//! Parses the model and its statements, with one function for each keyword. A faulty statement is reported and
+//! skipped up to its `;`, so that one run reports every mistake.
 
 use super::ast::{Comparison, Expression, Kindred, Model, Name, NodeRule, Size, Statement};
 use super::called;
@@ -42,7 +42,7 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
             }
             Err(e) => {
                 errors.push(e);
-                // Right behind a block, there is nothing to skip.
+                // Directly after a block there is nothing to skip.
                 if c.position() == start || !c.follows_block() {
                     skip_statement(c);
                 }
@@ -68,7 +68,7 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
     called::written_out(stated).map(circle::named)
 }
 
-/// Documentation lines; other attributes are errors.
+/// Parses documentation lines; other attributes are errors.
 fn attributes(c: &mut Cursor) -> Result<Vec<String>, Diagnostic> {
     let mut docs = Vec::new();
     while c.is_punct('#') {
@@ -93,7 +93,7 @@ fn attributes(c: &mut Cursor) -> Result<Vec<String>, Diagnostic> {
     Ok(docs)
 }
 
-/// The text of a string literal of documentation.
+/// The text of a documentation string literal.
 pub(super) fn unquoted(literal: &str) -> String {
     let body = literal.trim_start_matches('r').trim_matches('#');
     let body = body.strip_prefix('"').unwrap_or(body);
@@ -120,7 +120,7 @@ fn visibility(c: &mut Cursor) -> bool {
     c.take_word("pub")
 }
 
-/// Skips to the end of a broken statement.
+/// Skips to the end of a faulty statement.
 fn skip_statement(c: &mut Cursor) {
     let mut depth = 0u32;
     while let Some(token) = c.peek() {
@@ -443,7 +443,7 @@ fn given(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     let (texts, components) = formula::components(c)?.into_iter().unzip();
     let components: Vec<Expression> = components;
     let path = match (components.is_empty(), by_case) {
-        // Its calls are replaced by what it is.
+        // Its calls are replaced by its formula, so that a path is not needed.
         (false, _) => name.clone(),
         (true, Some(place)) => Name {
             text: crate::expr::BY_CASE.to_owned(),

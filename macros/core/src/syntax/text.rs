@@ -1,18 +1,16 @@
-//! The text of a model before it is split into tokens: in strings a backslash denotes itself, so that names in
-//! LaTeX are written as they are (`as "m g \chi"`). The tokens are Rust tokens, in which `\c` is not a valid
-//! escape. Columns stay what they are.
+//! Prepares the text of a model for splitting into tokens. In strings a backslash denotes itself, so that LaTeX names
+//! can be written directly (`as "m g \chi"`). Rust tokens would reject `\c` as an escape. Columns do not change.
 
-/// Stands for a backslash that no escape of Rust begins with: a character of private use.
+/// Replaces a backslash that does not begin a Rust escape: a private-use character.
 pub(super) const BACKSLASH: char = '\u{e000}';
 
-/// The text with such backslashes in strings replaced; comments, raw strings and character literals
-/// are left alone.
+/// Replaces such backslashes in strings; comments, raw strings and character literals are unchanged.
 pub(super) fn with_plain_backslashes(source: &str) -> String {
     read(source, |_, _| {}).0
 }
 
-/// The same, and every character outside of comments and literals is shown to `code`, with its place
-/// in the text that is returned, in bytes. With it whether every comment and string has an end.
+/// The same, and passes every character outside comments and literals to `code`, with its byte offset in the returned
+/// text. Also returns whether every comment and string is terminated.
 pub(super) fn read(source: &str, mut code: impl FnMut(usize, char)) -> (String, bool) {
     let mut out = String::with_capacity(source.len());
     let mut rest = source.chars().peekable();
@@ -61,7 +59,7 @@ pub(super) fn read(source: &str, mut code: impl FnMut(usize, char)) -> (String, 
 
 type Rest<'a> = std::iter::Peekable<std::str::Chars<'a>>;
 
-/// After `r`: hashes, and the text between the quotes. Returns whether the string ends.
+/// Copies a raw string after `r`; returns whether it is terminated.
 fn raw(rest: &mut Rest, out: &mut String) -> bool {
     let mut hashes = 0;
     while rest.next_if_eq(&'#').is_some() {
@@ -87,7 +85,7 @@ fn raw(rest: &mut Rest, out: &mut String) -> bool {
     false
 }
 
-/// After the quote that opens a string; whether there is an end.
+/// Copies a string after its opening quote; returns whether it is terminated.
 fn string(rest: &mut Rest, out: &mut String) -> bool {
     while let Some(d) = rest.next() {
         match (d, rest.peek().copied()) {

@@ -1,5 +1,5 @@
-//! Tokens as a flat list with a cursor. Groups become opening and closing tokens. `2Ω` stays a number joined to a
-//! name, which the parser rejects; depth and length are bounded, so that no input exhausts the stack.
+//! Tokens as a flat list with a cursor; groups become opening and closing tokens. `2Ω` stays a number joined to a
+//! name, which the parser rejects. Depth and length are limited, so that no input exhausts the stack.
 
 use super::ast::Name;
 use super::delimiters::not_closed;
@@ -7,12 +7,12 @@ use super::unknown;
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use proc_macro2::{Delimiter, Spacing, Span, TokenStream, TokenTree};
 
-/// Deepest nesting of parentheses that the parser follows.
+/// The maximum nesting of parentheses.
 const DEEPEST: usize = 100;
-/// Most divisions in a statement: each division contains everything before it, `((a/b)/c)/d`, so that divisions
-/// nest without parentheses.
+/// The maximum number of divisions in a statement. Divisions nest without parentheses, since each contains everything
+/// before it: `((a/b)/c)/d`.
 const MOST_DIVISIONS: usize = 500;
-/// Longest model, in bytes; blanks, comments and documentation are not counted.
+/// The maximum length of a model in bytes, without whitespace, comments and documentation.
 pub(super) const LONGEST: usize = 10_000;
 
 /// Keywords that start a statement.
@@ -47,11 +47,11 @@ pub enum Token {
     Name(String),
     /// A number literal, without suffix.
     Number(String),
-    /// A number and a name with nothing between them, `2h`.
+    /// A number and a name without a space, `2h`.
     Glued(String, String),
     /// A string or other literal.
     Literal(String),
-    /// One character of punctuation; `true` when the next one touches it.
+    /// One punctuation character; `true` if the next character follows directly.
     Punct(char, bool),
     /// An opening delimiter.
     Open(char),
@@ -60,7 +60,7 @@ pub enum Token {
 }
 
 impl Token {
-    /// How the token is named in a message.
+    /// The text of the token in messages.
     pub fn text(&self) -> String {
         match self {
             Token::Name(s) | Token::Number(s) | Token::Literal(s) => s.clone(),
@@ -86,7 +86,7 @@ fn delimiters(d: Delimiter) -> Option<(char, char)> {
     }
 }
 
-/// Where the number of `2e3x` ends.
+/// The length of the number at the start of `2e3x`.
 fn split_number(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |mut i: usize| {
@@ -111,7 +111,7 @@ fn split_number(text: &str) -> usize {
     i
 }
 
-/// How the size of a shape or a group is written.
+/// The notation for the size of a shape or a group.
 pub const SIZES: &str = "sizes stand in angle brackets, `Vec<3>`, `SO<3>`";
 
 impl Cursor {
@@ -184,7 +184,7 @@ impl Cursor {
                             span,
                         ));
                     } else {
-                        // A line of documentation is `#[doc = "..."]`: none of it is counted.
+                        // A documentation line is `#[doc = "..."]`; none of it counts.
                         if matches!(tokens.last(), Some((Token::Punct('=', _), _))) {
                             bytes = bytes.saturating_sub("#[doc=]".len());
                         }
@@ -212,7 +212,7 @@ impl Cursor {
         Ok(Cursor { tokens, at: 0, end })
     }
 
-    /// The token `ahead` places on.
+    /// The token `ahead` positions after the next one.
     pub fn peek_at(&self, ahead: usize) -> Option<&Token> {
         self.tokens.get(self.at + ahead).map(|(t, _)| t)
     }
@@ -222,39 +222,39 @@ impl Cursor {
         self.peek_at(0)
     }
 
-    /// Place of the next token, or of the end.
+    /// The position of the next token, or of the end.
     pub fn place(&self) -> Place {
         Place::token(self.tokens.get(self.at).map_or(self.end, |(_, s)| *s))
     }
 
-    /// Place of the token just read.
+    /// The position of the previous token.
     pub fn last_place(&self) -> Place {
         let before = self.at.checked_sub(1).and_then(|i| self.tokens.get(i));
         Place::token(before.map_or(self.end, |(_, s)| *s))
     }
 
-    /// The token just read.
+    /// The previous token.
     pub fn before(&self) -> Option<&Token> {
         let at = self.at.checked_sub(1)?;
         self.tokens.get(at).map(|(t, _)| t)
     }
 
-    /// Whether the token just read is this punctuation.
+    /// Whether the previous token is this punctuation.
     pub fn follows_punct(&self, c: char) -> bool {
         matches!(self.before(), Some(Token::Punct(p, _)) if *p == c)
     }
 
-    /// Steps over one token.
+    /// Skips one token.
     pub fn advance(&mut self) {
         self.at += 1;
     }
 
-    /// How many tokens are read.
+    /// The number of tokens read.
     pub fn position(&self) -> usize {
         self.at
     }
 
-    /// The position of the brace that closes the block whose contents come next.
+    /// The position of the brace that closes the current block.
     pub fn closing_brace(&self) -> usize {
         let mut depth = 0_u32;
         let mut at = self.at;
@@ -270,17 +270,17 @@ impl Cursor {
         at
     }
 
-    /// Steps over all tokens up to this place, and the one there.
+    /// Skips all tokens up to and including this position.
     pub fn go_past(&mut self, place: usize) {
         self.at = self.at.max(place.saturating_add(1));
     }
 
-    /// Whether the token just read closes a block.
+    /// Whether the previous token closes a block.
     pub fn follows_block(&self) -> bool {
         matches!(self.before(), Some(Token::Close('}')))
     }
 
-    /// Whether all tokens are read.
+    /// Whether all tokens have been read.
     pub fn is_at_end(&self) -> bool {
         self.at >= self.tokens.len()
     }
@@ -305,21 +305,21 @@ impl Cursor {
         matches!(self.peek(), Some(Token::Punct(p, _)) if *p == c)
     }
 
-    /// Reads the word if it comes next.
+    /// Reads the word if it is next.
     pub fn take_word(&mut self, word: &str) -> bool {
         let found = self.is_word(word);
         self.at += usize::from(found);
         found
     }
 
-    /// Reads the punctuation if it comes next.
+    /// Reads the punctuation if it is next.
     pub fn take_punct(&mut self, c: char) -> bool {
         let found = self.is_punct(c);
         self.at += usize::from(found);
         found
     }
 
-    /// Reads the opening or closing delimiter if it comes next.
+    /// Reads the opening or closing delimiter if it is next.
     pub fn take_delimiter(&mut self, c: char) -> bool {
         let found = matches!(self.peek(), Some(Token::Open(p) | Token::Close(p)) if *p == c);
         self.at += usize::from(found);
@@ -335,7 +335,7 @@ impl Cursor {
         Diagnostic::new(self.place(), format!("expected {expected}, {found}"))
     }
 
-    /// Reads this punctuation or fails.
+    /// Reads this punctuation, or returns an error.
     pub fn punct(&mut self, c: char) -> Result<(), Diagnostic> {
         if self.take_punct(c) {
             return Ok(());
@@ -375,7 +375,7 @@ impl Cursor {
         goes_on && KEYWORDS.contains(&word.as_str())
     }
 
-    /// Reads this delimiter or fails.
+    /// Reads this delimiter, or returns an error.
     pub fn delimiter(&mut self, c: char) -> Result<(), Diagnostic> {
         if self.take_delimiter(c) {
             return Ok(());
@@ -385,8 +385,8 @@ impl Cursor {
         Err(told.unwrap_or(error))
     }
 
-    /// Where a statement ends inside of parentheses, or its other side begins: the innermost opening delimiter, which is not
-    /// closed before.
+    /// If a statement ends or its right side begins inside parentheses: the error for the innermost unclosed
+    /// delimiter.
     pub fn unclosed(&self) -> Option<Diagnostic> {
         let equals = self.is_punct('=') && !matches!(self.peek_at(1), Some(Token::Punct('=', _)));
         if !self.is_punct(';') && !equals && !self.starts_statement() {
@@ -413,7 +413,7 @@ impl Cursor {
         Some(not_closed(c, place, Some((&found, self.place()))))
     }
 
-    /// Reads this word or fails.
+    /// Reads this word, or returns an error.
     pub fn word(&mut self, word: &str) -> Result<(), Diagnostic> {
         if self.take_word(word) {
             return Ok(());
@@ -421,7 +421,7 @@ impl Cursor {
         Err(self.unexpected(&format!("`{word}`")))
     }
 
-    /// Reads a name or fails.
+    /// Reads a name, or returns an error.
     pub fn name(&mut self, what: &str) -> Result<Name, Diagnostic> {
         match self.peek() {
             Some(Token::Name(text)) => {
@@ -438,7 +438,7 @@ impl Cursor {
         }
     }
 
-    /// Reads a whole number or fails.
+    /// Reads a whole number, or returns an error.
     pub fn whole_number(&mut self) -> Result<u64, Diagnostic> {
         if let Some(Token::Number(text)) = self.peek()
             && let Ok(n) = text.replace('_', "").parse()

@@ -1,12 +1,12 @@
-//! How a declared name is typeset: `as "m g \chi"` behind its shape. Takes tokens; gives LaTeX that is valid in any
-//! formula, and rejects commands that would act on the rest of a document.
+//! Parses the typesetting of a declared name: `as "m g \chi"` after its shape. The LaTeX must be valid in any
+//! formula; commands that would affect the rest of a document are rejected.
 
 use super::ast::Name;
 use super::token::{Cursor, Token};
 use crate::diagnostic::{Diagnostic, closest};
 use crate::expr::symbol::{GREEK, greek_command};
 
-/// `as "m g \chi"`, one for each of the names: how they are typeset.
+/// `as "m g \chi"`, with one text for each of the names.
 pub(super) fn typeset(c: &mut Cursor, names: &mut [Name]) -> Result<(), Diagnostic> {
     if !c.take_word("as") {
         return Ok(());
@@ -34,10 +34,10 @@ pub(super) fn typeset(c: &mut Cursor, names: &mut [Name]) -> Result<(), Diagnost
     Ok(())
 }
 
-/// Longest typeset name, in characters.
+/// The maximum length of a typeset name, in characters.
 const LONGEST_NAME: usize = 120;
 
-/// The LaTeX in a string literal: a backslash is one, doubled or not, and raw strings are taken as they are.
+/// The LaTeX in a string literal. A single or doubled backslash is one backslash; raw strings are unchanged.
 fn latex(literal: &str) -> Result<String, String> {
     let raw = literal.starts_with('r');
     let inside = literal
@@ -62,25 +62,25 @@ fn latex(literal: &str) -> Result<String, String> {
 
 type Rest<'a> = std::iter::Peekable<std::str::Chars<'a>>;
 
-/// Letters and signs that LaTeX knows besides Greek letters.
+/// LaTeX commands for letters and signs, besides Greek letters.
 const SIGNS: &str = "varepsilon varphi ell hbar partial nabla infty prime dagger ddagger ast star circ bullet \
     cdot cdots ldots dots times pm mp oplus otimes perp parallel top bot imath jmath aleph Re Im wp langle rangle \
     lvert rvert lVert rVert vert Vert mid wedge vee flat sharp natural diamond triangle square odot ominus \
     quad qquad epsilon phi max min";
 
-/// Accents, fonts and the like, which take one argument.
+/// Commands with one argument, such as accents and fonts.
 const OVER: &str = "hat widehat bar overline underline tilde widetilde vec dot ddot check breve acute grave mathring \
     overrightarrow mathrm mathit mathnormal mathbf mathsf mathtt mathcal mathscr mathbb mathfrak boldsymbol bm text \
     textrm textit textbf textsf operatorname sqrt";
 
-/// Fractions, which take two.
+/// Fractions, which take two arguments.
 const FRACTIONS: &str = "frac tfrac dfrac";
 
-/// Deepest nesting of braces.
+/// The maximum nesting of braces.
 const DEEPEST: usize = 8;
 
-/// A row of pieces with scripts, up to its closing brace or the end: anything that may replace a letter in a
-/// formula, and nothing that acts on the rest of the document.
+/// Parses a row of pieces with scripts, up to its closing brace or the end. It accepts what may replace a letter in a
+/// formula, and rejects commands that affect the rest of the document.
 fn row(rest: &mut Rest, depth: usize) -> Result<(), String> {
     let unpaired = || "its braces are not paired, or something is missing at its end".to_owned();
     if depth > DEEPEST {

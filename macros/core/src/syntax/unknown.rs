@@ -1,5 +1,5 @@
-//! Words and signs of Python, of other languages and of papers that this language does not have. Takes the word, or the
-//! cursor before the sign; gives the mistake, with what to write instead.
+//! Words and signs of Python, other languages and papers that the language does not have. The errors suggest what to
+//! write instead.
 
 mod functions;
 mod names;

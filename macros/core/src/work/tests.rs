@@ -1,10 +1,10 @@
-//! How work grows with models: many groups, many quantities, words and powers that multiply out.
-//! Takes families of models of increasing size; asserts counts, which are the same on every machine.
+//! The growth of work with the size of models: many groups, many quantities, and expressions that expand. The tests
+//! assert counts, which do not depend on the machine.
 
 use super::{LARGEST, NODES, PRODUCTS, Work};
 use crate::pipeline::derive_source;
 
-/// Statements of `count` groups and what the kinetic energy of each adds to the Lagrangian.
+/// Statements of `count` groups, and their kinetic energies as terms of the Lagrangian.
 fn bodies(count: usize, group: &str, kinetic: &str) -> (String, String) {
     let numbered = |text: &str, i: usize| text.replace('#', &i.to_string());
     let statements = (0..count).map(|i| {
@@ -22,7 +22,7 @@ fn free(count: usize) -> String {
     format!("model M {{ param J: Sym<3>; {statements} lagrangian = 0{kinetic}; }}")
 }
 
-/// Each body turns the next one: coupled by the rotations between neighbours.
+/// A chain of bodies, coupled by the relative rotations of neighbours.
 fn chain(count: usize) -> String {
     let (statements, kinetic) = bodies(count, "SO<3>", " - tr(J*W#)/h");
     let neighbours = (1..count).map(|j| (j - 1, j));
@@ -42,7 +42,7 @@ fn chain(count: usize) -> String {
     )
 }
 
-/// Bodies in one field: each keeps its momentum about the same axis.
+/// Bodies in one field; each conserves its momentum about the same axis.
 fn tops(count: usize) -> String {
     let (statements, kinetic) = bodies(count, "SO<3>", " - tr(J*W#)/h - h*dot(z, G#*g)");
     format!(
@@ -75,8 +75,8 @@ fn refusal(model: &str) -> String {
     }
 }
 
-/// What twice as many take is at most this many times as much: less than the cube, eight. Every
-/// group is looked at together with every other, and the rows of independent momenta grow with both.
+/// Doubling the model multiplies the work by at most this factor, which is less than the 8 of cubic growth. Every
+/// group is compared with every other, and the rows of independent momenta grow with both.
 const GROWTH: u64 = 6;
 
 #[test]
@@ -119,7 +119,7 @@ fn the_largest_models_of_many_groups_stay_far_below_the_limits() {
     }
 }
 
-/// A potential of the advected vector of a top.
+/// A model of a top with a potential of its advected vector.
 fn potential(statements: &str, value: &str) -> String {
     format!(
         "model M {{ param J: Sym<3>; param g: Vec<3>; group G: SO<3> velocity W; \
@@ -162,7 +162,7 @@ fn what_multiplies_out_beyond_the_limits_is_refused() {
 
 #[test]
 fn what_is_too_large_is_said_with_the_number_and_the_limit() {
-    // The number that was found stands before the limit, and is beyond it.
+    // The message states the requested number before the limit, and it exceeds the limit.
     let beyond = |message: &str, limit: u64| {
         let numbers: Vec<u64> = message
             .split(|c: char| !c.is_ascii_digit())
@@ -178,7 +178,7 @@ fn what_is_too_large_is_said_with_the_number_and_the_limit() {
     for model in [sum(160), sum(300)] {
         let message = refusal(&model);
         assert!(beyond(&message, 1_000), "{message}");
-        // No `let` and no second message of a Lagrangian that is missing.
+        // The message does not suggest `let`, and there is no second message about a missing Lagrangian.
         assert!(
             !message.contains("`let`") && !message.contains("no Lagrangian"),
             "{message}"
@@ -203,10 +203,10 @@ fn longer_texts_are_refused_with_the_limit() {
     let terms = |count: usize| potential("", &vec!["tr(S)"; count].join("+"));
     let message = refusal(&terms(1_700));
     assert!(message.contains("more than 10000 bytes"), "{message}");
-    // A megabyte of it is not even taken apart into tokens.
+    // A megabyte of text is rejected before it is split into tokens.
     let message = refusal(&terms(300_000));
     assert!(message.contains("more than 250000"), "{message}");
-    // What is no part of the model does not count.
+    // Comments and documentation do not count.
     let remark = format!("// {}\n", "x".repeat(20_000));
     let documentation = "/// a line\n".repeat(2_000);
     assert!(derive_source(&(remark + &documentation + &free(1))).is_ok());

@@ -1,4 +1,4 @@
-//! Identities of matrices and of numbers made of them: transposes, traces, inverses, quotients.
+//! Identities of matrices and of scalars built from them: transposes, traces, inverses, quotients.
 
 use super::Desk;
 use crate::conditions::{Value, put};
@@ -10,8 +10,8 @@ use clebsch_core::expr::symbol::Role;
 use clebsch_core::expr::*;
 use egg::{PatternAst, RecExpr, Var};
 
-/// A term written with `?name` for letters: expressions cannot hold a transposed product, since
-/// their constructors move transposes to the leaves.
+/// A term with `?name` for letters. An expression cannot represent a transposed product, since its constructors move
+/// transposes to the leaves.
 fn term(text: &str, letters: &[(&str, &Expr)]) -> RecExpr<Term> {
     let pattern: PatternAst<Term> = text.parse().unwrap();
     let values: Vec<(Var, Value)> = letters

@@ -1,11 +1,11 @@
-//! Identities of discrete mechanics: constraint-preserving variations, momenta, transport.
+//! Identities of discrete mechanics: constraint-preserving variations, momenta, advection.
 
 use super::{Desk, N};
 use clebsch_core::expr::shape::{Shape, Structure};
 use clebsch_core::expr::symbol::Role;
 use clebsch_core::expr::*;
 
-/// The letter of an expression that is one.
+/// The letter, for an expression that is a letter.
 fn at(e: &Expr) -> Letter {
     match e.node() {
         Node::Letter(at) => *at,
@@ -54,7 +54,7 @@ fn variations_keep_the_reconstruction() {
         product([l0.clone(), o0.clone(), x.clone()]),
         mul(l.clone(), x.clone()),
     );
-    // Written alike they need no proof: a sum drops a term beside its opposite.
+    // In this form no proof is needed: a sum drops a term and its negative.
     assert!(on_shell(&sub(moved.clone(), varied.clone())).is_zero());
     assert!(!on_shell(&sub(moved, neg(varied))).is_zero());
     let left = trace(product([pt.clone(), l0.clone(), o0.clone(), x.clone()]));
@@ -81,7 +81,7 @@ fn variations_carry_advected_quantities() {
         &dot(v.clone(), written),
         &neg(dot(v.clone(), short)),
     );
-    // next(Γ) = Ω^T Γ with δΩ = -ξ Ω, δΓ = -ξ Γ: the next value does not move.
+    // next(Γ) = Ω^T Γ with δΩ = -ξ Ω, δΓ = -ξ Γ: the next value is not varied.
     let change = directional(
         &d.symbols,
         &mul(ot, g.clone()),
@@ -162,7 +162,7 @@ fn torque_of_the_heavy_top() {
         &work,
         &dot(x.clone(), torque.clone()),
     );
-    // The whole equation of one node, paired with a variation x.
+    // The full equation at one node, paired with a variation x.
     let xi = hat(x.clone());
     let incoming = neg(quotient(
         trace(product([j.clone(), o0.clone(), xi.clone()])),
@@ -211,7 +211,7 @@ fn two_coupled_bodies() {
         &next,
         &product([d.t(&o1), r.clone(), o2.clone()]),
     );
-    // The coupling tr((Id - Ω1)^T R (Id - Ω2) A) moves with Ω1 by -ξ Ω1 and with R by -ξ R.
+    // The coupling tr((Id - Ω1)^T R (Id - Ω2) A), with δΩ1 = -ξ Ω1 and δR = -ξ R.
     let one = identity(N);
     let rr = d.rotation("R");
     let coupling = trace(product([
@@ -306,7 +306,7 @@ fn ellipsoid_of_any_dimension() {
         square("ξ", Structure::General),
         square("P", Structure::Symmetric),
     );
-    // next(C) = G^T C G with δG = -ξ G and δC = ξ^T C + C ξ: the next value does not move.
+    // next(C) = G^T C G with δG = -ξ G and δC = ξ^T C + C ξ: the next value is not varied.
     let next = product([d.t(&g), c.clone(), g.clone()]);
     let moved = add(mul(d.t(&x), c.clone()), mul(c.clone(), x.clone()));
     let change =

@@ -1,5 +1,5 @@
-//! Tests of the prover: the identities of discrete mechanics, statements that must stay
-//! unproved, and every rule of the table against numbers.
+//! Tests of the prover: identities of discrete mechanics, statements that must stay unproved, and a numerical check
+//! of every rule in the table.
 
 mod matrices;
 mod mechanics;
@@ -13,10 +13,10 @@ use clebsch_core::expr::shape::{Dim, Shape, Structure};
 use clebsch_core::expr::symbol::{Role, Symbols};
 use clebsch_core::expr::{Expr, here, transpose};
 
-/// Dimension of all fixed-size letters of the tests.
+/// The dimension of all fixed-size letters in the tests.
 const N: Dim = Dim::Fixed(3);
 
-/// A table of symbols under construction.
+/// A symbol table under construction.
 #[derive(Default)]
 struct Desk {
     symbols: Symbols,
@@ -69,7 +69,7 @@ impl Desk {
         prove(&self.symbols, &statement, &Limits::default())
     }
 
-    /// Asserts a proof that names a rule in every line after the first.
+    /// Asserts that a proof is found and that every line after the first names a rule.
     #[track_caller]
     fn proves(&self, name: &str, left: &Expr, right: &Expr) -> Vec<String> {
         match self.verdict(name, left, right) {
@@ -91,7 +91,7 @@ impl Desk {
         }
     }
 
-    /// Asserts that no proof is found, within the limits, and returns why.
+    /// Asserts that no proof is found within the limits, and returns the reason.
     #[track_caller]
     fn refuses(&self, name: &str, left: &Expr, right: &Expr) -> String {
         match self.verdict(name, left, right) {
@@ -106,7 +106,7 @@ impl Desk {
                 nodes,
                 iterations,
             } => {
-                // A rule that has begun may finish its matches.
+                // A rule that has started may finish its matches.
                 assert!(
                     nodes <= 2 * Limits::default().nodes,
                     "{name}: {nodes} nodes"

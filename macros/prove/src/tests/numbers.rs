@@ -1,12 +1,12 @@
-//! Terms as numbers: evaluates patterns on matrices of doubles, by other formulas than the rules
-//! use. Takes a pattern and values of its variables, gives a matrix, or nothing where undefined.
+//! Evaluates patterns on matrices of doubles, with formulas independent of the rules. The result is a matrix, or
+//! `None` if the pattern is undefined for these values.
 
 use crate::language::{Leaf, Term};
 use clebsch_core::expr::shape::{Dim, Shape};
 use egg::{ENodeOrVar, Id, PatternAst, Var};
 use std::collections::BTreeMap;
 
-/// A matrix, by rows.
+/// A matrix, stored by rows.
 #[derive(Clone, Debug)]
 pub struct Matrix {
     pub rows: usize,
@@ -14,7 +14,7 @@ pub struct Matrix {
     pub data: Vec<f64>,
 }
 
-/// A sequence of numbers between -1 and 1, the same in every run (a linear congruence).
+/// A sequence of pseudo-random numbers between -1 and 1, the same in every run (linear congruential generator).
 pub struct Sequence(pub u64);
 
 impl Sequence {
@@ -30,7 +30,7 @@ impl Sequence {
         Matrix::from(rows, cols, |_, _| self.next())
     }
 
-    /// exp of a random skew matrix, as the Cayley transform of its half.
+    /// A rotation: the Cayley transform of a random skew matrix.
     pub fn rotation(&mut self) -> Matrix {
         let a = self.matrix(3, 3);
         let skew = a.plus(&a.transposed().scaled(-1.0));
@@ -89,7 +89,7 @@ impl Matrix {
         (0..self.rows).map(|i| self.at(i, i)).sum()
     }
 
-    /// Without the row i and the column j.
+    /// The matrix without row i and column j.
     fn minor(&self, i: usize, j: usize) -> Matrix {
         let n = self.rows - 1;
         Matrix::from(n, n, |r, c| {
@@ -97,7 +97,7 @@ impl Matrix {
         })
     }
 
-    /// Expansion along the first row.
+    /// The determinant, by expansion along the first row.
     pub fn det(&self) -> f64 {
         if self.rows == 0 {
             return 1.0;
@@ -108,7 +108,7 @@ impl Matrix {
             .sum()
     }
 
-    /// Cramer's rule.
+    /// The inverse, by Cramer's rule.
     pub fn inverse(&self) -> Matrix {
         let det = self.det();
         Matrix::from(self.rows, self.rows, |i, j| {
@@ -127,7 +127,7 @@ impl Matrix {
         }
     }
 
-    /// Columns are the products with the unit vectors.
+    /// The skew matrix; its columns are the products with the unit vectors.
     pub fn hat(&self) -> Matrix {
         let e = Matrix::identity(3);
         let column = |j: usize| self.cross(&Matrix::from(3, 1, |i, _| e.at(i, j)));
@@ -144,7 +144,7 @@ impl Matrix {
     }
 }
 
-/// The value of the sub-pattern at `id`; `None` where shapes do not fit.
+/// The value of the sub-pattern at `id`; `None` if shapes do not match.
 pub fn value(pattern: &PatternAst<Term>, id: Id, known: &BTreeMap<Var, Matrix>) -> Option<Matrix> {
     let v = |id: &Id| value(pattern, *id, known);
     let node = match &pattern[id] {

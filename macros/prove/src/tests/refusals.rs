@@ -1,4 +1,4 @@
-//! What is not searched, and how that is answered.
+//! Statements that are not searched, and the reasons that are reported.
 
 use super::Desk;
 use crate::{Limits, Statement, Verdict, prove};
@@ -20,7 +20,7 @@ fn reordered_sums_up_to_the_limit() {
         &some(&[0, 1, 2, 3, 4, 5, 6, 7]),
         &some(&[8, 6, 5, 4, 3, 2, 1, 0]),
     );
-    // Nine that are all shared leave nothing to search.
+    // Nine shared summands leave nothing to search.
     let nine = some(&[0, 1, 2, 3, 4, 5, 6, 7, 8]);
     let reversed = some(&[8, 7, 6, 5, 4, 3, 2, 1, 0]);
     match d.verdict("nine, reversed", &nine, &reversed) {

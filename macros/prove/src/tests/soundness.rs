@@ -1,6 +1,5 @@
-//! Every rule of the table against numbers: both sides are evaluated on random matrices of every
-//! combination of shapes and numbers that the rule admits. And explanations that were tampered
-//! with are refused.
+//! Checks every rule of the table numerically, on random matrices of every combination of shapes and numbers that the
+//! rule admits. Tampered explanations must be rejected.
 
 use super::numbers::{Matrix, Sequence, value};
 use super::{Desk, Limits};
@@ -14,7 +13,7 @@ use clebsch_core::expr::{mul, neg, sub};
 use egg::{ENodeOrVar, PatternAst, Symbol, Var};
 use std::collections::BTreeMap;
 
-/// What a variable may be.
+/// A candidate for a variable.
 #[derive(Clone)]
 struct Candidate {
     value: Matrix,
@@ -81,7 +80,7 @@ fn candidates(given: &[Given<Var>], v: Var, random: &mut Sequence) -> Vec<Candid
         .collect()
 }
 
-/// How many choices of shapes and numbers the rule was tried on, or one where it fails.
+/// The number of combinations of shapes and numbers that were tried, or an error if the rule fails.
 fn try_row((name, left, right, given, _): &Row, random: &mut Sequence) -> Result<usize, String> {
     let left: PatternAst<Term> = left.parse().unwrap();
     let right: PatternAst<Term> = right.parse().unwrap();
@@ -137,9 +136,8 @@ fn try_row((name, left, right, given, _): &Row, random: &mut Sequence) -> Result
             .chain(&r.data)
             .fold(1.0f64, |m, x| m.max(x.abs()));
         for (x, y) in l.data.iter().zip(&r.data) {
-            // A handful of products of 3 x 3 matrices: some hundred roundings; an inverse of a
-            // random matrix may lose a few digits more.
-            // Not `>`: a right-hand side that is not a number fails, too.
+            // The products of a few 3 x 3 matrices make some hundred roundings; the inverse of a random matrix may
+            // lose a few more digits. The comparison is not `>`, so that a right-hand side of NaN also fails.
             let close = (x - y).abs() <= 1e-10 * size;
             if !close {
                 return Err(format!("{name}: {l:?} is not {r:?}"));
@@ -217,7 +215,7 @@ fn tampered_explanations_are_refused() {
     assert!(check::check(&renamed, &l, &r, &rules).is_err());
 }
 
-/// Claims another rule for the step.
+/// Claims another rule for each step.
 fn rename(term: &mut egg::FlatTerm<Term>) {
     let other = Some(Symbol::from("transpose twice"));
     term.forward_rule = term.forward_rule.and(other);
@@ -232,7 +230,7 @@ fn conditions_are_checked_on_the_terms() {
     let (l, _) = translate::translate(&mul(a.clone(), b.clone())).unwrap();
     let (r, _) = translate::translate(&mul(b, a)).unwrap();
     let mut rules = rulebook::rules(&d.symbols, &leaves(&l, &r)).unwrap();
-    // A rule that holds for diagonal matrices only, smuggled in with a condition that fails.
+    // A rule that holds for diagonal matrices only, inserted with a condition that fails.
     let mut commute = rules[0].clone();
     commute.name = "commute".into();
     commute.left = "(* ?a ?b)".parse().unwrap();

@@ -1,5 +1,5 @@
-//! Components of vectors and matrices, and matrices with a given diagonal. Takes what was written,
-//! indices counted from 1; gives expressions in unit vectors, whose axes are counted from 0.
+//! Components of vectors and matrices, and matrices with a given diagonal. Indices in the text count from 1; the axes
+//! of the resulting unit vectors count from 0.
 
 use super::{Elaborated, Elaborator, fail};
 use crate::check::messages::shape_text;
@@ -43,7 +43,7 @@ impl Elaborator<'_> {
         }
     }
 
-    /// The axis of an index, if there is one in every size that is allowed.
+    /// The axis of an index, if it exists for every allowed size.
     fn axis(&self, index: u64, dim: Dim, place: Place) -> Result<u8, Box<Diagnostic>> {
         let symbols = &self.names.symbols;
         let (least, _) = symbols.sizes(dim);
@@ -63,7 +63,7 @@ impl Elaborator<'_> {
         )
     }
 
-    /// `diag` of a vector is the matrix with that diagonal, of a matrix its diagonal part.
+    /// `diag` of a vector is the matrix with that diagonal; `diag` of a matrix is its diagonal part.
     pub(super) fn diagonal(&self, a: &Expression, expected: Option<Shape>) -> Elaborated {
         let context = expected.filter(|_| self.hint(a).is_none());
         let value = self.elaborate(a, context)?;

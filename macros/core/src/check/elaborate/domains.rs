@@ -1,6 +1,5 @@
-//! Domains of functions: an argument for which a function is undefined everywhere is an error on its tokens, and so
-//! is a number beyond the largest double. An argument that may be inside the domain is checked by `new` and by the
-//! step.
+//! Domains of functions. A function that is undefined for every value of its argument is an error, with the tokens
+//! where it occurs; so is a number beyond the largest double. Other arguments are checked by `new` and by the step.
 
 use super::{Elaborated, Elaborator, fail};
 use crate::algebra::Rational;
@@ -20,7 +19,7 @@ fn never_positive(e: &Expr, vanishes: bool) -> Option<&'static str> {
 }
 
 impl Elaborator<'_> {
-    /// A power of a number.
+    /// A power of a scalar or square matrix.
     pub(super) fn power(&self, base: Expr, q: Rational, at: Place, place: Place) -> Elaborated {
         if q.is_negative() && self.vanishes(&base) {
             let message = "a negative power of what is identically zero";
@@ -38,7 +37,7 @@ impl Elaborator<'_> {
         self.finite(expr::power(base, q), place)
     }
 
-    /// A function of a number.
+    /// A function of a scalar.
     pub(super) fn function(&self, f: Function, a: Expr, at: Place, place: Place) -> Elaborated {
         if f == Function::Log
             && let Some(always) = never_positive(&a, self.vanishes(&a))
@@ -52,7 +51,7 @@ impl Elaborator<'_> {
         self.finite(expr::call(f, a), place)
     }
 
-    /// The expression, unless it is a number that no double holds.
+    /// The expression, unless it is a number that overflows a double.
     pub(super) fn finite(&self, e: Expr, place: Place) -> Elaborated {
         if range(&e).overflows() {
             let message = "this number is beyond the largest, 1.8e308";

@@ -1,5 +1,4 @@
-//! The functions of the language, and names that look like functions but are not. Takes a call; gives the
-//! expression.
+//! Elaborates calls of the functions of the language, and reports names that look like functions but are not.
 
 use super::{Elaborated, Elaborator, fail};
 use crate::algebra::Rational;
@@ -12,7 +11,7 @@ use crate::groups::{self, Group};
 use crate::syntax::ast::{Expression, Kind, Name};
 use crate::syntax::{AVAILABLE, FUNCTIONS, HIDEABLE, unknown};
 
-/// Whether an expression is an element of the group of this structure whatever its letters are.
+/// Whether an expression is an element of the group of this structure for all values of its letters.
 fn is_element(symbols: &Symbols, e: &Expr, structure: Structure) -> bool {
     let go = |x: &Expr| is_element(symbols, x, structure);
     match e.node() {
@@ -26,7 +25,7 @@ fn is_element(symbols: &Symbols, e: &Expr, structure: Structure) -> bool {
 }
 
 impl Elaborator<'_> {
-    /// Whether the name means a quantity of the model.
+    /// Whether the name denotes a quantity of the model.
     fn is_quantity(&self, n: &str) -> bool {
         self.names.symbols.find(n).is_some()
             || self.names.was_declared(n)
@@ -79,7 +78,7 @@ impl Elaborator<'_> {
         Some(d.help(format!("functions: {AVAILABLE}")))
     }
 
-    /// How the kinetic energy of a body is stated, where an expression is the velocity of one.
+    /// Suggests the kinetic energy of a body, if the expression is the velocity of one.
     fn kinetic_of_body(&self, e: &Expr) -> Option<String> {
         let symbols = &self.names.symbols;
         let Node::Letter(at) = e.node() else {

@@ -1,5 +1,4 @@
-//! Calls of functions that a model is given by name: the number, shapes and structures of their arguments.
-//! Takes a call; gives the expression.
+//! Elaborates calls of user-defined functions, and checks the number, shapes and structures of their arguments.
 
 use super::{Elaborated, Elaborator, fail};
 use crate::algebra::Algebra;
@@ -50,7 +49,7 @@ impl Elaborator<'_> {
         Ok(expr::given(symbols, function, arguments))
     }
 
-    /// Whether a value has a structure whatever its letters are.
+    /// Whether a value has a structure for all values of its letters.
     fn obeys(&self, value: &Expr, structure: Structure) -> bool {
         let symbols = &self.names.symbols;
         let transposed = expr::transpose(symbols, value.clone());

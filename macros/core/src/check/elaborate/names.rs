@@ -1,5 +1,5 @@
-//! Names: declared or bound names, `Id`, and the unit vectors in the size that the context requires. Takes a word
-//! and its place; gives an expression, or the probable meaning of the word.
+//! Elaborates names: declared or bound names, `Id`, and unit vectors of the size that the context requires. For an
+//! unknown name, the error suggests its probable meaning.
 
 use super::{Elaborated, Elaborator, UNITS, fail};
 use crate::check::messages::shape_text;
@@ -10,7 +10,7 @@ use crate::expr::spelling::skeleton;
 use crate::expr::symbol::{Role, Symbols};
 use crate::syntax::{FUNCTIONS, unknown};
 
-/// The quantity whose value at the next node a name is: `q_next`, `q_new`, `next_q`.
+/// The quantity whose value at the next node a name probably means: `q_next`, `q_new`, `next_q`.
 fn next_of<'n>(name: &'n str, symbols: &Symbols) -> Option<&'n str> {
     let stems = [
         name.strip_suffix("_next"),
@@ -25,7 +25,8 @@ fn next_of<'n>(name: &'n str, symbols: &Symbols) -> Option<&'n str> {
     stems.into_iter().flatten().find(moves)
 }
 
-/// The number at an end of the step that a name is: `q0`, `q_1`; and whether it is that at the end.
+/// The scalar at an end of the step that a name probably means, `q0` or `q_1`, and whether it is at the end of the
+/// step.
 fn end_of<'n>(name: &'n str, symbols: &Symbols) -> Option<(&'n str, bool)> {
     let end = name.ends_with('1');
     let stem = name.strip_suffix(['0', '1'])?;
@@ -50,7 +51,7 @@ fn component_of(name: &str, symbols: &Symbols) -> Option<String> {
     (vector.is_vector() && number > 0).then(|| format!("{stem}[{number}]"))
 }
 
-/// The quantity whose rate a name is: `dX`, `X_dot`, `Xdot`.
+/// The quantity whose rate a name probably means: `dX`, `X_dot`, `Xdot`.
 fn rate_of<'n>(name: &'n str, symbols: &Symbols) -> Option<&'n str> {
     let moves = |stem: &str| {
         let role = symbols.find(stem).map(|id| symbols.get(id).role);
@@ -69,7 +70,7 @@ fn rate_of<'n>(name: &'n str, symbols: &Symbols) -> Option<&'n str> {
     stems.into_iter().flatten().find(|stem| moves(stem))
 }
 
-/// The dot above a letter that Unicode writes behind it.
+/// The combining dot above the preceding letter.
 const DOT: char = '\u{307}';
 
 /// Letters with a dot above them.
@@ -83,7 +84,7 @@ const DOTTED: [(&str, &str); 6] = [
 ];
 
 impl Elaborator<'_> {
-    /// The unit vector along an axis, if there is one in every size that is allowed.
+    /// The unit vector along an axis, if the axis exists for every allowed size.
     fn unit(&self, size: Dim, axis: usize, place: Place) -> Elaborated {
         let symbols = &self.names.symbols;
         let (least, _) = symbols.sizes(size);
@@ -186,7 +187,7 @@ impl Elaborator<'_> {
                 "the time step is `{h}` here; `time k step {n};` at the top calls it `{n}`"
             ));
         } else if unknown::TIMES.contains(&n) {
-            // The files of a run have a column `time` of their own.
+            // The files of a run already have a column `time`.
             let clock = if n == "time" { "clock" } else { n };
             d = Diagnostic::new(
                 place,

@@ -1,5 +1,4 @@
-//! Sums, products and inverses: shapes must agree, and the error names both sides. Takes the parts of an operation;
-//! gives the expression.
+//! Elaborates sums, products and inverses. Shapes must agree; the error names both sides.
 
 use super::{Elaborated, Elaborator, fail};
 use crate::algebra::Algebra;
@@ -9,7 +8,7 @@ use crate::expr::shape::{Dim, Shape};
 use crate::expr::{self, Expr};
 use crate::syntax::ast::{Expression, Kind};
 
-/// Longest product: its derivatives grow with the square of its length.
+/// The maximum length of a product: its derivatives grow with the square of its length.
 const LONGEST_PRODUCT: usize = 40;
 
 impl Elaborator<'_> {
@@ -53,7 +52,7 @@ impl Elaborator<'_> {
                 .iter()
                 .find_map(|g| self.hint(g).filter(|s| !s.is_scalar()));
             let mut context = before.or(after.map(|s| Shape::square(s.rows))).or(expected);
-            // The row behind a column has the columns of the whole.
+            // If a column is followed by a row, the row has as many columns as the whole product.
             if context == Some(Shape::SCALAR) {
                 context = expected.map(|s| Shape {
                     rows: Dim::Fixed(1),
@@ -119,7 +118,7 @@ impl Elaborator<'_> {
         Ok(expr::inverse(&self.names.symbols, a))
     }
 
-    /// Whether an expression is zero whatever its letters are.
+    /// Whether an expression is zero for all values of its letters.
     pub(super) fn vanishes(&self, e: &Expr) -> bool {
         Algebra::new(&self.names.symbols).is_zero(e)
     }

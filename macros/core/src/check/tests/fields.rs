@@ -1,10 +1,10 @@
-//! What is said of fields: no constraint, increments that add up, names of functions, shapes of one column;
-//! and constraints that hold increments are read as they are meant.
+//! Errors about fields: constraints, sums of increments, names of functions, shapes of one column. Valid constraints
+//! that contain increments are read as intended.
 
 use crate::pipeline::derive_source;
 use crate::print::{Format, Style, expression};
 
-/// The messages of a model that is refused, each with its help.
+/// The errors of a rejected model, each with its help.
 fn refused(body: &str) -> String {
     let text = format!("model M {{ {body} }}");
     match derive_source(&text) {
@@ -27,7 +27,7 @@ fn increments_in_constraints_are_seen() {
         let d = derive_source(&format!("model M {{ {body} }}"))
             .unwrap_or_else(|e| panic!("{body}\n{e}"));
         let source = crate::document::source(&d);
-        // What is stored derives the same model.
+        // The stored text derives the same model.
         let again = derive_source(&source).unwrap_or_else(|e| panic!("{source}\n{e}"));
         assert_eq!(crate::document::source(&again), source);
         let a = &d.spec.advected[0];
@@ -45,7 +45,7 @@ fn increments_in_constraints_are_seen() {
             "{constraint}: {found}"
         );
     }
-    // A definition that goes along, functions of increments, and the end of a group's element.
+    // A definition with a constraint, functions of increments, and the element of a group at the end of the step.
     update(
         &carried("constraint next(Y) = Y + next(X) - X;")
             .replace("advected Y: Vec<3>", "advected Y: Vec<3> = X - a"),
@@ -106,7 +106,7 @@ fn what_a_field_does_not_carry_is_told_so() {
             "`next(Y) = Y + (next(X) - X)`",
         ],
     );
-    // Beside a group that is declared after it, the group carries.
+    // With a group declared after the field, the group advects.
     let both = "param m: Real; param J: Sym<3>; field X: Vec<3>; group Q: SO<3> velocity W; advected Y: Vec<3>; \
         constraint next(Q) = Q*W; let d = next(X) - X; lagrangian = -tr(J*W)/h + m*dot(d, d)/(2*h) - h*dot(Y, Y);";
     says(both, &["`constraint next(Y) = W^T * Y;`"]);
@@ -139,7 +139,7 @@ fn an_equation_without_increments_is_told_so() {
         "{message}"
     );
     assert!(message.contains("`m*(next(X) - X)^2/(2*h)`"), "{message}");
-    // What is offered derives.
+    // The suggested model derives.
     let kinetic = "m*(next(X) - X)^2/(2*h) + m*(next(Y) - Y)^2/(2*h)";
     let mended = format!(
         "model M {{ param m: Real; field X, Y: Real; lagrangian = {kinetic} + m*(X + next(X))/2*(next(Y) - Y); }}"
@@ -196,7 +196,7 @@ fn names_of_functions_are_refused_where_they_are_declared() {
                 message.contains(&format!("for example `{name}1`")),
                 "{message}"
             );
-            // What is offered derives, and a parameter may bear the name.
+            // With another name the model derives, and a parameter may have this name.
             let other = body.replace(name, &format!("{name}1"));
             assert!(refused(&other).starts_with("derives"), "{other}");
             let parameter =
@@ -206,7 +206,7 @@ fn names_of_functions_are_refused_where_they_are_declared() {
     }
 }
 
-/// Files have one column of a name: `time` is theirs, and `x_1` is a component of a vector `x`.
+/// Column names in files are unique: `time` is reserved, and `x_1` is a component of a vector `x`.
 #[test]
 fn names_of_columns_are_refused() {
     for (declared, message, help) in [
@@ -262,7 +262,8 @@ fn names_of_columns_are_refused() {
     );
 }
 
-/// What nothing moves is multiplied by any number made of parameters and the step, of several terms too.
+/// A quantity without motion may be multiplied by any scalar function of parameters and the step size, including
+/// sums.
 #[test]
 fn a_number_goes_on_by_a_sum_of_parameters_and_the_step() {
     let with = |constraint: &str| {
@@ -282,7 +283,7 @@ fn a_number_goes_on_by_a_sum_of_parameters_and_the_step() {
     assert!(told.contains("`next(t) = c*t`"), "{told}");
 }
 
-/// What is offered beside an exponent that is too large derives.
+/// The suggestion for an exponent that is too large derives.
 #[test]
 fn large_powers_are_offered_what_derives() {
     let with = |potential: &str| {
@@ -299,7 +300,7 @@ fn large_powers_are_offered_what_derives() {
     }
 }
 
-/// Groups of one element, and those that are numbers, are no `Real`.
+/// Groups with one element, and groups of scalars, are not `Real`.
 #[test]
 fn groups_of_size_one_say_what_there_is_instead() {
     for (group, said) in [

@@ -1,5 +1,5 @@
-//! Functions that are written out, or that a case gives: a call is the expression at its argument, and what is no expression
-//! in it is told where it stands.
+//! Functions defined by a formula, in the model or by a case. A call equals the formula at its argument, and a syntax
+//! error in the formula is reported at its position.
 
 use crate::algebra::Algebra;
 use crate::pipeline::{derive_source, parse_source};
@@ -12,7 +12,7 @@ fn text(given: &str, term: &str) -> String {
     )
 }
 
-/// Asserts that two models are one.
+/// Asserts that two models are the same.
 fn same(given: &str, term: &str, by_hand: &str) {
     let of = |text: &str| derive_source(text).unwrap_or_else(|e| panic!("{text}\n{e}"));
     let (a, b) = (of(&text(given, term)), of(&text("", by_hand)));
@@ -51,20 +51,20 @@ fn a_call_is_the_expression_at_its_argument() {
         "f(u)*f(g*u)",
         "tanh(u)*tanh(g*u)",
     );
-    // A component hides a parameter of its name.
+    // A component hides a parameter of the same name.
     same("given f(Real): Real = \"A*x\";", "f(u) + u*x - u*x", "A*u");
     same(
         "given f(Real): Real = \"cos(2*pi*x)^2*sin(pi*x)\";",
         "f(u)",
         "cos(2*pi*u)^2*sin(pi*u)",
     );
-    // Made of others, in any order.
+    // Functions that use other functions, in any order.
     same(
         "given f(Real): Real = \"w(x)^2 + w(2*x)\"; given w(Real): Real = \"A*x\";",
         "f(u)",
         "A^2*u^2 + 2*A*u",
     );
-    // As a case gave it.
+    // Given by a case.
     same("given f(Real): Real = case \"A*x\";", "f(u)", "A*u");
 }
 

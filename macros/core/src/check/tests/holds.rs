@@ -1,4 +1,4 @@
-//! What is said of held constraints and of functions given by name, and that their statements are read back.
+//! Errors about constraints and user-defined functions, and the round trip of their statements through model text.
 
 use crate::pipeline::derive_source;
 
@@ -33,7 +33,7 @@ fn constraints_are_read_back_and_hold_at_both_levels() {
     ] {
         assert!(names.contains(&wanted), "{names:?}");
     }
-    // Momenta that a reaction changes are no invariants.
+    // Momenta that a constraint force changes are not invariants.
     let free = derive_source(&format!("model M {{ {POINT} }}")).unwrap_or_else(|e| panic!("{e}"));
     assert!(
         free.invariants.len() > 1,
@@ -76,7 +76,7 @@ fn constraints_that_cannot_be_held_are_told_on_their_tokens() {
     let turning = "param J: Sym<3>; group R: SO<3> velocity W; constraint next(R) = R*W; lagrangian = -tr(J*W)/h;";
     let told = refused(&format!("{turning} hold λ: tr(W) = 3;"));
     assert!(told.contains("`W` is a velocity"), "{told}");
-    // Vectors of one length are equal in two ways, where they are.
+    // The error for an equation between rotated vectors of equal length.
     let two = format!(
         "param a, b: Vec<3>; group S: SO<3> velocity V; constraint next(S) = S*V; {turning}"
     );
@@ -147,7 +147,7 @@ fn fields_of_symmetric_and_skew_matrices_are_their_entries() {
             algebra.equal(&a.spec.lagrangian, &b.spec.lagrangian),
             "{shape}"
         );
-        // It is kept by its entries, each once.
+        // The stored text uses the independent entries, each once.
         let source = crate::document::source(&a);
         assert!(source.contains(&format!("field S: {kept};")), "{source}");
     };
@@ -170,7 +170,7 @@ fn fields_of_symmetric_and_skew_matrices_are_their_entries() {
         ["Skew<2>", "-tr((next(S) - S)^2)/(4*h) - h*k*S[2, 1]^2"],
         ["Real", "(next(S) - S)^2/(2*h) - h*k*S^2"],
     );
-    // Its statement, as it is kept, derives the same.
+    // The stored text derives the same model.
     let d = of("Sym<3>", "tr((next(S) - S)^2)/(2*h) - h*k*tr(S)^2");
     let source = crate::document::source(&d);
     derive_source(&source).unwrap_or_else(|e| panic!("{source}\n{e}"));

@@ -1,4 +1,4 @@
-//! What is written in the way of papers or of other languages, and what is said of it.
+//! Notation of papers or of other languages, and the errors for it.
 
 mod elsewhere;
 
@@ -52,7 +52,7 @@ fn notation_of_papers_is_told_with_what_to_write() {
 
 #[test]
 fn unit_vectors_have_the_size_of_what_is_beside_them() {
-    // The first configuration is a number, which has none.
+    // The first configuration is a scalar field, which does not have unit vectors.
     let found = said(
         "group U: SU<2> velocity V; constraint next(U) = U*V;",
         "dot(rot(U)*E1 - rot(U)*E2, rot(U)*E1 - x) + 2*dot(im(V), im(V))/dt^2",
@@ -63,10 +63,10 @@ fn unit_vectors_have_the_size_of_what_is_beside_them() {
 #[test]
 fn names_that_are_nearly_right_are_told_with_those_that_are_meant() {
     for (statements, term, wanted) in [
-        // Two letters in the wrong order, at the beginning and behind it.
+        // Two transposed letters, at the beginning and later.
         ("", "isn(q)", Some("`sin`")),
         ("", "snih(q)", Some("`sinh`")),
-        // Of a long name two letters may be wrong, of a short one but one.
+        // A long name may have two wrong letters, a short one only one.
         ("param gravity: Real;", "gravtyy*q", Some("`gravity`")),
         ("param mass: Real;", "mqqs*q", None),
     ] {
@@ -107,7 +107,7 @@ fn the_transpose_of_what_is_needed_is_told_to_be_transposed() {
     assert!(!found.contains("transpose it with `^T`"), "{found}");
 }
 
-/// What stands in a terminal: of a very long line only what is around the mistake.
+/// Terminal output quotes only the part of a very long line around the mistake.
 #[test]
 fn long_lines_are_cut_around_a_mistake() {
     let filler = "q + ".repeat(100);

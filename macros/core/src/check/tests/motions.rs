@@ -1,4 +1,5 @@
-//! What is said of rigid motions and their parts: sizes that the table has not, parts of what is no motion.
+//! Errors about rigid motions and their parts: unsupported sizes, and parts of expressions that are not rigid
+//! motions.
 
 use crate::pipeline::derive_source;
 
@@ -64,7 +65,7 @@ fn parts_are_taken_of_motions_alone() {
         let said = refused("SE<2>", lagrangian);
         assert!(said.contains(&wanted), "{lagrangian}: {said}");
     }
-    // Blocks of the plane have two rows.
+    // Blocks of planar motions have two rows.
     let said = refused("SE<2>", "rot(V)[1, 3]");
     assert!(
         said.contains("components are counted from 1 to 2"),

@@ -1,5 +1,5 @@
-//! What moves beside the sites of a lattice: its equations, in which all sites stand. Takes a lattice that is written
-//! out, and one with more sites; gives sums over them where both read alike.
+//! Equations of configurations without a label, which couple to all sites. From a lattice and a longer one, both
+//! expanded, they become sums over the sites if both read alike.
 
 use super::{Stated, stated_configurations, sums};
 use crate::document::folded::{From, IndexedNotation, Part};
@@ -7,8 +7,8 @@ use crate::expr::Shift;
 use crate::print::formula::Formula;
 use crate::print::{Format, Style, formula};
 
-/// The two equations of what belongs to no site, with what all sites do to it as sums over them; `None` where these
-/// read otherwise on a lattice with more sites.
+/// The two equations of a configuration without a label, with sums over the sites. `None` if they read differently on
+/// the longer lattice.
 pub(super) fn equations(
     folded: &mut IndexedNotation,
     part: &Part,

@@ -1,5 +1,5 @@
-//! What is said of a model with labels where it runs: its action, momenta and invariants with sums
-//! over sites in the place of lists of copies.
+//! The description of a model with labels when it runs: action, momenta and invariants, with sums over sites instead
+//! of lists of copies.
 
 use super::invariants::total;
 use super::{ranged, sites, stated_configurations};
@@ -12,27 +12,27 @@ use crate::lattice::{Choice, ExpandedModel, Lattice};
 use crate::print::formula::Formula;
 use crate::print::{Format, Style, expression, formula};
 
-/// Words on a lattice that runs.
+/// The description of a lattice with a given number of sites.
 pub struct CardWords {
-    /// What was derived, in a few lines.
+    /// A summary of the derivation, in a few lines.
     pub summary: String,
-    /// How the velocities are found.
+    /// How a step finds the velocities.
     pub solver: String,
-    /// What is said of invariants, in the order of the derivation.
+    /// The descriptions of the invariants, in the order of the derivation.
     pub invariants: Vec<InvariantWords>,
 }
 
-/// What is said of one invariant, or of one at several sites.
+/// The description of one invariant, or of the same invariant at several sites.
 pub struct InvariantWords {
     /// Its name.
     pub name: String,
     /// Its value.
     pub formula: String,
-    /// How many of the derivation it is, one after another.
+    /// How many consecutive invariants of the derivation it covers.
     pub count: usize,
 }
 
-/// The words of a derived lattice; `solver` is how its copies are solved.
+/// The description of a derived lattice; `solver` names the solvers of its copies.
 pub fn card_words(
     lattice: &Lattice,
     choice: &Choice,
@@ -77,7 +77,7 @@ pub fn card_words(
     let list: Vec<&Invariant> = d.invariants.iter().collect();
     let mut at_sites = sites::of_sites(&mut folded, &part, &list);
     at_sites.retain(|o| o.members.windows(2).all(|w| w[0] + 1 == w[1]));
-    // Each with whether it is told for all sites.
+    // Each with whether it covers all sites.
     let mut told: Vec<(InvariantWords, bool)> = Vec::new();
     for (i, v) in list.into_iter().enumerate() {
         let alike = at_sites.iter().find(|o| o.members.contains(&i));
@@ -130,7 +130,7 @@ pub fn card_words(
     }
 }
 
-/// A total of this lattice, as sums over sites or site by site; with it whether it is such sums.
+/// A total on this lattice, as sums over sites or term by term, and whether it is written as sums.
 fn explicit(folded: &mut IndexedNotation, part: &Part, e: &Expr) -> (Formula, bool) {
     match total(folded, part, e) {
         Some(sum) => (sum, true),
@@ -138,8 +138,8 @@ fn explicit(folded: &mut IndexedNotation, part: &Part, e: &Expr) -> (Formula, bo
     }
 }
 
-/// Those of one name told apart by a number. Parts of a total, as of the even and of the odd sites, all have one: none of
-/// them is the whole.
+/// Distinguishes invariants of equal name by numbers. If none of them is the whole total, as for separate totals of
+/// the even and the odd sites, the first one is numbered too.
 fn numbered(told: Vec<(InvariantWords, bool)>) -> Vec<InvariantWords> {
     let names: Vec<(String, bool)> = told.iter().map(|(w, b)| (w.name.clone(), *b)).collect();
     let number = |i: usize, name: &str| {
@@ -179,13 +179,13 @@ fn terms(folded: &mut IndexedNotation, part: &Part) -> Formula {
     }
 }
 
-/// A list of copies, `Ω_0; Ω_1; Ω_2`, as one of its kind, `Ω_i`.
+/// Contracts a list of copies, `Ω_0; Ω_1; Ω_2`, to `Ω_i`.
 fn without_sites(part: &Part, text: &str) -> String {
     let mut out: Vec<String> = Vec::new();
     for piece in text.split("; ") {
         let words: Vec<String> = piece.split(' ').map(|w| word(part, w)).collect();
         let piece = words.join(" ");
-        // The last of a list goes on with a word on all of them.
+        // The last entry of a list may end with words that apply to the whole list.
         let stem = piece.split(',').next().unwrap_or("").to_owned();
         match out.last_mut() {
             Some(last) if *last == stem || last.ends_with(&format!(": {stem}")) => {

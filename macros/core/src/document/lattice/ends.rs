@@ -1,5 +1,4 @@
-//! The ends of a line: under every end condition, the equations of the sites that differ from the
-//! interior.
+//! The ends of a chain: for each end condition, the equations of the sites that differ from the interior.
 
 use super::{equations, like_the_middle, say, stated_configurations};
 use crate::document::folded::{From, IndexedNotation, Part};
@@ -7,7 +6,7 @@ use crate::lattice::Lattice;
 use crate::print::document::{Document, Inline};
 use crate::print::formula::Formula;
 
-/// Sections on the ends of an open line.
+/// Adds the sections on the ends of an open chain.
 pub(super) fn ends(folded: &mut IndexedNotation, parts: &[Part], doc: &mut Document) {
     let lattice = folded.lattice;
     let Some(line) = lattice.line_label() else {
@@ -25,7 +24,7 @@ pub(super) fn ends(folded: &mut IndexedNotation, parts: &[Part], doc: &mut Docum
     }
 }
 
-/// The open lattice with this end condition, and the default one at the other end.
+/// The open chain with this end condition, and the default condition at the other end.
 fn part_of(parts: &[Part], last: bool, which: usize) -> Option<&Part> {
     let end = usize::from(last);
     parts

@@ -1,5 +1,5 @@
-//! Functionals of all sites in a paper section: their values by the index of a site, `A_{a,k}`, their pull-backs
-//! as transposed derivatives at what they are made of, without one.
+//! Prints functionals of all sites: the value at a site as a letter, `A_{a,k}`, and the pull-back as a transposed
+//! derivative, with arguments that have no site index.
 
 use super::super::folded::{From, IndexedNotation, Part};
 use crate::check;
@@ -11,7 +11,7 @@ use crate::print::formula::Formula;
 use crate::syntax::ast::Extent;
 
 impl IndexedNotation<'_> {
-    /// An expression with the values of functionals as letters of their sites.
+    /// Replaces the values of functionals in an expression by letters at their sites.
     pub(in crate::document) fn with_functionals(
         &mut self,
         part: &Part,
@@ -48,7 +48,7 @@ impl IndexedNotation<'_> {
         }
     }
 
-    /// The value of a functional as a letter, and its pull-back with a seed `s`.
+    /// The value of a functional as a letter, and its pull-back of a seed `s`.
     fn shown(&mut self, part: &Part, name: &str) -> Option<(Formula, Formula)> {
         let model = &part.unfolded.model;
         let mut called = None;
@@ -81,7 +81,7 @@ impl IndexedNotation<'_> {
         self.symbols.functional(a.functional).reach == Reach::Sites
     }
 
-    /// What a functional is made of, as the whole of it: `X_k`.
+    /// An argument of a functional without its site index, for the field as a whole: `X_k`.
     fn plain(&mut self, part: &Part, e: &Expr) -> Expr {
         match e.node() {
             Node::Letter(l) => {
@@ -103,7 +103,7 @@ impl IndexedNotation<'_> {
         }
     }
 
-    /// A letter for the values of a functional, at the node in time of what they are made of.
+    /// A letter for the values of a functional, at the time node of its arguments.
     fn value_letter(&mut self, name: &str, e: &Expr) -> Expr {
         let s = &self.symbols;
         let moving = |l: &expr::Letter| s.get(l.symbol).role != Role::Parameter;
@@ -115,7 +115,7 @@ impl IndexedNotation<'_> {
     }
 }
 
-/// The value of a functional in an expression.
+/// Finds the value of the named functional in an expression.
 fn given_of(s: &Symbols, e: &Expr, name: &str) -> Option<Expr> {
     match e.node() {
         Node::Given(a) if s.functional(a.functional).name == name && a.along.is_empty() => {
@@ -125,7 +125,7 @@ fn given_of(s: &Symbols, e: &Expr, name: &str) -> Option<Expr> {
     }
 }
 
-/// The functionals, and what their pull-backs are.
+/// Defines the functionals and their pull-backs.
 pub(super) fn functionals(folded: &mut IndexedNotation, part: &Part, doc: &mut Document) {
     let meshes = folded.lattice.meshes.clone();
     if meshes.is_empty() {

@@ -1,5 +1,5 @@
-//! What is held along a line or ring, as stated: constraints at every site, seen from the middle one, and those on sums
-//! over all sites, with their multipliers.
+//! Describes the constraints of a chain or ring as declared: constraints at every site, with indices relative to a
+//! middle site, and constraints on sums over all sites, with their multipliers.
 
 use super::{beyond, stated_configurations, sums};
 use crate::check::spec::Hold;
@@ -12,7 +12,7 @@ use crate::lattice::StatedTotal;
 use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::Formula;
 
-/// The constraints that are held at every site, each seen from the middle one.
+/// Adds the constraints at every site, each with indices relative to a middle site.
 pub(super) fn holds(folded: &mut IndexedNotation, part: &Part, section: &mut Section) {
     for stated in stated_holds(part) {
         let Some(hold) = part.d.spec.holds.get(stated.shown) else {
@@ -58,7 +58,7 @@ pub(super) fn holds(folded: &mut IndexedNotation, part: &Part, section: &mut Sec
     }
 }
 
-/// How they are held in a step, and what the state tells of their multipliers; seen from a middle site.
+/// Describes how a step enforces the constraints, and what the reported multipliers mean.
 pub(super) fn held(folded: &mut IndexedNotation, part: &Part, doc: &mut Document) {
     let d = &part.d;
     if d.spec.holds.is_empty() {
@@ -101,7 +101,7 @@ pub(super) fn held(folded: &mut IndexedNotation, part: &Part, doc: &mut Document
     section.text(MIDDLE);
 }
 
-/// The constraints that are shown, by number, and from where.
+/// Numbers of the displayed constraints, and the origins of their indices.
 fn shown(part: &Part) -> Vec<(usize, From)> {
     let of_sites = stated_holds(part).into_iter();
     let of_sites = of_sites.map(|h| (h.shown, From::Site(h.site)));
@@ -110,18 +110,18 @@ fn shown(part: &Part) -> Vec<(usize, From)> {
     of_sites.chain(of_totals).collect()
 }
 
-/// The number of a constraint on sums.
+/// The number of a constraint on sums over all sites.
 fn number_of(part: &Part, stated: &StatedTotal) -> Option<usize> {
     let symbols = &part.d.letters.symbols;
     let own = |h: &Hold| symbols.get(h.multiplier).name == stated.name;
     part.d.spec.holds.iter().position(own)
 }
 
-/// A constraint as stated, held at several sites.
+/// A declared constraint with copies at several sites.
 pub(super) struct StatedHold {
     /// The name of its multiplier.
     pub name: String,
-    /// Number of the copy that is shown, nearest to the middle.
+    /// Number of the displayed copy, the one nearest to the middle.
     pub shown: usize,
     /// The site of that copy.
     pub site: usize,
@@ -130,7 +130,7 @@ pub(super) struct StatedHold {
     last: usize,
 }
 
-/// The constraints as stated; of those at one site alone there is none.
+/// The declared constraints, except those with a copy at one site only.
 pub(super) fn stated_holds(part: &Part) -> Vec<StatedHold> {
     let mut out: Vec<StatedHold> = Vec::new();
     let middle = part.choice.counts.first().copied().unwrap_or(0) / 2;

@@ -1,5 +1,4 @@
-//! What is conserved on a lattice, for each way to close or hold it, totals written as sums over
-//! sites.
+//! The invariants of a lattice for the open chain, the ring and each end condition, with totals as sums over sites.
 
 use crate::derive::invariants::{Family, Invariant, Kind as InvariantKind};
 use crate::document::folded::{From, IndexedNotation, Part};
@@ -31,7 +30,7 @@ pub(super) fn invariants(
             let value = v.value.as_ref();
             value.is_some_and(|e| written.is_turned_by_walls(folded.lattice, e))
         };
-        // Of constraints with a multiplier at every site one line speaks for all.
+        // If constraints have a multiplier at every site, one item covers all of them.
         let at_sites = stated_holds(part);
         let is_of_site = |v: &&Invariant| v.family == Family::Held && !at_sites.is_empty();
         let kept = part
@@ -84,7 +83,7 @@ pub(super) fn invariants(
     });
 }
 
-/// Totals that functionals of all sites leave as they are.
+/// Totals that functionals of all sites leave conserved.
 fn beside_functionals(
     folded: &mut IndexedNotation,
     part: &Part,
@@ -126,7 +125,7 @@ fn beside_functionals(
     items
 }
 
-/// Which line is meant.
+/// Names the topology or end condition that the invariants belong to.
 fn heading(lattice: &Lattice, part: &Part) -> String {
     if lattice.line.is_none() {
         return "On a set of sites".to_owned();
@@ -137,11 +136,11 @@ fn heading(lattice: &Lattice, part: &Part) -> String {
     format!("On a line {}", part.choice.held(lattice))
 }
 
-/// An invariant that is known for every number of sites.
+/// An invariant that holds for every number of sites.
 struct Known {
     name: String,
     value: Vec<Inline>,
-    /// The value as text, by which it is found on a longer line.
+    /// The value as text, to match it with an invariant of a longer lattice.
     text: String,
     how: &'static str,
     reason: String,
@@ -156,12 +155,12 @@ impl Known {
     }
 }
 
-/// The invariants of a part that are the same for every number of sites: those that read alike on a longer lattice.
-/// With them whether there are others.
+/// The invariants of a part that hold for every number of sites, that is, those that read alike on a longer lattice;
+/// and whether there are others.
 fn known(folded: &mut IndexedNotation, part: &Part, kept: &[&Invariant]) -> (Vec<Known>, bool) {
     let (own, others) = of_part(folded, part, kept);
-    // Where the search found nothing on the longer lattice, its draws were too few for so many sites, and nothing is
-    // learnt from it: ranges from end to end stand as they are.
+    // If the search found nothing on the longer lattice, it made too few draws for that many sites. The comparison
+    // then proves nothing, and the ranges from end to end are kept.
     let found = |p: &&Part| p.d.invariants.iter().any(|v| v.family == Family::Noether);
     let Some(longer) = part.longer.as_deref().filter(found) else {
         return (numbered(own), others);
@@ -177,7 +176,7 @@ fn known(folded: &mut IndexedNotation, part: &Part, kept: &[&Invariant]) -> (Vec
     (numbered(alike), others || lost)
 }
 
-/// Those of one name told apart by a number.
+/// Distinguishes invariants of equal name by numbers.
 fn numbered(mut list: Vec<Known>) -> Vec<Known> {
     for i in 1..list.len() {
         let (before, rest) = list.split_at_mut(i);
@@ -192,8 +191,8 @@ fn numbered(mut list: Vec<Known>) -> Vec<Known> {
     list
 }
 
-/// The invariants of one lattice that are sums over sites, and the sum of those that are not where it is one; with them
-/// whether some are no such sums by themselves.
+/// The invariants of one lattice that are sums over sites. Invariants that are not, but share a reason, are added;
+/// the result includes their total if that is such a sum. Also returns whether an invariant is not a sum by itself.
 fn of_part(folded: &mut IndexedNotation, part: &Part, kept: &[&Invariant]) -> (Vec<Known>, bool) {
     let style = Style::new(&part.d.spec.time_index);
     let mut out: Vec<Known> = Vec::new();
@@ -265,14 +264,14 @@ fn of_part(folded: &mut IndexedNotation, part: &Part, kept: &[&Invariant]) -> (V
     (out, !untold.is_empty())
 }
 
-/// A total as sums over sites; `None` where it is none that is known for every number of sites.
+/// A total as sums over sites; `None` if it does not hold for every number of sites.
 pub(super) fn total(folded: &mut IndexedNotation, part: &Part, e: &Expr) -> Option<Formula> {
     let lattice = folded.lattice;
     let of_line = lattice.line.is_some() && lattice.labels.len() == 1;
     match sums::told(folded, part, e).filter(|_| lattice.labels.len() == 1) {
         Some(sum) => Some(sum),
         None if of_line => None,
-        // Of several labels one site stands for all, and is told as one.
+        // With several labels, the expression at one site represents all sites.
         None => Some(folded.derived(part, e, From::First)),
     }
 }

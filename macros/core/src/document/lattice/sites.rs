@@ -1,5 +1,5 @@
-//! What is conserved at every single site: invariants that read alike from their sites are told as one. Takes the
-//! invariants of a lattice that is written out; gives those of one form with the sites they are of.
+//! Groups invariants of single sites that read alike. From the invariants of an expanded lattice it returns one item
+//! for each form, with the sites where it is conserved.
 
 use super::beyond;
 use crate::derive::invariants::{Family, Invariant};
@@ -8,18 +8,18 @@ use crate::expr::{self, Expr};
 use crate::print::formula::Formula;
 use crate::print::{Format, Style, expression};
 
-/// Fewest sites that are told as one: two may be two ends.
+/// Fewest sites that form a group: two may be the two ends.
 const FEWEST: usize = 3;
 
-/// What is alike at several sites.
+/// An invariant that reads alike at several sites.
 pub(super) struct OfSites {
     /// Its name without sites.
     pub name: String,
-    /// The quantity at one of them.
+    /// The quantity at one site.
     pub value: Formula,
-    /// At which sites: `at every site`.
+    /// The sites in words: `at every site`.
     pub at: String,
-    /// The places of its copies in the list of invariants, ascending.
+    /// The positions of its copies in the list of invariants, ascending.
     pub members: Vec<usize>,
     reason: String,
     text: String,
@@ -28,13 +28,13 @@ pub(super) struct OfSites {
 }
 
 impl OfSites {
-    /// Whether an invariant of the list is the first of its copies, at which all are told.
+    /// Whether invariant `i` of the list is the first copy, where the group is printed.
     pub(super) fn begins_with(&self, i: usize) -> bool {
         self.members.first() == Some(&i)
     }
 }
 
-/// Invariants of the list that are one quantity at several sites each.
+/// Groups the invariants of the list that are the same quantity at several sites.
 pub(super) fn of_sites(
     folded: &mut IndexedNotation,
     part: &Part,
@@ -43,7 +43,7 @@ pub(super) fn of_sites(
     let style = Style::new(&part.d.spec.time_index);
     let mut out: Vec<OfSites> = Vec::new();
     for (i, v) in list.iter().enumerate() {
-        // Constraints have words of their own.
+        // Constraints are described elsewhere.
         let Some(e) = v.value.as_ref().filter(|_| v.family != Family::Held) else {
             continue;
         };
@@ -83,7 +83,7 @@ pub(super) fn of_sites(
     out
 }
 
-/// At which sites, where they are neighbours.
+/// Describes the sites, if they are consecutive.
 fn words(folded: &IndexedNotation, part: &Part, o: &mut OfSites) -> Option<String> {
     o.sites.sort_unstable();
     let neighbours = o.sites.windows(2).all(|w| w[0] + 1 == w[1]);
@@ -107,7 +107,7 @@ fn words(folded: &IndexedNotation, part: &Part, o: &mut OfSites) -> Option<Strin
     ))
 }
 
-/// The label and the site of all letters of an expression that have one.
+/// The label and the site of all letters of an expression that have a site, if they agree.
 fn only_site(folded: &IndexedNotation, part: &Part, e: &Expr) -> Option<(usize, usize)> {
     let letters = expr::letters(e).into_iter();
     let mut sites = letters.filter_map(|l| folded.site(part, l.symbol));

@@ -1,6 +1,6 @@
-//! Sums over the sites of a line, told for every number of them. Takes an expression of a lattice that is written out;
-//! gives sums over ranges that begin and end at its ends, and terms of the ends themselves. What is no such sum is told
-//! as nothing: on another lattice it is another expression.
+//! Rewrites an expression of an expanded chain as sums over sites, valid for every number of sites. The ranges begin
+//! and end relative to the ends of the chain, and terms at the ends are written separately. The result is `None` if
+//! the expression cannot be written so, because it differs on another chain.
 
 use crate::algebra::Rational;
 use crate::document::folded::{From, IndexedNotation, Part};
@@ -11,14 +11,15 @@ use crate::print::{Format, Style, expression};
 #[cfg(test)]
 mod tests;
 
-/// Fewest sites of a range, and most of one term: two may be two ends, and three are a site with its neighbours.
+/// A range has at least this many sites, and a single term at most this many: two may be the two ends, and three a
+/// site with its neighbours.
 const FEWEST: usize = 3;
 
-/// The same in sums over sites; `None` where it is none that is known for every number of sites.
+/// The expression as sums over sites; `None` if it does not hold for every number of sites.
 pub(super) fn told(folded: &mut IndexedNotation, part: &Part, e: &Expr) -> Option<Formula> {
     match e.node() {
         Node::Neg(a) => Some(Formula::neg(told(folded, part, a)?)),
-        // What is read of a total along or across something that no site has.
+        // A component of a total along, or its cross product with, a vector that does not depend on sites.
         Node::Dot(a, b) if !varies(folded, part, b) => {
             let sum = shortest(folded, part, a, Some(b))?;
             let axis = folded.derived(part, b, From::End(0));
@@ -42,7 +43,7 @@ pub(super) fn told(folded: &mut IndexedNotation, part: &Part, e: &Expr) -> Optio
     }
 }
 
-/// A sum of totals that are read along axes, each by itself, and of other terms.
+/// A sum of components of totals along axes, each rewritten by itself, and other terms.
 fn apart(folded: &mut IndexedNotation, part: &Part, list: &[Expr]) -> Option<Formula> {
     let read = |e: &&Expr| match e.node() {
         Node::Dot(a, b) | Node::Cross(a, b) => {
@@ -69,15 +70,15 @@ fn apart(folded: &mut IndexedNotation, part: &Part, list: &[Expr]) -> Option<For
     Some(Formula::Sum(out))
 }
 
-/// Whether an expression holds a letter of a site.
+/// Whether an expression contains a letter of a site.
 fn varies(folded: &IndexedNotation, part: &Part, e: &Expr) -> bool {
     let letters = expr::letters(e).into_iter();
     let mut sites = letters.filter_map(|l| folded.site(part, l.symbol));
     sites.next().is_some()
 }
 
-/// As it was found or multiplied out, whichever has fewer sums: what cancels is seen where all is multiplied out.
-/// `axis` is what the sum is read along.
+/// Rewrites the expression both as it is and with products expanded, and keeps the result with fewer sums. Some terms
+/// cancel only after expansion. `axis` is the vector that the sum is multiplied by.
 fn shortest(
     folded: &mut IndexedNotation,
     part: &Part,
@@ -96,17 +97,17 @@ fn shortest(
     })
 }
 
-/// Terms of one form, each so many times.
+/// Terms of one form and their common factor.
 struct Form {
     text: String,
     times: Rational,
-    /// The first of them.
+    /// The first term.
     term: Expr,
-    /// The sites they are seen from; none where no letter of a site occurs.
+    /// The sites that the terms are indexed from; empty if no letter has a site.
     sites: Vec<usize>,
 }
 
-/// Sums of terms; `None` where some are of no range.
+/// Sums of the terms; `None` if some terms do not fill a range.
 fn summed(
     folded: &mut IndexedNotation,
     part: &Part,
@@ -117,7 +118,7 @@ fn summed(
     let label = folded.lattice.labels.get(line)?;
     let (index, count) = (label.index.text.clone(), label.count.text.clone());
     let many = part.choice.count(line);
-    // Sites of a set have no ends: a sum goes over all of them.
+    // A set does not have ends: a sum runs over all of its sites.
     let fewest = if label.set { many } else { FEWEST };
     let set = label.set;
     let mut out = Vec::new();
@@ -157,14 +158,14 @@ fn summed(
     Some(out)
 }
 
-/// Terms of equal form collected, those that cancel left out.
+/// Collects terms of equal form, and drops terms that cancel.
 fn forms(
     folded: &mut IndexedNotation,
     part: &Part,
     terms: Vec<(Rational, Expr)>,
 ) -> Option<Vec<Form>> {
     let style = Style::new(&part.d.spec.time_index);
-    // Each term at its site, equal ones added.
+    // Index each term from its own site, and add equal terms.
     let mut single: Vec<(String, Option<usize>, Rational, Expr)> = Vec::new();
     for (times, term) in terms {
         let site = base(folded, part, &term)?;
@@ -200,8 +201,8 @@ fn forms(
     Some(out)
 }
 
-/// The site a term is seen from, the first of those that it holds; on a ring the one that has the others next to it.
-/// Outer `None`: it holds sites of something that is no line.
+/// The site that a term is indexed from: the first one it contains, or on a ring the one that its other sites follow.
+/// The outer `None` means that the term contains sites of another label.
 fn base(folded: &IndexedNotation, part: &Part, term: &Expr) -> Option<Option<usize>> {
     let line = folded.summed()?;
     let mut sites = Vec::new();
@@ -228,10 +229,10 @@ fn base(folded: &IndexedNotation, part: &Part, term: &Expr) -> Option<Option<usi
     Some(sites.iter().min_by_key(|s| (reach(s), **s)).copied())
 }
 
-/// The terms of a sum, each with its factor; with `out`, products of sums are multiplied out.
+/// The terms of a sum, each with its factor; if `out` is set, products of sums are expanded.
 fn terms(e: &Expr, out: bool, axis: Option<&Expr>) -> Vec<(Rational, Expr)> {
     let all = factors(e, out);
-    // Along an axis nothing is left of what is across it.
+    // The component along an axis of a cross product with that axis vanishes.
     let across = |e: &Expr| match (e.node(), axis) {
         (Node::Cross(a, b), Some(axis)) => out && (a == axis || b == axis),
         _ => false,
@@ -283,7 +284,7 @@ fn factors(e: &Expr, out: bool) -> Vec<(Rational, Expr)> {
     }
 }
 
-/// A cross product in one order, and none of something with itself.
+/// Orders the factors of a cross product; `None` for the product of a vector with itself.
 fn ordered((times, e): (Rational, Expr)) -> Option<(Rational, Expr)> {
     let Node::Cross(a, b) = e.node() else {
         return Some((times, e));

@@ -1,6 +1,6 @@
-//! Displayed equations in parts: between vectors of the Lie algebra one of their angular and one of their linear
-//! parts, between homogeneous coordinates one of the entries before the last and one of the last, under one number;
-//! matrices by their blocks.
+//! Splits displayed equations into parts under one number: equations between vectors of the Lie algebra into the
+//! angular and the linear part, equations between homogeneous coordinates into the last entry and the others.
+//! Matrices are printed by blocks.
 
 use super::Motions;
 use super::names::{Kind, Names};
@@ -9,14 +9,14 @@ use crate::expr::shape::Shape;
 use crate::expr::{self, Expr};
 use crate::print::formula::{Formula, Relation};
 
-/// Nodes of the two blocks of a matrix from which on they stand in equations of their own.
+/// If the two blocks of a matrix have at least this many expression nodes, they are defined in separate equations.
 const WIDE: u32 = 14;
 
-/// A page being printed.
+/// A page during printing.
 pub struct Display {
     /// Its letters.
     pub names: Names,
-    /// Blocks of matrices that have letters, and these.
+    /// Matrix blocks that have letters, and these letters.
     blocks: Vec<([Expr; 2], [Expr; 2])>,
 }
 
@@ -29,12 +29,12 @@ impl Display {
         }
     }
 
-    /// A formula of a sentence.
+    /// A formula within a sentence.
     pub fn inline(&mut self, f: &Formula) -> Formula {
         f.mapped(&mut |e| self.tidy(e))
     }
 
-    /// An expression in the letters of parts, like terms collected.
+    /// An expression in the letters of parts, with like terms collected.
     pub fn tidy(&mut self, e: &Expr) -> Expr {
         if self.names.motions == Motions::Whole {
             return self.with_names(e);
@@ -52,7 +52,7 @@ impl Display {
         }
     }
 
-    /// An expression with the names of the model; what holds none stays as it was derived.
+    /// Substitutes the names of the model; an expression without such names is returned as derived.
     fn with_names(&self, e: &Expr) -> Expr {
         let named = self.names.named(e);
         match named == expr::shown(&self.names.symbols, e) {
@@ -114,7 +114,7 @@ impl Display {
         }
     }
 
-    /// A vector of homogeneous coordinates, where it is written by its parts, with them on top of each other.
+    /// A vector of homogeneous coordinates as a column of its parts, if it is written by parts.
     fn column(&mut self, f: &Formula) -> Formula {
         let parts = match self.in_points(f) {
             true => self.half(f, Kind::Point),
@@ -126,7 +126,7 @@ impl Display {
         }
     }
 
-    /// Whether a member is written by what puts vectors into homogeneous coordinates.
+    /// Whether a member of an equation is built from inclusions into homogeneous coordinates.
     fn in_points(&self, f: &Formula) -> bool {
         match f {
             Formula::Expr(e) => self.names.is_of_points(e.shape()) && written_in_points(e),
@@ -136,7 +136,8 @@ impl Display {
         }
     }
 
-    /// Two equations for one; what names a member without an expression stands in one before them.
+    /// Splits one equation into two. If a member is a name without parts, an equation that defines the name precedes
+    /// them.
     fn halves(
         &mut self,
         members: &[Formula],
@@ -222,7 +223,7 @@ impl Display {
         expr::positive_first(&self.names.named(&e))
     }
 
-    /// Terms as one expression, like ones collected, where all are expressions.
+    /// Adds terms into one expression with like terms collected, if all of them are expressions.
     fn total(&mut self, terms: Vec<Formula>) -> Formula {
         let whole: Option<Vec<Expr>> = terms
             .iter()
@@ -240,7 +241,7 @@ impl Display {
         }
     }
 
-    /// A member with blocks as a matrix of them, in equations of their own where they are long.
+    /// Writes a member that has blocks as a block matrix; long blocks get equations of their own.
     fn by_blocks(&mut self, members: &[Formula], relation: Relation) -> Option<Vec<Formula>> {
         let mut defined = Vec::new();
         let mut found = false;
@@ -320,7 +321,7 @@ impl Display {
     }
 }
 
-/// Whether a member is written by its angular and linear part.
+/// Whether a member of an equation is written by its angular and linear part.
 fn in_twists(f: &Formula) -> bool {
     match f {
         Formula::Expr(e) => written_in_twists(e),

@@ -1,5 +1,5 @@
-//! What a document holds, looked through before its letters are chosen: names in its equations, numbers of homogeneous
-//! coordinates, letters of which parts are taken.
+//! Scans a document before letters are chosen for parts: names in its equations, dimensions of homogeneous
+//! coordinates, and letters that are split into parts.
 
 use super::each_formula;
 use super::names::Kind;
@@ -10,21 +10,21 @@ use crate::expr::{Constant, Expr, Node};
 use crate::print::document::{Block, Document};
 use std::collections::BTreeSet;
 
-/// What was found.
+/// The result of the scan.
 pub struct Found {
-    /// Names in displayed equations that are no symbols.
+    /// Names in displayed equations that are not symbols.
     pub names: BTreeSet<String>,
-    /// The numbers of homogeneous coordinates.
+    /// Dimensions of the homogeneous coordinates.
     pub points: BTreeSet<Dim>,
-    /// Letters whose parts stand somewhere.
+    /// Letters whose parts occur in the document.
     pub parted: BTreeSet<(Kind, SymbolId)>,
 }
 
 impl Found {
-    /// What this document holds.
+    /// Scans a document.
     pub fn in_document(doc: &Document) -> Found {
         let mut names = BTreeSet::new();
-        // Letters of definitions stand for anything; those in equations mean one thing.
+        // Definitions use dummy letters; a letter in an equation has a fixed meaning.
         for block in doc.sections.iter().flat_map(|s| &s.blocks) {
             if let Block::Equation { formula, .. } = block {
                 formula.each_name(&mut |base| {
@@ -53,7 +53,7 @@ impl Found {
     }
 }
 
-/// The numbers of homogeneous coordinates that vectors are put into.
+/// Collects the dimensions of homogeneous coordinates that vectors are included into.
 fn coordinates(e: &Expr, out: &mut BTreeSet<Dim>) {
     out.extend(homogeneous(e));
     for child in e.children() {
@@ -61,7 +61,7 @@ fn coordinates(e: &Expr, out: &mut BTreeSet<Dim>) {
     }
 }
 
-/// The letters of which an expression takes parts.
+/// Collects the letters that an expression takes parts of.
 fn taken_apart(e: &Expr, points: &BTreeSet<Dim>, out: &mut BTreeSet<(Kind, SymbolId)>) {
     if let Node::Product(list) = e.node() {
         for pair in list.windows(2) {

@@ -1,26 +1,26 @@
-//! What a model names by `let`, kept as a name in print: where its value stands literally, shifted in time, transposed,
-//! or distributed over the terms of a sum, as `M a/2 + M b/2` of `u = a + b`. Each replacement is proved before it is
-//! printed.
+//! Keeps the names of the model's `let` statements in print. A value is recognised if it occurs literally, shifted in
+//! time, transposed, or distributed over the terms of a sum, as in `M a/2 + M b/2` for `u = a + b`. Each replacement
+//! is proved before it is printed.
 
 use crate::algebra::{Algebra, Rational};
 use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Map, Node, Shift};
 
-/// Nodes of an expression from which on no names are looked for.
+/// Expressions with more nodes than this are not searched for names.
 const LARGEST: u32 = 4_000;
 
-/// A name and what it stands for.
+/// A name and its value.
 struct Let {
     symbol: SymbolId,
     value: Expr,
     patterns: Vec<Pattern>,
 }
 
-/// How a value stands in expressions: its terms, the longest first, and what is written for them.
+/// How a value occurs in expressions: its terms, the longest first, and the name that replaces them.
 struct Pattern {
     terms: Vec<(Rational, Expr)>,
-    /// What the value is a power of, and its exponent.
+    /// Base and exponent, if the value is a power.
     power: Option<(Expr, Rational)>,
     name: Expr,
 }
@@ -32,14 +32,15 @@ pub struct Lets {
 }
 
 impl Lets {
-    /// Adds a name for a value in the letters of the page, unless it is as short.
+    /// Adds a name for a value in the letters of the page, unless the value is as short as a name.
     pub fn name(&mut self, symbols: &mut Symbols, name: &str, value: &Expr) {
         let value = expr::shown(symbols, &self.named(symbols, value));
         if value.size() <= 2 {
             return;
         }
         let letters = expr::letters(&value);
-        // Made of both ends of a step it is a name of the model as stated; what is printed has velocities instead.
+        // A value that contains both ends of a step belongs to the declared model; the printed equations use
+        // velocities instead.
         let ends =
             |l: &Letter| symbols.get(l.symbol).role == Role::Element && l.shift != Shift::HERE;
         if letters.iter().any(ends) {
@@ -84,7 +85,7 @@ impl Lets {
         });
     }
 
-    /// An expression with the names in it.
+    /// Substitutes the names in an expression.
     pub fn named(&self, symbols: &Symbols, e: &Expr) -> Expr {
         if e.size() > LARGEST {
             return e.clone();
@@ -101,16 +102,16 @@ impl Lets {
         out
     }
 
-    /// Whether two expressions are equal by what the names stand for.
+    /// Whether two expressions are equal after names are replaced by their values.
     fn is_equal(&self, symbols: &Symbols, a: &Expr, b: &Expr) -> bool {
         let written_out = |e: &Expr| self.written_out(symbols, e);
         Algebra::new(symbols).equal(&written_out(a), &written_out(b))
     }
 
-    /// An expression with the values in the places of the names.
+    /// Replaces the names in an expression by their values.
     pub fn written_out(&self, symbols: &Symbols, e: &Expr) -> Expr {
         let mut out = e.clone();
-        // Later names are made of earlier ones.
+        // Later names may contain earlier ones.
         for one in self.list.iter().rev() {
             let places = expr::letters(&out).into_iter();
             let places = places.filter(|at| at.symbol == one.symbol);
@@ -122,7 +123,7 @@ impl Lets {
         out
     }
 
-    /// The value that a symbol names.
+    /// The value of a name.
     pub fn value(&self, symbol: SymbolId) -> Option<&Expr> {
         let found = self.list.iter().find(|one| one.symbol == symbol)?;
         Some(&found.value)
@@ -135,7 +136,7 @@ fn pattern(symbols: &Symbols, value: &Expr, name: Expr) -> Pattern {
         _ => vec![value.clone()],
     };
     let mut terms: Vec<(Rational, Expr)> = terms.iter().map(expr::coefficient).collect();
-    // A sum under a number: `(a + b)/2`.
+    // A sum with a numerical factor: `(a + b)/2`.
     if let [(c, core)] = terms.as_slice()
         && let Node::Sum(inner) = core.node()
     {
@@ -154,12 +155,12 @@ fn pattern(symbols: &Symbols, value: &Expr, name: Expr) -> Pattern {
 }
 
 impl Pattern {
-    /// Whether the letters of the value may all occur.
+    /// Whether the letters of the value can all occur in the expression.
     fn may_stand_in(&self, e: &Expr) -> bool {
         self.terms.iter().all(|(_, term)| expr::may_hold(e, term))
     }
 
-    /// The expression with the name wherever all terms of the value stand in one context.
+    /// Substitutes the name wherever all terms of the value occur in one context.
     fn put(&self, symbols: &Symbols, e: &Expr) -> Expr {
         if !self.may_stand_in(e) {
             return e.clone();
@@ -180,7 +181,7 @@ impl Pattern {
         }
     }
 
-    /// A whole power of the name, where the expression is one: `(x·x)^{3/2}` is `r^3` of `r = |x|`.
+    /// If the expression is a whole power of the name, that power: `(x·x)^{3/2}` is `r^3` for `r = |x|`.
     fn power_of_name(&self, e: &Expr) -> Option<Expr> {
         let (base, q) = self.power.as_ref()?;
         let own = match e.node() {
@@ -193,10 +194,11 @@ impl Pattern {
         Some(expr::power(self.name.clone(), times))
     }
 
-    /// A value of one term in a trace, whose factors may be taken from any one on: `tr(C Q Q^T)` holds `Q^T C Q`.
+    /// Substitutes a value of one term within a trace, whose factors may be cyclically permuted: `tr(C Q Q^T)`
+    /// contains `Q^T C Q`.
     fn in_trace(&self, symbols: &Symbols, e: &Expr, c: Rational, only: &Expr) -> Expr {
         let mut out = e.clone();
-        // Each replacement leaves fewer factors.
+        // Each replacement leaves fewer factors, so that the loop ends.
         while let Some(shorter) = self.turned_in_trace(symbols, &out, c, only) {
             out = shorter;
         }
@@ -227,7 +229,7 @@ impl Pattern {
         })
     }
 
-    /// `u·w` of `v·(A^T w)` or `(A^T w)·v`, where the name `u` stands for `A v`.
+    /// Rewrites `v·(A^T w)` or `(A^T w)·v` as `u·w`, where the name `u` stands for `A v`.
     fn paired(&self, symbols: &Symbols, e: &Expr) -> Option<Expr> {
         let ([(c, only)], Node::Dot(a, b)) = (self.terms.as_slice(), e.node()) else {
             return None;
@@ -255,7 +257,7 @@ impl Pattern {
         }
     }
 
-    /// A value of one term.
+    /// Substitutes a value of one term.
     fn alone(&self, symbols: &Symbols, e: &Expr, c: Rational, only: &Expr) -> Expr {
         if let Some(paired) = self.paired(symbols, e) {
             return paired;
@@ -270,7 +272,7 @@ impl Pattern {
         }
     }
 
-    /// A value of several terms among those of a sum.
+    /// Substitutes a value of several terms within a sum.
     fn in_sum(&self, symbols: &Symbols, e: &Expr, terms: &[Expr]) -> Expr {
         let mut terms: Vec<(Rational, Expr)> = terms.iter().map(expr::coefficient).collect();
         let mut at = 0;
@@ -295,7 +297,7 @@ impl Pattern {
         expr::sum(list.collect::<Vec<_>>(), e.shape())
     }
 
-    /// The terms that with this one make the value in some context, and that context with the name.
+    /// The terms that together with this term form the value in some context, and that context applied to the name.
     fn matched(
         &self,
         symbols: &Symbols,
@@ -332,18 +334,18 @@ impl Pattern {
     }
 }
 
-/// A place in an expression that is linear in what stands there.
+/// A position in an expression that depends linearly on the subexpression there.
 struct Context {
-    /// From the outside to the inside: the nodes and which child is gone into.
+    /// The path from the root inwards: each node, and the index of its child.
     way: Vec<(Expr, usize)>,
-    /// The factors before and behind, where the place is a run of factors.
+    /// The factors before and after, if the position is a run of factors.
     around: Option<(Vec<Expr>, Vec<Expr>)>,
-    /// Whether the place is the whole or a run of its factors.
+    /// Whether the position is the whole expression or a run of its factors.
     at_root: bool,
 }
 
 impl Context {
-    /// The linear places in which `wanted` stands.
+    /// The linear positions at which `wanted` occurs.
     fn of(e: &Expr, wanted: &Expr) -> Vec<Context> {
         let mut out = Vec::new();
         let mut way = Vec::new();
@@ -351,7 +353,7 @@ impl Context {
         out
     }
 
-    /// The expression with something else there.
+    /// The expression with another subexpression at this position.
     fn with(&self, symbols: &Symbols, x: &Expr) -> Expr {
         let inner = match &self.around {
             Some((before, behind)) => {
@@ -418,7 +420,7 @@ fn look(e: &Expr, wanted: &Expr, way: &mut Vec<(Expr, usize)>, out: &mut Vec<Con
     }
 }
 
-/// The factors before and behind those of `wanted`, where these stand in a row; numbers may stand anywhere.
+/// The factors before and after `wanted`, if its factors are consecutive; scalar factors may be anywhere.
 fn run(list: &[Expr], wanted: &Expr) -> Option<(Vec<Expr>, Vec<Expr>)> {
     let Node::Product(inner) = wanted.node() else {
         return None;

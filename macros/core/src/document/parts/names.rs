@@ -1,5 +1,5 @@
-//! The letters of parts: which a vector, a point or a motion is printed by, chosen so that nothing else of the
-//! document bears them.
+//! Chooses the letters of parts of vectors, points and motions so that they differ from every other letter of the
+//! document.
 
 use super::Motions;
 use super::found::Found;
@@ -12,16 +12,16 @@ use crate::expr::{self, Expr, Letter};
 use crate::print::document::Document;
 use std::collections::BTreeMap;
 
-/// What a letter is taken apart into.
+/// How a letter is split.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// The angular and the linear part of a vector of the Lie algebra or its dual.
     Twist,
-    /// All entries of homogeneous coordinates but the last, and the last.
+    /// Homogeneous coordinates without the last entry, and the last entry.
     Point,
     /// The rotation and the translation of a rigid motion.
     Motion,
-    /// The upper left block and the upper entries of the last column.
+    /// The upper left block, and the last column without its last entry.
     Matrix,
 }
 
@@ -29,7 +29,7 @@ pub enum Kind {
 const BAR: char = '\u{304}';
 const ARROW: char = '\u{20d7}';
 
-/// Letters of an angular and of a linear part, by the letter of the whole; the first pair that is free is taken.
+/// Letters of an angular and a linear part, by the letter of the whole; the first free pair is used.
 const TWISTS: [(&str, &[(&str, &str)]); 11] = [
     ("μ", MOMENTA),
     ("ν", MOMENTA),
@@ -49,7 +49,7 @@ const VARIATIONS: &[(&str, &str)] = &[("φ", "ψ"), ("θ", "χ"), ("ε", "δ")];
 const DIRECTIONS: &[(&str, &str)] = &[("α", "β"), ("ρ", "σ"), ("ϕ", "ϖ")];
 const RATES: &[(&str, &str)] = &[("ω", "v"), ("ω", "w"), ("ϖ", "u")];
 
-/// Letters of a rotation and a translation, of configurations and of velocities.
+/// Letters of a rotation and a translation, for configurations and for velocities.
 const MOTIONS: [&[(&str, &str)]; 2] = [
     &[("R", "x"), ("S", "s"), ("Q", "q"), ("T", "t"), ("B", "b")],
     &[
@@ -72,28 +72,28 @@ const BLOCKS: [(&str, &str); 6] = [
     ("H", "g"),
 ];
 
-/// The letters of a page, those of parts among them.
+/// The letters of a page, including those of parts.
 pub struct Names {
     /// All symbols.
     pub symbols: Symbols,
-    /// The parts of each letter that has been taken apart.
+    /// The parts of each letter that has been split.
     known: BTreeMap<(Kind, SymbolId), [SymbolId; 2]>,
-    /// Pairs by what they are the parts of.
+    /// Pairs of letters of parts, by the letter of the whole.
     pairs: BTreeMap<(Kind, String), (String, String)>,
-    /// What was found in the document.
+    /// The result of the scan of the document.
     found: Found,
-    /// What each letter of a part is a part of.
+    /// The letter that each part belongs to.
     pub(super) wholes: BTreeMap<SymbolId, (Kind, SymbolId)>,
-    /// What the model names.
+    /// The names of the model.
     pub(super) lets: Lets,
-    /// What has been introduced.
+    /// The letters that have been defined.
     pub(super) said: Said,
     /// How rigid motions are printed.
     pub(super) motions: Motions,
 }
 
 impl Names {
-    /// The letters of a document with these symbols, in which the model names `lets`.
+    /// The letters of a document with these symbols and the model's names `lets`.
     pub fn new(
         symbols: &Symbols,
         doc: &Document,
@@ -102,7 +102,7 @@ impl Names {
         sites: bool,
     ) -> Names {
         let mut found = Found::in_document(doc);
-        // The names of the model are its own, printed or not.
+        // The names of the model are reserved, printed or not.
         let own = lets.iter().map(|(name, _)| spelling::parse(name).base);
         found.names.extend(own);
         let mut names = Names {
@@ -125,12 +125,12 @@ impl Names {
         names
     }
 
-    /// The number of homogeneous coordinates in the document, without the last.
+    /// The dimension of the homogeneous coordinates in the document, without the last entry.
     pub(super) fn space(&self) -> Option<Dim> {
         self.found.points.first().map(|n| expr::within(*n))
     }
 
-    /// The parts of a letter at its offset.
+    /// The parts of a letter, at its offset.
     pub fn parts(&mut self, kind: Kind, at: Letter) -> [Expr; 2] {
         let ids = match self.known.get(&(kind, at.symbol)) {
             Some(ids) => *ids,
@@ -139,18 +139,18 @@ impl Names {
         ids.map(|id| expr::letter(&self.symbols, id, at.shift))
     }
 
-    /// Whether a letter is known to be taken apart so.
+    /// Whether a letter is known to be split in this way.
     pub fn knows(&self, kind: Kind, symbol: SymbolId) -> bool {
         let key = (kind, symbol);
         self.found.parted.contains(&key) || self.known.contains_key(&key)
     }
 
-    /// Whether this is the shape of homogeneous coordinates.
+    /// Whether a shape is a vector of homogeneous coordinates of the document.
     pub fn is_of_points(&self, shape: Shape) -> bool {
         shape.is_vector() && self.found.points.contains(&shape.rows)
     }
 
-    /// An expression, like terms collected, with the names of the model.
+    /// An expression with the names of the model and like terms collected.
     pub fn named(&self, e: &Expr) -> Expr {
         let e = expr::shown(&self.symbols, e);
         let named = self.lets.named(&self.symbols, &e);
@@ -223,7 +223,7 @@ impl Names {
         ids
     }
 
-    /// Letters for the blocks of a matrix that are written in equations of their own.
+    /// Letters for the blocks of a matrix, whose values get equations of their own.
     pub fn blocks(&mut self, space: Dim) -> [Expr; 2] {
         let free = BLOCKS.iter().find(|(a, b)| {
             let none = spelling::parse("");
@@ -277,7 +277,7 @@ impl Names {
             && !self.pairs.values().any(paired)
     }
 
-    /// An expression with the letters of parts written out again.
+    /// Replaces the letters of parts in an expression by parts of the whole.
     #[cfg(test)]
     pub fn written_out(&self, e: &Expr) -> Expr {
         let e = &self.lets.written_out(&self.symbols, e);

@@ -1,5 +1,5 @@
-//! Blocks of homogeneous coordinates and matrices, by the rules of block matrices: the entries before the last and the
-//! last, the upper left block and the column beside it.
+//! Splits homogeneous coordinates and matrices into blocks by the rules of block matrices: the last entry and the
+//! others, the upper left block and the column to its right.
 
 use super::names::{Kind, Names};
 use super::read::{Inclusion, factors, inclusion, is_last};
@@ -10,7 +10,7 @@ use crate::expr::{self, Expr, Letter, Node};
 const TWO: Dim = Dim::Fixed(2);
 
 impl Names {
-    /// The part of the factors behind an `ι^T`, and for how many of them.
+    /// The upper entries of the factors after an `ι^T`, and the number of factors used.
     pub(super) fn of_points(&mut self, rest: &[Expr]) -> Option<(Expr, usize)> {
         let whole = |list: &[Expr]| expr::product(list.iter().cloned());
         let end = rest
@@ -34,7 +34,7 @@ impl Names {
         }
     }
 
-    /// All entries of homogeneous coordinates but the last.
+    /// The entries of homogeneous coordinates except the last.
     pub fn top(&mut self, e: &Expr) -> Option<Expr> {
         let rows = e.shape().rows;
         let space = expr::within(rows);
@@ -69,7 +69,7 @@ impl Names {
         })
     }
 
-    /// The top of a matrix times a vector.
+    /// The upper entries of a matrix times a vector.
     fn top_of(&mut self, head: &Expr, behind: &Expr) -> Option<Expr> {
         if let Some([turn, shift]) = self.motion(head) {
             let moved = expr::product([self.last(behind)?, shift]);
@@ -110,7 +110,7 @@ impl Names {
         }
     }
 
-    /// Multipliers have letters for their blocks; matrices of the model keep their own.
+    /// Multipliers have letters for their blocks; matrices of the model keep their own letters.
     fn has_blocks(&self, at: Letter) -> bool {
         self.symbols.get(at.symbol).role == Role::Multiplier
     }
@@ -164,7 +164,7 @@ impl Names {
         }
     }
 
-    /// The upper entries of the last column of a matrix.
+    /// The last column of a matrix without its last entry.
     fn column(&mut self, e: &Expr) -> Option<Expr> {
         let last = expr::unit(e.shape().cols, expr::last_axis(e.shape().cols));
         match e.node() {
@@ -183,7 +183,7 @@ impl Names {
         }
     }
 
-    /// All of a matrix but its last row and column.
+    /// A matrix without its last row and column.
     fn block(&mut self, e: &Expr) -> Option<Expr> {
         let space = expr::within(e.shape().rows);
         if let Some([turn, _]) = self.motion(e) {
@@ -217,7 +217,7 @@ impl Names {
         })
     }
 
-    /// The block, or the upper entries, of what has no letters for them.
+    /// The block, or the upper entries, of a product that does not have letters for them, written by inclusions.
     fn unnamed(&self, list: &[Expr], block: bool) -> Expr {
         let rows = list.first().map_or(TWO, |f| f.shape().rows);
         let first = expr::inclusion(rows, expr::within(rows), 0);
@@ -240,7 +240,7 @@ impl Names {
             let top = self.top(&row)?;
             return Some(expr::mul(self.top(head)?, self.turned(top)));
         }
-        // Nothing below stands to the left of the block of these.
+        // The upper right block of these factors vanishes.
         let upper = match head.node() {
             Node::Transpose(inner) => match inner.node() {
                 Node::Inverse(inner) => self.motion(inner).map(|[turn, _]| turn),

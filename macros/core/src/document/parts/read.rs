@@ -1,5 +1,5 @@
-//! How vectors and matrices of rigid motions are written in what was derived: the inclusions that put parts into longer
-//! vectors and take them out, unit vectors, blocks.
+//! Recognises how a derivation writes vectors and matrices of rigid motions: inclusions into longer vectors, their
+//! transposes, unit vectors and blocks.
 
 use super::names::Kind;
 use crate::expr::shape::Dim;
@@ -9,7 +9,7 @@ const ONE: Dim = Dim::Fixed(1);
 const TWO: Dim = Dim::Fixed(2);
 const THREE: Dim = Dim::Fixed(3);
 
-/// The rows of the parts of a vector of the Lie algebra of so many components.
+/// First row and dimension of the two parts of a Lie algebra vector with this many components.
 pub fn twist_rows(rows: Dim) -> Option<[(u8, Dim); 2]> {
     match rows {
         Dim::Fixed(6) => Some([(0, THREE), (3, THREE)]),
@@ -18,16 +18,16 @@ pub fn twist_rows(rows: Dim) -> Option<[(u8, Dim); 2]> {
     }
 }
 
-/// What a factor includes a vector into, or takes it out of.
+/// What kind of longer vector an inclusion maps into.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Inclusion {
-    /// The angular or the linear part of a vector of the Lie algebra.
+    /// A vector of the Lie algebra, as its angular or linear part.
     Twist(usize),
-    /// A vector into homogeneous coordinates.
+    /// Homogeneous coordinates.
     Point,
 }
 
-/// What a factor includes a vector into.
+/// The kind of inclusion of a factor.
 pub fn inclusion(e: &Expr) -> Option<Inclusion> {
     let Node::Inclusion(shape, at) = e.node() else {
         return None;
@@ -40,7 +40,7 @@ pub fn inclusion(e: &Expr) -> Option<Inclusion> {
     Some(Inclusion::Twist(part))
 }
 
-/// The inclusion that a factor undoes.
+/// The inclusion that a factor is the transpose of.
 pub fn taken(e: &Expr) -> Option<Inclusion> {
     match e.node() {
         Node::Transpose(inner) => inclusion(inner),
@@ -48,7 +48,7 @@ pub fn taken(e: &Expr) -> Option<Inclusion> {
     }
 }
 
-/// What a factor takes apart.
+/// The kind of splitting of a factor.
 pub fn taken_kind(e: &Expr) -> Option<Kind> {
     Some(match taken(e)? {
         Inclusion::Twist(_) => Kind::Twist,
@@ -61,7 +61,7 @@ pub fn is_last(e: &Expr) -> bool {
     matches!(e.node(), Node::Unit(n, axis) if *axis == expr::last_axis(*n))
 }
 
-/// The letter that an expression is.
+/// The letter, if the expression is one.
 pub fn letter(e: &Expr) -> Option<Letter> {
     match e.node() {
         Node::Letter(at) => Some(*at),
@@ -69,18 +69,18 @@ pub fn letter(e: &Expr) -> Option<Letter> {
     }
 }
 
-/// Scalar factors, and the others in order.
+/// Scalar factors, and the other factors in order.
 pub fn factors(list: &[Expr]) -> (Vec<Expr>, Vec<Expr>) {
     let scalar = |f: &Expr| f.shape().is_scalar();
     list.iter().cloned().partition(scalar)
 }
 
-/// How many homogeneous coordinates a factor puts a vector into.
+/// The dimension of the homogeneous coordinates that a factor includes a vector into.
 pub fn homogeneous(e: &Expr) -> Option<Dim> {
     (inclusion(e)? == Inclusion::Point).then(|| e.shape().rows)
 }
 
-/// The letter of which a scalar product with the last unit vector takes the last entry.
+/// The letter whose last entry is taken by a dot product with the last unit vector.
 pub fn last_taken(e: &Expr) -> Option<Letter> {
     let Node::Dot(a, b) = e.node() else {
         return None;
@@ -92,17 +92,17 @@ pub fn last_taken(e: &Expr) -> Option<Letter> {
     }
 }
 
-/// Whether a vector is written by what puts others into homogeneous coordinates.
+/// Whether a vector is written with inclusions into homogeneous coordinates.
 pub fn written_in_points(e: &Expr) -> bool {
     written(e, &|f| inclusion(f) == Some(Inclusion::Point) || is_last(f))
 }
 
-/// Whether a vector is written by its angular and its linear part.
+/// Whether a vector is written by its angular and linear part.
 pub fn written_in_twists(e: &Expr) -> bool {
     written(e, &|f| matches!(inclusion(f), Some(Inclusion::Twist(_))))
 }
 
-/// Whether the first factor of a term that is no number puts what follows into a longer vector.
+/// Whether the first non-scalar factor of a term satisfies `puts`.
 fn written(e: &Expr, puts: &dyn Fn(&Expr) -> bool) -> bool {
     match e.node() {
         Node::Sum(terms) => terms.iter().any(|t| written(t, puts)),
@@ -115,7 +115,7 @@ fn written(e: &Expr, puts: &dyn Fn(&Expr) -> bool) -> bool {
     }
 }
 
-/// A matrix as its block and column, without the terms that are no such matrices.
+/// A matrix split into its block and column terms, and terms that are neither.
 pub struct Blocks {
     /// Upper left.
     pub block: Vec<Expr>,
@@ -126,7 +126,7 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// The terms of a matrix, sorted.
+    /// Sorts the terms of a matrix.
     pub fn of(e: &Expr) -> Blocks {
         let mut out = Blocks {
             block: Vec::new(),
@@ -148,7 +148,7 @@ impl Blocks {
     }
 }
 
-/// What a term puts into a homogeneous matrix; `true` into its column.
+/// The part that a term includes into a homogeneous matrix; `true` for its column.
 fn placed(term: &Expr) -> Option<(bool, Expr)> {
     match term.node() {
         Node::Neg(a) => placed(a).map(|(column, part)| (column, expr::neg(part))),

@@ -1,4 +1,4 @@
-//! Sentences that introduce the letters of parts and the names of a model, behind what holds them first.
+//! Sentences that define the letters of parts and the names of a model, after the equation where they first occur.
 
 use super::Motions;
 use super::names::{Kind, Names};
@@ -11,29 +11,30 @@ use crate::print::document::{Block, Inline};
 use crate::print::formula::Formula;
 use std::collections::BTreeSet;
 
-/// Nodes of a value from which on it stands in an equation of its own.
+/// A value with at least this many expression nodes gets an equation of its own.
 const LONG: u32 = 20;
 
-/// What has been said of letters, and what is to be.
+/// The letters that have been defined, and those still to define.
 #[derive(Default)]
 pub struct Said {
-    /// Letters whose parts have been introduced, or will be next.
+    /// Letters whose parts have been defined, or are pending.
     known: BTreeSet<(Kind, String)>,
-    /// Whether letters of all sites are introduced by those of one.
+    /// Whether the letters of one site define those of all sites.
     sites: bool,
-    /// Those that are next.
+    /// The pending letters.
     pending: Vec<(Kind, SymbolId)>,
-    /// Names of the model that have been told, or will be next.
+    /// Names of the model that have been defined, or are pending.
     told: BTreeSet<SymbolId>,
-    /// Those that are next.
+    /// The pending names.
     new: Vec<SymbolId>,
-    /// Entries of what has no letters for them, `x_{1:3}`, were printed, and explained.
+    /// Whether entries such as `x_{1:3}` of expressions without letters for them were printed, and whether they were
+    /// explained.
     entries: [bool; 2],
 }
 
 impl Said {
-    /// Nothing yet; letters of many `sites` are introduced by those of one. Where motions stay whole, entries are written
-    /// as the language has them.
+    /// Nothing defined yet. With `sites`, the letters of one site define those of all. If motions stay whole, entries
+    /// use the notation of the language and need no explanation.
     pub fn of(motions: Motions, sites: bool) -> Said {
         Said {
             sites,
@@ -44,7 +45,7 @@ impl Said {
 }
 
 impl Names {
-    /// Notes which letters of parts stand in a formula.
+    /// Records which letters of parts a formula contains.
     pub fn printed(&mut self, f: &Formula) {
         f.each_expression(&mut |e| {
             for at in expr::letters(e) {
@@ -59,8 +60,8 @@ impl Names {
         });
     }
 
-    /// Puts a letter among those that are introduced next, unless it has been; of several sites that with the
-    /// shortest index.
+    /// Makes a letter pending unless it has been defined. Of several sites, it keeps the letter with the shortest
+    /// index.
     fn said_next(&mut self, kind: Kind, whole: SymbolId) {
         let name = |id| &self.symbols.get(id).name;
         let key = |id| match self.said.sites {
@@ -85,9 +86,9 @@ impl Names {
         }
     }
 
-    /// The sentence on the letters and names that are new, where there are any, and equations for long ones.
+    /// The sentence that defines pending letters and names, if there are any, and equations for long values.
     pub fn introduced(&mut self) -> Vec<Block> {
-        // What is said of a name may hold further ones.
+        // The definition of a name may contain further names.
         let mut named = Vec::new();
         while !self.said.new.is_empty() {
             for symbol in std::mem::take(&mut self.said.new) {
@@ -184,7 +185,7 @@ impl Names {
     }
 }
 
-/// What the parts are, in a sentence.
+/// Describes the parts in words.
 fn said(kind: Kind, shape: Shape) -> &'static str {
     match kind {
         Kind::Twist => ", angular and linear part",
@@ -195,7 +196,7 @@ fn said(kind: Kind, shape: Shape) -> &'static str {
     }
 }
 
-/// Whether it takes entries of something.
+/// Whether an expression takes entries of homogeneous coordinates.
 fn takes_entries(e: &Expr) -> bool {
     let takes = match e.node() {
         Node::Product(list) => list.iter().any(|f| taken_kind(f) == Some(Kind::Point)),

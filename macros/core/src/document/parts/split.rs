@@ -1,5 +1,6 @@
-//! Expressions in the letters of parts: what takes a part of a vector of the Lie algebra is that part, scalar products
-//! are sums of those of parts. Every function gives an expression equal to the one asked for.
+//! Rewrites expressions in the letters of parts: a factor that takes a part of a Lie algebra vector becomes the
+//! letter of that part, and dot products become sums over the parts. Every function returns an expression equal to
+//! its argument.
 
 use super::names::{Kind, Names};
 use super::read::{
@@ -64,7 +65,7 @@ impl Names {
         }
         let (part, used) = match taken(head)? {
             Inclusion::Twist(which) => {
-                // Of a column that is put into a matrix, only the factors of the column.
+                // If a column is included into a matrix, split only the factors of the column.
                 let (parts, used) = (1..=rest.len()).rev().find_map(|n| {
                     let column = expr::product(rest.get(..n)?.iter().cloned());
                     Some((self.twist(&column)?, n))
@@ -74,7 +75,7 @@ impl Names {
             Inclusion::Point => self.of_points(rest)?,
         };
         let before = self.each(before);
-        // What stands behind may take parts too.
+        // The remaining factors may take parts too.
         let behind = match rest.get(used..)? {
             [] => None,
             list => Some(self.rewritten(&expr::product(list.iter().cloned()))),
@@ -84,7 +85,7 @@ impl Names {
         ))
     }
 
-    /// A product with a part of a row, `ξᵀ ι`.
+    /// A product that takes a part of a row, `ξᵀ ι`.
     fn row(&mut self, list: &[Expr]) -> Option<Expr> {
         let (at, which, whole) = list.windows(2).enumerate().find_map(|(at, pair)| {
             let [row, puts] = pair else { return None };
@@ -113,13 +114,13 @@ impl Names {
         expr::product(scalars.into_iter().chain([part]))
     }
 
-    /// A scalar product by its parts.
+    /// A dot product by parts.
     fn dot(&mut self, a: &Expr, b: &Expr) -> Option<Expr> {
         if is_unit(a) || is_unit(b) {
             let (unit, other) = if is_unit(a) { (a, b) } else { (b, a) };
             return self.entry(unit, other);
         }
-        // Whole letters are paired as they are.
+        // A dot product of two letters stays as it is.
         if letter(a).is_some() && letter(b).is_some() {
             return None;
         }

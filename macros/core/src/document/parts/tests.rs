@@ -1,5 +1,5 @@
-//! What a page prints is what was derived: with the letters of parts written out again every expression is
-//! equal to the one before, as the algebra proves; no inclusion is left in print, and every letter is introduced.
+//! Checks that a page prints what was derived. If the letters of parts are replaced by their definitions, the algebra
+//! proves each expression equal to the derived one. Pages contain no inclusions and define every letter.
 
 use super::Motions;
 use super::display::Display;
@@ -12,8 +12,8 @@ use crate::expr::{self, Expr};
 use crate::pipeline::parse_source;
 use crate::print::Format;
 
-/// Statements with rigid motions of space and of the plane: several of them, beside rotations and fields, on both
-/// sides, with advected points, held constraints and names that the page would choose.
+/// Models with rigid motions of space and of the plane: several motions, with rotations and fields, on both sides,
+/// with advected points, constraints, and names that the page would choose itself.
 const MODELS: [&str; 8] = [
     "model Alone {
         param J: Sym<3>;
@@ -161,7 +161,7 @@ fn what_is_printed_is_what_was_derived() {
     }
 }
 
-/// A satellite about a planet, gravity to second order, with names.
+/// A satellite around a planet, with gravity to second order and `let` names.
 const SATELLITE: &str = "model Satellite {
     param m, GM: Real;
     param J: Sym<3>;
@@ -198,7 +198,7 @@ fn names_of_the_model_stand_in_text_as_on_a_page() {
     let text = printed(&d, Format::Text);
     for said in [
         "We write y_k := Λ_kᵀ x_k; I := tr(J) Id - J; r_k := |x_k|.",
-        // Like terms are one, and powers of the length are powers of its name.
+        // Like terms are collected, and powers of the length are powers of its name.
         "p_{2,k} = m Δx_k/h + h m GM x_k/(2 r_k³) - 3 h GM tr(J) x_k/(4 r_k⁵)",
         "+ 15 h GM (y_k·(J y_k)) x_k/(4 r_k⁷) - 3 h GM Λ_k J y_k/(2 r_k⁵)",
         "L = ½ m ζ₂·ζ₂ + ½ tr(J) ζ₁·ζ₁ - ½ ζ₁·(J ζ₁) + m GM/r - GM tr(J)/(2 r³) + 3 GM y·(J y)/(2 r⁵)",
@@ -211,7 +211,7 @@ fn names_of_the_model_stand_in_text_as_on_a_page() {
     let page = printed(&d, Format::Latex);
     assert!(!page.contains("\\sqrt"), "{page}");
     assert!(page.contains("\\lvert x_{k}\\rvert"), "{page}");
-    // Without names lengths stand for roots of squares.
+    // Without names, norms replace the square roots.
     let bare = SATELLITE.replace("let r = sqrt(dot(x, x));", "");
     let bare = bare
         .replace("/r", "/sqrt(dot(x, x))")
@@ -240,7 +240,7 @@ fn a_name_is_found_in_a_trace_from_whichever_factor_on() {
     assert!(!text.contains("tr(A Q"), "{text}");
 }
 
-/// Words without the ends of lines.
+/// Joins the words of a text across line breaks.
 fn words(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
@@ -287,7 +287,7 @@ fn letters_are_introduced_where_they_first_stand() {
         page.find("p_{k} & = ").is_some_and(|at| at > balance),
         "{page}"
     );
-    // What the model names is left to it.
+    // A name of the model stays reserved for it.
     let d = derive_source(MODELS[2]).expect("a model");
     let page = printed(&d, Format::Markdown);
     assert!(

@@ -1,11 +1,11 @@
-//! Functionals of all sites: what is derived of them, what they conserve, and what is refused.
+//! Functionals of all sites: their derivations, their invariants, and rejected models.
 
 use crate::line::Line;
 use crate::pipeline::{derive_model, emitted_line, parse_source};
 
 const KINETIC: &str = "m*dot(next(X) - X, next(X) - X)/(2*h)";
 
-/// A model of particles with these statements and these terms beside the kinetic one.
+/// A model of particles with these statements, and with these terms added to the kinetic energy.
 fn model(statements: &str, terms: &str) -> String {
     format!(
         "model Particles {{ label a in 0..N; param m: Real at a; param f, k: Real; field X: Vec<2> at a on torus(L);
@@ -33,15 +33,15 @@ fn a_total_momentum_is_found_where_nothing_singles_out_a_place() {
     let cells = "mesh A: Real at a = voronoi_area(X);";
     let kept = vec!["momentum".to_owned()];
     assert_eq!(totals(&model(cells, "- h*k*m/A")), kept);
-    // On a rotating plane with what the frame adds.
+    // On a rotating plane with the Coriolis term.
     let turning = "+ (m*f/2)*dot(perp(X), next(X)) - h*k*m*log(A)";
     assert_eq!(totals(&model(cells, turning)), kept);
-    // A place beside the functional, or by itself, takes it away.
+    // A position outside the functional, multiplied by it or in a term of its own, breaks the symmetry.
     let none: Vec<String> = Vec::new();
     assert_eq!(totals(&model(cells, "- h*k*m*X[1]/A")), none);
     let own = totals(&model(cells, "- h*k*m/A - h*m*dot(X, X)"));
     assert_eq!(own, none);
-    // Of functionals of one's own nothing is known: none is stated.
+    // For user-defined functionals nothing is known, so that no invariant is stated.
     let path = "mesh A: Real at a = crate::area(X);";
     assert_eq!(totals(&model(path, "- h*k*m/A")), none);
 }
@@ -69,7 +69,7 @@ fn a_grid_keeps_no_momentum_and_a_field_beside_it_keeps_its_own() {
                 .clone()
         })
         .collect();
-    // The momentum of Y, which no functional sees.
+    // The momentum of Y, which does not occur in any functional.
     assert_eq!(names.len(), 1, "{names:?}");
 }
 
@@ -84,7 +84,7 @@ fn pull_backs_of_one_functional_are_computed_once() {
     };
     let mut count = 0;
     count_backs(&force.value, &mut count);
-    // One of the deposit, and in its seed one of the smoother.
+    // One of the deposit, and in its seed one of the smoothing.
     assert_eq!(count, 2);
 }
 
@@ -138,7 +138,7 @@ fn count_backs(e: &crate::expr::Expr, count: &mut usize) {
     e.children().into_iter().for_each(|x| count_backs(x, count));
 }
 
-/// What is said of the statements, by the derivation or by what would be emitted.
+/// The error of the derivation or of emission, or `derived`.
 fn said(statements: &str, terms: &str) -> String {
     let text = model(statements, terms);
     let read = parse_source(&text);

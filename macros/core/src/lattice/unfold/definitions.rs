@@ -1,4 +1,4 @@
-//! Replaces the name of every `let` by its expression: supports are decided on whole terms.
+//! Replaces the name of every `let` by its expression, since the range of a term depends on the whole term.
 
 use super::LARGEST;
 use crate::diagnostic::{Diagnostic, Errors};
@@ -17,7 +17,7 @@ pub(crate) fn definitions(model: &Model) -> Result<BTreeMap<String, Expression>,
             _ => None,
         })
         .collect();
-    // None is circular: each round puts one more level in.
+    // Definitions are not circular: each round substitutes one more level.
     for _ in 0..=stated.len() {
         for (name, value) in &stated {
             let put = inlined(value, &out);
@@ -38,7 +38,7 @@ pub(crate) fn definitions(model: &Model) -> Result<BTreeMap<String, Expression>,
     Ok(out)
 }
 
-/// With definitions in the place of their names.
+/// Substitutes definitions for their names.
 pub(crate) fn inlined(e: &Expression, lets: &BTreeMap<String, Expression>) -> Expression {
     e.replaced(&|e| match &e.kind {
         Kind::Name(n) => lets.get(n).map(|value| Expression {

@@ -1,4 +1,4 @@
-//! Held constraints at the sites that they have: one with a multiplier of its own at each.
+//! Expands constraints at sites: each site gets its own constraint and multiplier.
 
 use super::definitions::inlined;
 use super::{StatedHold, Writer};
@@ -78,9 +78,9 @@ impl Writer<'_> {
             self.push(stated, docs);
         }
     }
-    /// The offset of the first site of a constraint, if that is before its index: the constraint is counted from there,
-    /// so that `x - prev(x, i)` is the constraint `next(x, i) - x`. Zero for fields that grow once around a ring, for
-    /// which the two differ.
+    /// The offset of the first site of a constraint, if it is negative. The constraint is then indexed from that
+    /// site, so that `x - prev(x, i)` is the constraint `next(x, i) - x`. Zero for fields with an offset around a
+    /// ring, for which the two differ.
     pub(super) fn first_counted(&self, e: &Expression, letters: &[(Sites, isize)]) -> isize {
         let grows = |n: &str| self.lattice.find(n).is_some_and(|q| q.offset.is_some());
         let first = letters.iter().map(|(_, offset)| *offset).min();
@@ -90,7 +90,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The indices of a range, counted from sites that are so far off.
+    /// Shifts a range by an offset; a range on a ring stays the same.
     pub(super) fn counted_from(&self, range: Range, by: isize) -> Range {
         match self.choice.periodic && self.lattice.line == Some(range.label) {
             true => range,

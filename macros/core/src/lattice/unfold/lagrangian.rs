@@ -1,4 +1,4 @@
-//! The Lagrangian as a sum over the sites that exist, with what the end conditions add.
+//! The Lagrangian as a sum over the existing sites, with the terms of the end conditions.
 
 use super::definitions::inlined;
 use super::warned::one_neighbour;

@@ -1,5 +1,5 @@
-//! Functionals of all sites in an expanded model: it has one site, and the letters of this site represent all
-//! sites. `A(X)` is a function whose reach the engine knows.
+//! Functionals of all sites in an expanded model, which has one site whose letters represent all sites. `A(X)`
+//! becomes a function that the engine knows to depend on all sites.
 
 use super::Writer;
 use crate::diagnostic::Diagnostic;
@@ -52,7 +52,7 @@ impl Writer<'_> {
 }
 
 impl Lattice {
-    /// Whether an expression holds values of functionals of all sites.
+    /// Whether an expression contains values of functionals of all sites.
     pub fn has_functional(&self, e: &Expression) -> bool {
         let named = |n: &str| self.find(n).is_some_and(|q| q.kind == Kind::Functional);
         any_name(e, &named)

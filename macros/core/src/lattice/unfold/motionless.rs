@@ -1,5 +1,5 @@
-//! Sites of a configuration that no kinetic term reaches, in the words of the statement. Takes the expanded model;
-//! gives which sites those are, and what to declare.
+//! Reports configurations whose velocities occur in no kinetic term, in the words of the declared model: the affected
+//! sites, and what to declare.
 
 use super::ExpandedModel;
 use crate::check::spec::{Configuration, Spec};
@@ -9,7 +9,8 @@ use crate::lattice::{Choice, Lattice, Sites, any_name};
 use crate::syntax::ast::{Expression, Kind};
 
 impl ExpandedModel {
-    /// The message for configurations whose velocities no term of the Lagrangian contains, the first of them at least.
+    /// The error for configurations whose velocities the Lagrangian does not contain; it names at least the first of
+    /// them.
     pub fn motionless(
         &self,
         lattice: &Lattice,

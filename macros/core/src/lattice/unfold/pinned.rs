@@ -1,5 +1,5 @@
-//! Quantities that do not move: configurations prescribed at an end, their velocities, and the quantities that
-//! follow them.
+//! Finds quantities that do not move: configurations prescribed at an end, their velocities, and advected quantities
+//! that depend only on these.
 
 use super::definitions::inlined;
 use super::{Writer, velocity_of};
@@ -12,7 +12,7 @@ use crate::syntax::ast::{Expression, Kind, Kindred, Model, Name, Statement};
 use std::collections::BTreeSet;
 
 impl Writer<'_> {
-    /// Finds what does not move.
+    /// Finds the quantities that do not move.
     pub(super) fn pin(&mut self, model: &Model) {
         for (last, _, alternative) in self.ends() {
             for name in &alternative.given {
@@ -35,8 +35,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Finds advected quantities that follow prescribed ones. Returns whether it found more of them than were known
-    /// before.
+    /// Finds advected quantities that follow prescribed ones. Returns whether it found new ones.
     fn followers(&mut self, model: &Model) -> bool {
         let before = self.pinned.len();
         for q in self.lattice.quantities.iter() {
@@ -90,8 +89,8 @@ impl Writer<'_> {
         self.pinned.len() > before
     }
 
-    /// Whether the constraint of a copy leaves it as it is: it contains no other moving quantity, and with prescribed
-    /// values substituted it gives the copy itself.
+    /// Whether the update of a copy leaves the copy unchanged: it contains no other moving quantity, and after
+    /// substitution of prescribed values it equals the copy.
     fn stands_still(&self, model: &Model, own: &str, update: &Expression, at: isize) -> bool {
         let Ok(put) = self.put(at).put(update) else {
             return false;
@@ -107,7 +106,7 @@ impl Writer<'_> {
         are_same(&self.of_parameters(model, &put), &put, &named(own))
     }
 
-    /// A model in whose names an expression of copies can be read: each of them is a parameter.
+    /// A model in which every name of an expression of copies is declared, as a parameter.
     fn of_parameters(&self, model: &Model, put: &Expression) -> Model {
         let mut out = Model {
             statements: Vec::new(),

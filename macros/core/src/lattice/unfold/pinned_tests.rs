@@ -1,10 +1,12 @@
-//! What stands still where an end gives configurations: what follows these, and nothing that goes on by itself.
+//! If an end prescribes configurations, the quantities that follow them do not move; quantities that advance by
+//! themselves do.
 
 use super::unfold;
 use crate::lattice::{Choice, Lattice};
 use crate::pipeline::parse_source;
 
-/// The names that are given on a line of three nodes, the first of which an end holds, besides its configurations.
+/// The prescribed names on a chain of three nodes whose first end prescribes its configurations, without these
+/// configurations.
 fn given(statements: &str) -> Vec<String> {
     let source = format!(
         "model Held {{
@@ -28,7 +30,7 @@ fn given(statements: &str) -> Vec<String> {
 fn what_follows_what_is_given_stands_still_and_clocks_go_on() {
     let none: &[&str] = &[];
     for (statements, wanted) in [
-        // Carried by a rotation, and by a field.
+        // Advected by a rotation, and by a field.
         (
             "advected v: Vec<3> at nodes; constraint next(v) = Ω^T*v;",
             ["v_0"].as_slice(),
@@ -49,17 +51,17 @@ fn what_follows_what_is_given_stands_still_and_clocks_go_on() {
             "let d = next(x) - x; advected y: Real at nodes; constraint next(y) = y + d;",
             &["y_0"],
         ),
-        // A segment has a node that moves.
+        // One of the nodes of a segment moves.
         (
             "advected r: Real at segments; constraint next(r) = r + (next(next(x, i)) - next(x)) - (next(x, i) - x);",
             none,
         ),
-        // What follows another one that stands still, in whatever order they are stated.
+        // A quantity that follows another motionless one, declared in either order.
         (
             "advected n, v: Vec<3> at nodes; constraint next(n) = n + (v - Ω^T*v); constraint next(v) = Ω^T*v;",
             &["v_0", "n_0"],
         ),
-        // Clocks, of one number and more, and what they drive.
+        // Scalar and vector clocks, and quantities that they drive.
         (
             "advected t: Real at nodes; constraint next(t) = t + h;",
             none,
@@ -78,7 +80,7 @@ fn what_follows_what_is_given_stands_still_and_clocks_go_on() {
             "advected t, a: Real at nodes; constraint next(t) = t + h; constraint next(a) = a + h*t;",
             none,
         ),
-        // What is given sets the pace.
+        // Prescribed values enter the update, but the quantity still moves.
         (
             "advected y: Real at nodes; constraint next(y) = y + h*x;",
             none,

@@ -1,6 +1,6 @@
-//! Constraints on sums over sites, `hold p: sum(m*φ) = X;`: in the expanded model they have one multiplier. Takes
-//! both sides as stated; gives the sums over the sites that exist, and what is summed, where the constraint is
-//! linear in its sums.
+//! Constraints on sums over sites, `hold p: sum(m*φ) = X;`, which have one multiplier in the expanded model. Expands
+//! both sides into sums over the existing sites. If the constraint is linear in its sums, it also returns the
+//! summands.
 
 use super::{LARGEST, Writer};
 use crate::diagnostic::{Diagnostic, Place};
@@ -9,7 +9,7 @@ use crate::lattice::parts::{LINEAR, has_sum, names, parts, summand, with_parts};
 use crate::lattice::range::{Range, Reach, reach};
 use crate::syntax::ast::{Expression, Kind, Name, Statement};
 
-/// A constraint on sums over sites as stated.
+/// A declared constraint on sums over sites.
 #[derive(Clone, Debug)]
 pub struct StatedTotal {
     /// The name of its multiplier.
@@ -23,17 +23,17 @@ pub struct StatedTotal {
 /// A summand and the sites of its sum.
 #[derive(Clone, Debug)]
 pub struct Summed {
-    /// It, at the site where it is shown.
+    /// The summand at the displayed site.
     pub shown: Expression,
-    /// That site.
+    /// The displayed site.
     pub site: usize,
     /// The sites that it is summed over.
     pub range: Range,
-    /// Kind of sites and offset of its letters, seen from its index.
+    /// Kind of sites and offset of its letters, relative to its index.
     pub letters: Vec<(Sites, isize)>,
 }
 
-/// The offsets of the letters of a sum, and the sites that it states.
+/// The offsets of the letters of a sum, and the sites that it names.
 fn over(lattice: &Lattice, call: &Expression) -> Result<Reach, Diagnostic> {
     match &call.kind {
         Kind::Call(_, arguments) => match arguments.as_slice() {
@@ -44,7 +44,7 @@ fn over(lattice: &Lattice, call: &Expression) -> Result<Reach, Diagnostic> {
     }
 }
 
-/// A sum of terms with their signs; of none, zero.
+/// A sum of signed terms; zero if there are none.
 fn sum_of(terms: Vec<(bool, Expression)>, place: Place) -> Expression {
     let kind = match terms.is_empty() {
         true => Kind::Number(crate::algebra::Rational::ZERO),
@@ -53,7 +53,7 @@ fn sum_of(terms: Vec<(bool, Expression)>, place: Place) -> Expression {
     Expression { kind, place }
 }
 
-/// Terms with one sum each or none, with their signs; `None` if an expression is not linear in its sums.
+/// Signed terms with at most one sum each; `None` if the expression is not linear in its sums.
 fn terms(e: &Expression) -> Option<Vec<(bool, Expression)>> {
     if summand(e).is_some() || !has_sum(e) {
         return Some(vec![(false, e.clone())]);
@@ -88,7 +88,7 @@ fn terms(e: &Expression) -> Option<Vec<(bool, Expression)>> {
     Some(own.collect())
 }
 
-/// The summand in a term with one sum: the term with the summand in place of the sum, and the call.
+/// Replaces the sum in a term with one sum by its summand; also returns the call of `sum`.
 fn opened(term: &Expression) -> (Expression, Option<&Expression>) {
     if let Some(inner) = summand(term) {
         return (inner.clone(), Some(term));
@@ -106,7 +106,7 @@ fn opened(term: &Expression) -> (Expression, Option<&Expression>) {
 }
 
 impl Writer<'_> {
-    /// A constraint on sums over sites.
+    /// Expands a constraint on sums over sites.
     pub(super) fn total(
         &mut self,
         name: &Name,

@@ -1,4 +1,4 @@
-//! Warnings about models that derive on a chain but are probably not intended, in the words of the statement.
+//! Warnings about chain models that derive but are probably not intended, in the words of the declared model.
 
 use super::ExpandedModel;
 use crate::derive::warnings::{Topic, Warning, unused_let};
@@ -8,7 +8,8 @@ use crate::syntax::ast::{Expression, Extent, Model, Name, Statement};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
-/// The sum of such a term starts or ends one site later than the sum of the same term at the site itself.
+/// Warns about a term of one neighbour only. Its sum starts or ends one site later than the sum of the same term at
+/// the site itself.
 pub(super) fn one_neighbour(stated: &Expression) -> Warning {
     let message = "this term holds a neighbour and not the site itself: it is summed over the sites that have this neighbour, all but the one at the end";
     let d = Diagnostic::new(stated.place, message).help(
@@ -17,7 +18,7 @@ pub(super) fn one_neighbour(stated: &Expression) -> Warning {
     Warning::new(Topic::OneNeighbour, d)
 }
 
-/// Abbreviations that nothing uses.
+/// Unused `let` definitions.
 pub(super) fn without_use(model: &Model) -> Vec<Warning> {
     let unused = crate::check::unused_definitions(model).into_iter();
     unused
@@ -25,7 +26,7 @@ pub(super) fn without_use(model: &Model) -> Vec<Warning> {
         .collect()
 }
 
-/// An offset acts across the seam of a ring only.
+/// Warns about an offset on an open chain; an offset only acts across the seam of a ring.
 pub(super) fn without_a_ring(offset: &Name) -> Warning {
     let message = format!(
         "`{}` is what a field grows by around a ring, and the line is not said to be periodic",
@@ -39,12 +40,11 @@ pub(super) fn without_a_ring(offset: &Name) -> Warning {
 }
 
 impl ExpandedModel {
-    /// Warnings in the words of the statement: warnings about terms first, then the warnings of the derivation. On a
-    /// short chain, or with prescribed ends, a quantity may be unused or constant although it is neither on other
-    /// chains.
+    /// The warnings in the words of the declared model: about terms first, then from the derivation. On a short
+    /// chain, or with prescribed ends, a quantity may be unused or constant although it is neither on other chains.
     pub fn told(&self, choice: &Choice, found: &[Warning]) -> Vec<Warning> {
         let shortest = 2 * self.width() + 2;
-        // Without neighbours one site tells of all.
+        // Without neighbours, one site represents all sites.
         let short = self.width() > 0 && choice.counts.iter().all(|n| *n < shortest);
         let partial = short || !self.given.is_empty();
         let mut out: Vec<Warning> = Vec::new();
@@ -57,7 +57,7 @@ impl ExpandedModel {
             let of_every_line =
                 w.topic == Topic::UnusedParameter && self.stands_in(&self.named.not_at_all, w);
             let of_this_choice = of_this_choice && !of_every_line;
-            // An end that this choice leaves out uses it.
+            // An end condition that was not chosen uses it.
             if w.topic == Topic::UnusedParameter && self.stands_in(&self.named.by_ends, w) {
                 continue;
             }
@@ -75,7 +75,7 @@ impl ExpandedModel {
         out
     }
 
-    /// Whether the parameter that a warning speaks of is one of these.
+    /// Whether the parameter of a warning is one of these names.
     fn stands_in(&self, names: &BTreeSet<String>, w: &Warning) -> bool {
         let name = w.diagnostic.message.split('`').nth(1);
         name.is_some_and(|name| {
@@ -115,17 +115,17 @@ impl ExpandedModel {
     }
 }
 
-/// The names in a statement, whatever the choice.
+/// The names in all statements, including the end conditions that were not chosen.
 #[derive(Clone, Debug)]
 pub(super) struct Named {
-    /// Parameters that nothing names.
+    /// Parameters whose names do not occur anywhere.
     not_at_all: BTreeSet<String>,
     /// Names that the terms of end conditions use, chosen or not.
     by_ends: BTreeSet<String>,
 }
 
 impl Named {
-    /// That of a model.
+    /// Collects the names of a model.
     pub(super) fn of(model: &Model) -> Self {
         Named {
             not_at_all: unnamed(model),
@@ -134,7 +134,7 @@ impl Named {
     }
 }
 
-/// Parameters of the model that nothing states by name, at whatever ends.
+/// Parameters whose names occur in no statement and no end condition.
 fn unnamed(model: &Model) -> BTreeSet<String> {
     let declared = model.statements.iter().flat_map(|s| match s {
         Statement::Label { step, .. } => step.iter().map(|n| n.text.clone()).collect(),
@@ -144,7 +144,7 @@ fn unnamed(model: &Model) -> BTreeSet<String> {
     declared.filter(|name| !is_named(model, name)).collect()
 }
 
-/// Names in the terms of end conditions, chosen or not, and in the abbreviations that these terms use.
+/// Names in the terms of all end conditions, chosen or not, and in the definitions that these terms use.
 fn of_ends(model: &Model) -> BTreeSet<String> {
     let statements = || model.statements.iter();
     let terms = statements().flat_map(|s| match s {

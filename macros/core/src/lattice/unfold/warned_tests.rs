@@ -1,10 +1,10 @@
-//! What is told of lattices: signs of kinetic energies that join neighbours, where terms of ends stand, what is never used.
+//! Warnings about chains: the sign of kinetic energies with neighbour coupling, terms of ends, unused parameters.
 
 use crate::derive::warnings::{Topic, Warning};
 use crate::lattice::{Choice, Lattice};
 use crate::pipeline::{derive_lattice, parse_source, representative};
 
-/// The warnings of a lattice with these ends, or of the ring.
+/// The warnings for a chain with these ends, or for the ring.
 fn told(source: &str, count: Option<usize>, ends: Option<[&str; 2]>) -> Vec<Warning> {
     let model = parse_source(source).unwrap_or_else(|e| panic!("{source}\n{e}"));
     let lattice = Lattice::read(&model).unwrap();
@@ -49,13 +49,13 @@ fn velocities_that_are_joined_weakly_have_a_positive_energy() {
             "dot(d, d)/(2*h) + (c/h)*dot(d, next(d, i))",
             0,
         ),
-        // No parameter makes it weak: the symbol m (1 + 1.4 cos θ) of five sites is negative at θ = 4π/5.
+        // Indefinite for every value of m: with five sites, the symbol m (1 + 1.4 cos θ) is negative at θ = 4π/5.
         (
             "param m: Real;",
             "m*dot(d, d)/(2*h) + (0.7*m/h)*dot(d, next(d, i))",
             1,
         ),
-        // Nor is a sign mended by what joins neighbours.
+        // Neighbour coupling does not repair a negative sign.
         (
             "param m, c: Real;",
             "(c/h)*dot(d, next(d, i)) - m*dot(d, d)/(2*h)",
@@ -159,6 +159,6 @@ fn a_definition_that_nothing_uses_is_said_once() {
         unused(source),
         ["`f` is named by `let` and never used: it has no effect"]
     );
-    // A term of an end that is not chosen uses it.
+    // An end condition that is not chosen uses it.
     assert!(unused(&source.replace("h*F*q", "h*F*f")).is_empty());
 }

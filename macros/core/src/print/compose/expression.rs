@@ -1,4 +1,4 @@
-//! Layouts of expressions, one arm for each kind of node.
+//! Layouts of expressions, with one match arm for each kind of node.
 
 use super::{Composer, transposition};
 use crate::algebra::Rational;
@@ -7,8 +7,8 @@ use crate::print::layout::{Fence, Layout, Sign};
 use crate::print::level::{Laid, Level};
 use crate::print::width::{Size, width};
 
-/// Width, in tenths of a point, from which a numerator stands beside its denominator,
-/// `1/h (...)`, so that it can be broken over lines: half a line.
+/// From this width in tenths of a point, a numerator is written next to its denominator, `1/h (...)`, so that it can
+/// break across lines: half a line.
 const WIDEST_NUMERATOR: usize = 1600;
 
 impl Composer<'_> {
@@ -28,7 +28,7 @@ impl Composer<'_> {
         }
     }
 
-    /// Takes the sign off, also the one that a number at the front carries.
+    /// Splits off the sign, including the sign of a leading number.
     fn signed(&self, e: &Expr) -> (bool, Laid) {
         if let Node::Neg(inner) = e.node() {
             let (minus, laid) = self.signed(inner);
@@ -43,7 +43,7 @@ impl Composer<'_> {
                     Node::Number(q) if q.is_negative() => {
                         (true, self.quotient(q.negated(), &[], &divisors))
                     }
-                    // The constructors have carried a minus into every term; it reads better out.
+                    // Expression constructors distribute a minus over the terms; here it is factored out again.
                     Node::Sum(terms) if terms.iter().all(is_negative) => {
                         let positive = [expr::neg(top.clone())];
                         (true, self.quotient(Rational::ONE, &positive, &divisors))
@@ -61,7 +61,7 @@ impl Composer<'_> {
             Node::Constant(c) => self.constant(*c),
             Node::Letter(at) => {
                 let letter = self.letter(*at);
-                // Several letters side by side are bracketed under a superscript.
+                // A name of several letters gets brackets under a superscript.
                 match &letter {
                     Layout::Typeset(_, shown) if matches!(**shown, Layout::Row(_)) => {
                         Laid::new(letter, Level::Prefix)
@@ -154,12 +154,12 @@ impl Composer<'_> {
         }
     }
 
-    /// The length of a vector, or a number without its sign.
+    /// The norm of a vector, or the absolute value of a number.
     fn length(&self, of: &Expr) -> Laid {
         Laid::atom(Layout::fenced(Fence::Bars, self.expression(of).layout))
     }
 
-    /// The inverse of an expression; that of a transpose bears one superscript.
+    /// The inverse of an expression; the inverse of a transpose gets a single superscript, `-T`.
     pub fn inverted(&self, a: &Expr) -> Laid {
         match a.node() {
             Node::Transpose(inner) => self.expression(inner).raised(transposition(true)),
@@ -167,7 +167,7 @@ impl Composer<'_> {
         }
     }
 
-    /// Under a trace nothing else tells the size of the identity.
+    /// Under a trace, only this subscript shows the size of the identity.
     fn sized(&self, e: &Expr) -> Laid {
         match e.node() {
             Node::Identity(n) => {
@@ -179,7 +179,7 @@ impl Composer<'_> {
         }
     }
 
-    /// A number times factors.
+    /// A number times factors, as one product.
     fn product(&self, q: Rational, factors: &[Expr]) -> Laid {
         let mut parts = Vec::new();
         let numbered = !q.is_one() || factors.is_empty();
@@ -211,7 +211,7 @@ impl Composer<'_> {
             return only;
         }
         let beside = parts.into_iter().enumerate().map(|(i, part)| {
-            // Digits behind another factor would read as part of it.
+            // Digits after another factor would read as part of that factor.
             let digits = match &part.layout {
                 Layout::Script { base, .. } => matches!(**base, Layout::Number(_)),
                 layout => matches!(layout, Layout::Number(_)),
@@ -225,8 +225,8 @@ impl Composer<'_> {
         self.beside(beside.collect())
     }
 
-    /// A number times factors, over divisors, which the number's denominator and the negative
-    /// powers of numbers join.
+    /// A number times factors, over divisors. The denominator of the number and negative powers of scalars join the
+    /// divisors.
     fn quotient(&self, q: Rational, factors: &[Expr], divisors: &[&Expr]) -> Laid {
         let whole = |n: i128| Rational::new(n, 1).unwrap_or(Rational::ONE);
         let mut below = whole(q.denominator());
@@ -261,7 +261,7 @@ impl Composer<'_> {
     }
 }
 
-/// The numerator of quotients inside one another; their divisors are added.
+/// The innermost numerator of nested quotients; adds their divisors to the list.
 fn numerator<'e>(mut top: &'e Expr, divisors: &mut Vec<&'e Expr>) -> &'e Expr {
     while let Node::Quotient(a, b) = top.node() {
         divisors.push(b);
@@ -278,7 +278,7 @@ fn is_negative(term: &Expr) -> bool {
     }
 }
 
-/// What stands below the line where the factor is a negative power of a number.
+/// The denominator that corresponds to a negative power of a number.
 fn reciprocal(factor: &Expr) -> Option<Expr> {
     match factor.node() {
         Node::Power(a, q) if q.is_negative() => Some(expr::power(a.clone(), q.negated())),
@@ -286,7 +286,7 @@ fn reciprocal(factor: &Expr) -> Option<Expr> {
     }
 }
 
-/// The number at the front of a product and what follows it.
+/// The leading number of a product, and the factors after it.
 fn split(factors: &[Expr]) -> Option<(Rational, &[Expr])> {
     let (first, rest) = factors.split_first()?;
     match first.node() {

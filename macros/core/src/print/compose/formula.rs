@@ -1,4 +1,4 @@
-//! Layouts of formulas, one arm for each kind.
+//! Layouts of formulas, with one match arm for each kind.
 
 use super::{Composer, transposition};
 use crate::algebra::Rational;
@@ -10,7 +10,7 @@ use crate::print::level::{Laid, Level};
 use crate::print::name;
 
 impl Composer<'_> {
-    /// A formula.
+    /// Lays out a formula.
     pub fn formula(&self, f: &Formula) -> Laid {
         match f {
             Formula::Expr(e) => self.expression(e),
@@ -116,7 +116,7 @@ impl Composer<'_> {
         }
     }
 
-    /// Terms with their signs; a negative sum keeps its brackets.
+    /// The signed terms of a formula; a negated sum keeps its brackets.
     fn formula_terms(&self, f: &Formula) -> Vec<(bool, Laid)> {
         let negative = |a: &Formula| {
             let mut terms = self.formula_terms(a);
@@ -130,7 +130,7 @@ impl Composer<'_> {
         };
         match f {
             Formula::Expr(e) => self.terms(e),
-            // A derived part that vanishes is not worth a `+ 0`.
+            // Terms that vanish are omitted instead of printed as `+ 0`.
             Formula::Sum(parts) => parts
                 .iter()
                 .filter(|p| !matches!(p, Formula::Expr(e) if e.is_zero()))
@@ -190,7 +190,7 @@ impl Composer<'_> {
             }
         });
         let mut each: Vec<Layout> = each.collect();
-        // `b = b` says nothing.
+        // Drop repeated members: `b = b` is trivial.
         if relation == Relation::Equal && each.len() > 2 {
             each.dedup();
         }
@@ -205,7 +205,7 @@ impl Composer<'_> {
         Laid::new(Layout::Row(row), Level::Relation)
     }
 
-    /// Whether all sides of a relation read alike, as those of `0 = 0`.
+    /// Whether all sides of a relation print the same, as in `0 = 0`.
     pub fn says_nothing(&self, f: &Formula) -> bool {
         match f {
             Formula::Continuous(inner) => self.says_nothing(inner),
@@ -251,7 +251,7 @@ impl Composer<'_> {
         Laid::new(Layout::Row(row), Level::Application)
     }
 
-    /// `da/dt`, the letter in the numerator where it is one.
+    /// `da/dt`, with the letter in the numerator if `a` is one letter.
     fn rate(&self, a: &Formula) -> Laid {
         let d = || Layout::Identifier("d".to_owned());
         let below = Layout::row(vec![d(), Layout::Identifier("t".to_owned())]);

@@ -1,5 +1,5 @@
-//! Layouts of functionals and of their derivatives: `f(x, y)`, `∇_x f(x, y)`, `Df(x)[u]` and
-//! `(Df(x))^T[s]`. An argument that is a letter names its derivative; another one is counted.
+//! Layouts of functionals and their derivatives: `f(x, y)`, `∇_x f(x, y)`, `Df(x)[u]` and `(Df(x))^T[s]`. A
+//! derivative carries the name of its argument if that is a letter, otherwise the number of the argument.
 
 use super::Composer;
 use crate::expr::{Applied, Expr, Node};
@@ -8,7 +8,7 @@ use crate::print::level::{Laid, Level};
 use crate::print::tex;
 
 impl Composer<'_> {
-    /// A value, or a pull-back of a seed.
+    /// A value of a functional, or the pull-back of a seed.
     pub(super) fn functional(&self, a: &Applied, back: Option<(u8, &Expr)>) -> Laid {
         let name = self.functional_name(a);
         let arguments = a.arguments.iter().map(|x| self.expression(x).layout);
@@ -52,7 +52,7 @@ impl Composer<'_> {
         }
     }
 
-    /// `D`, or the sign of a gradient, with what it is taken by where there are several arguments.
+    /// `D`, or `∇` for a gradient; if there are several arguments, with the one it differentiates by.
     fn differential(&self, a: &Applied, which: u8, gradient: bool) -> Layout {
         let sign = match gradient {
             true => Layout::Sign(Sign::Nabla),

@@ -1,5 +1,5 @@
-//! From expressions and formulas to layouts: every decision on brackets, signs, scripts and
-//! fractions is taken here, once for all formats.
+//! Composes expressions and formulas into layouts. All decisions on brackets, signs, scripts and fractions are made
+//! here, once for all formats.
 
 mod expression;
 mod formula;
@@ -15,14 +15,14 @@ use crate::algebra::Rational;
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{Constant, Letter};
 
-/// Width, in tenths of a point, from which a hat is not drawn over its argument any more.
+/// From this width in tenths of a point, a hat is no longer drawn over its argument.
 const WIDEST_HAT: usize = 540;
 
 /// Composes layouts in one style.
 pub(super) struct Composer<'a> {
     pub symbols: &'a Symbols,
     pub style: &'a Style,
-    /// Whether numerators stand above denominators.
+    /// Whether numerators are placed above denominators.
     pub stacked: bool,
 }
 
@@ -43,7 +43,7 @@ impl Composer<'_> {
         }
     }
 
-    /// A name with its own subscripts and those of the node and the labels.
+    /// A name with its own subscripts and those of the time node and the labels.
     fn indexed(&self, base: Layout, mut subs: Vec<Layout>, role: Role, at: Letter) -> Layout {
         if lives_in_time(role) {
             subs.extend(offset(&self.style.time_index, at.shift.time));
@@ -63,7 +63,7 @@ impl Composer<'_> {
         scripted(parsed.base, subs, sup.or(parsed.sup.as_deref()))
     }
 
-    /// A positive number.
+    /// A non-negative number.
     fn number(&self, q: Rational) -> Laid {
         let digits = |n: i128| Layout::Number(n.to_string());
         let (num, den) = (q.numerator(), q.denominator());
@@ -86,7 +86,7 @@ impl Composer<'_> {
         }
     }
 
-    /// A number that exact arithmetic does not follow: π, or its digits times a power of ten.
+    /// A constant that exact arithmetic does not cover: π, or digits times a power of ten.
     fn constant(&self, c: Constant) -> Laid {
         let number = |text: &str| Layout::Number(text.to_owned());
         if c == Constant::PI {
@@ -134,7 +134,7 @@ impl Composer<'_> {
         Laid::new(Layout::Row(row), level)
     }
 
-    /// Factors side by side, already bracketed.
+    /// Juxtaposes factors that already have their brackets.
     fn beside(&self, factors: Vec<Layout>) -> Laid {
         let mut row = Vec::new();
         for f in factors {
@@ -161,7 +161,7 @@ impl Composer<'_> {
         Laid::new(Layout::Row(row), Level::Slash)
     }
 
-    /// `a` and `b` with an infix sign between.
+    /// Joins `a` and `b` with an infix sign.
     fn infix(&self, a: Laid, sign: Sign, b: Laid, level: Level) -> Laid {
         let at = Layout::Break(Strength::Factor);
         let row = vec![a.operand(), at, Layout::Sign(sign), b.operand()];
@@ -197,7 +197,7 @@ impl Composer<'_> {
         Laid::new(layout, Level::Prefix)
     }
 
-    /// The skew matrix of a vector: a hat, on the letter alone where there is one.
+    /// The skew matrix of a vector: a hat, over the letter only if there are scripts.
     fn hat(&self, inner: Laid) -> Laid {
         if !self.stacked {
             return self.call("hat", inner);
@@ -220,7 +220,7 @@ impl Composer<'_> {
         })
     }
 
-    /// An operator by its name, with its argument in brackets.
+    /// A named operator with its argument in brackets.
     fn call(&self, word: &str, argument: Laid) -> Laid {
         self.applied(Layout::Word(word.to_owned()), vec![argument.layout])
     }
@@ -265,7 +265,7 @@ fn lives_in_time(role: Role) -> bool {
     }
 }
 
-/// `k`, `k+1`, `k-1`; nothing for a nameless index without offset.
+/// The subscript `k`, `k+1` or `k-1`; `None` for a nameless index without offset.
 fn offset(index: &str, by: i8) -> Option<Layout> {
     let mut row = Vec::new();
     if !index.is_empty() {
@@ -287,7 +287,7 @@ fn scripted(base: String, subs: Vec<Layout>, sup: Option<&str>) -> Layout {
     }
 }
 
-/// A name, or a number that stands for one.
+/// A name, or a number used as a name.
 fn letters(base: String) -> Layout {
     if base.chars().all(|c| c.is_ascii_digit()) {
         Layout::Number(base)
@@ -310,7 +310,7 @@ fn subscripted(base: Layout, subs: Vec<Layout>) -> Layout {
     }
 }
 
-/// A fraction that was written as a decimal number of many digits, as such a number.
+/// Restores a decimal number of many digits that was read as a fraction.
 fn decimal(num: i128, den: i128) -> Option<String> {
     const LARGEST: i128 = 1_000_000;
     let mut rest = den;

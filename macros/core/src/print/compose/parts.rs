@@ -1,6 +1,7 @@
-//! Zero-padding inclusions, by their blocks. A vector of the Lie algebra of rigid motions is its angular and its
-//! linear part, `(a, b)`, of which `ang` and `lin` take one; of homogeneous coordinates and matrices `x[1:3]`
-//! and `A[1:3, 4]` take entries, on a page below the line, and `[v; 0]` and `[A, 0; 0, 0]` are made of blocks.
+//! Prints zero-padding inclusions by their blocks. A vector of the Lie algebra of rigid motions is printed as its
+//! angular and linear part, `(a, b)`; `ang` and `lin` extract one of them. Entries of homogeneous coordinates and
+//! matrices are `x[1:3]` and `A[1:3, 4]`, as subscripts in typeset formats; `[v; 0]` and `[A, 0; 0, 0]` are block
+//! matrices.
 
 use super::Composer;
 use crate::expr::shape::{Dim, Shape};
@@ -10,32 +11,32 @@ use crate::print::layout::{Fence, Layout, Strength};
 use crate::print::level::Laid;
 use crate::print::name;
 
-/// What an inclusion does in a product.
+/// The role of an inclusion in a product.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Inclusion {
-    /// Length of the longer vectors.
+    /// Dimension of the longer vectors.
     rows: u32,
-    /// Length of the shorter ones.
+    /// Dimension of the shorter vectors.
     cols: u32,
-    /// The first row of the shorter one.
+    /// The row at which the shorter vector begins.
     at: u8,
-    /// Whether it takes a part instead of putting it.
+    /// Whether it extracts a part, that is, whether it is transposed.
     takes: bool,
 }
 
 impl Inclusion {
-    /// Whether it is one into homogeneous coordinates.
+    /// Whether it maps into homogeneous coordinates.
     fn is_of_points(self) -> bool {
         self.at == 0 && self.rows == self.cols + 1
     }
 
-    /// Whether the part is the linear one of a vector of the Lie algebra.
+    /// Whether the part is the linear part of a Lie algebra vector.
     fn is_linear(self) -> bool {
         self.at > 0
     }
 }
 
-/// The inclusion that a factor is.
+/// Reads a factor as an inclusion.
 fn inclusion(factor: &Expr) -> Option<Inclusion> {
     let (node, takes) = match factor.node() {
         Node::Transpose(inner) => (inner.node(), true),
@@ -68,7 +69,7 @@ fn is_last(factor: &Expr, transposed: bool) -> bool {
     matches!(node, Node::Unit(n, axis) if *axis == expr::last_axis(*n))
 }
 
-/// The angular and the linear part of a vector that is written by inclusions, every term of it.
+/// The angular and the linear part of a vector, if inclusions build every term of it.
 pub(in crate::print) fn in_parts(e: &Expr) -> Option<[Expr; 2]> {
     let [(_, angles), (_, lengths)] = expr::rows_in_parts(e)?;
     let terms = match e.node() {
@@ -86,7 +87,7 @@ pub(in crate::print) fn in_parts(e: &Expr) -> Option<[Expr; 2]> {
     Some([sum(angular, angles), sum(linear, lengths)])
 }
 
-/// Whether a term stands in the linear part, and the term without what puts it there.
+/// Whether a term belongs to the linear part, and the term without its inclusion.
 fn put(term: &Expr) -> Option<(bool, Expr)> {
     match term.node() {
         Node::Neg(inner) => put(inner).map(|(linear, part)| (linear, expr::neg(part))),
@@ -97,7 +98,7 @@ fn put(term: &Expr) -> Option<(bool, Expr)> {
             let first = factors.iter().position(|f| !f.shape().is_scalar())?;
             let (before, after) = factors.split_at_checked(first)?;
             let (head, rest) = after.split_first()?;
-            // The angle of a motion of the plane is a number.
+            // The angle of a planar motion is a scalar, so that it is included by a unit vector.
             if let (Node::Unit(_, 0), []) = (head.node(), rest) {
                 return Some((false, expr::product(before.iter().cloned())));
             }
@@ -113,7 +114,7 @@ fn put(term: &Expr) -> Option<(bool, Expr)> {
 }
 
 impl Composer<'_> {
-    /// A vector of the Lie algebra in parts, `(a, b)`.
+    /// A vector of the Lie algebra by its parts, `(a, b)`.
     pub(super) fn parts(&self, e: &Expr) -> Option<Laid> {
         let parts = in_parts(e)?;
         Some(self.list(parts.iter().map(|p| self.expression(p).layout).collect()))
@@ -137,8 +138,8 @@ impl Composer<'_> {
         Laid::atom(Layout::fenced(Fence::Square, Layout::Row(rows)))
     }
 
-    /// What the inclusion at the front of these factors makes of those behind it, and how many it is
-    /// said for; `None` where it is shown as it is.
+    /// Applies the inclusion at the front of these factors to the factors behind it; returns the layout and the
+    /// number of factors it covers. `None` if the inclusion is printed as it is.
     pub(super) fn included(&self, factors: &[Expr]) -> Option<(Laid, usize)> {
         let (head, rest) = factors.split_first()?;
         let Some(found) = inclusion(head) else {
@@ -209,7 +210,7 @@ impl Composer<'_> {
         }
     }
 
-    /// `A[1:3, 4]`, on a page below the line.
+    /// `A[1:3, 4]`; the entries are a subscript in typeset formats.
     fn entries(&self, of: &Expr, entries: &str) -> Laid {
         let base = self.expression(of).base();
         if self.stacked {
@@ -225,8 +226,8 @@ impl Composer<'_> {
 }
 
 impl Composer<'_> {
-    /// The same for a row at the front: `lin(x)ᵀ` for a part of a row of six, `[vᵀ, 0]` for a row of
-    /// three that is made longer.
+    /// The same for a row at the front: `lin(x)ᵀ` for a part of a six-component row, `[vᵀ, 0]` for a lengthened
+    /// three-component row.
     fn row_included(&self, factors: &[Expr]) -> Option<(Laid, usize)> {
         let head = factors.first()?;
         let Node::Transpose(column) = head.node() else {
@@ -251,8 +252,8 @@ impl Composer<'_> {
     }
 }
 
-/// What a displayed equation of vectors of the Lie algebra is on a terminal: one of their angular parts and one of
-/// their linear parts.
+/// Splits a displayed equation between vectors of the Lie algebra, for plain text, into the equations of the angular
+/// and of the linear parts.
 pub(in crate::print) fn equations(f: &Formula) -> Option<[Formula; 2]> {
     match f {
         Formula::Continuous(inner) => {

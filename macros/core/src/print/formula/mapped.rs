@@ -1,10 +1,10 @@
-//! The same formula with its expressions replaced, one arm for each kind.
+//! Traversal of formulas: replaces or visits their expressions, with one match arm for each kind.
 
 use super::Formula;
 use crate::expr::Expr;
 
 impl Formula {
-    /// The same with every expression in it replaced, in order.
+    /// Replaces every expression in the formula, in order.
     pub fn mapped(&self, go: &mut dyn FnMut(&Expr) -> Expr) -> Formula {
         let mut one = |f: &Formula| Box::new(f.mapped(go));
         match self {
@@ -72,7 +72,7 @@ impl Formula {
         }
     }
 
-    /// Visits the letters of the names in it that are no symbols.
+    /// Visits the bases of all names in the formula that are not symbols.
     pub fn each_name(&self, visit: &mut dyn FnMut(&str)) {
         let mut below: Vec<&Formula> = vec![self];
         while let Some(f) = below.pop() {
@@ -135,7 +135,7 @@ impl Formula {
         }
     }
 
-    /// Visits every expression in it, in order.
+    /// Visits every expression in the formula, in order.
     pub fn each_expression(&self, visit: &mut dyn FnMut(&Expr)) {
         self.mapped(&mut |e| {
             visit(e);

@@ -1,10 +1,10 @@
-//! LaTeX for single characters, names and words: Greek letters and signs by their commands,
-//! everything that LaTeX reads escaped.
+//! LaTeX for single characters, names and words: commands for Greek letters and signs, and escapes for LaTeX's
+//! special characters.
 
 use crate::expr::spelling::twin;
 use crate::expr::symbol::{GREEK, greek_command};
 
-/// The accent behind a name, as a command for a letter and one for several, and the name without it.
+/// The accent at the end of a name, as commands for one letter and for several letters, and the name without it.
 fn accent(s: &str) -> Option<((&'static str, &'static str), &str)> {
     const ACCENTS: [(char, &str, &str); 2] = [
         ('\u{304}', "bar", "overline"),
@@ -19,7 +19,7 @@ fn accent(s: &str) -> Option<((&'static str, &'static str), &str)> {
         .filter(|(_, rest)| !rest.is_empty())
 }
 
-/// A letter, or several set as one name.
+/// A letter, or several letters set as one name.
 pub(super) fn identifier(s: &str) -> String {
     let mut chars = s.chars();
     match (chars.next(), chars.next()) {
@@ -38,7 +38,7 @@ pub(super) fn identifier(s: &str) -> String {
     }
 }
 
-/// A character in math mode (`words` false) or inside a sentence.
+/// A character in math mode (`words` is false) or within a sentence.
 pub(super) fn symbol_of(c: char, words: bool) -> String {
     let math = |m: &str| {
         if words {
@@ -53,7 +53,7 @@ pub(super) fn symbol_of(c: char, words: bool) -> String {
     if let Some((_, command)) = SYMBOLS.iter().find(|(s, _)| *s == c) {
         return math(command);
     }
-    // Small digits, and the small letters that index: scripts on nothing.
+    // Subscript and superscript digits, and subscript letters, become scripts on an empty base.
     if let Some(digit) = (u32::from(c)).checked_sub(0x2080).filter(|d| *d < 10) {
         return math(&format!("{{}}_{{{digit}}}"));
     }
@@ -73,7 +73,7 @@ pub(super) fn symbol_of(c: char, words: bool) -> String {
         '^' => "\\wedge ".to_owned(),
         '<' | '>' | '|' if words => format!("${c}$"),
         _ if c.is_ascii() => c.to_string(),
-        // The micro sign is a letter mu, and the sign of the ohm a letter omega.
+        // The micro sign is the letter mu, and the ohm sign the letter omega.
         _ if twin(c).is_some_and(|t| t.is_ascii() || GREEK.iter().any(|(g, _)| *g == t)) => {
             symbol_of(twin(c).unwrap_or(c), words)
         }
@@ -82,10 +82,10 @@ pub(super) fn symbol_of(c: char, words: bool) -> String {
     }
 }
 
-/// Small letters below the line.
+/// Subscript letters.
 const INDICES: [(char, char); 4] = [('ᵢ', 'i'), ('ⱼ', 'j'), ('ₖ', 'k'), ('ₙ', 'n')];
 
-/// Signs that plain LaTeX knows only by command.
+/// Characters that plain LaTeX can only set with a command.
 const SYMBOLS: [(char, &str); 36] = [
     ('ℓ', "\\ell"),
     ('∂', "\\partial"),
@@ -131,7 +131,7 @@ pub(super) fn text(s: &str) -> String {
     one_formula(&signs)
 }
 
-/// Signs of mathematics that follow one another stand in one formula; an escaped dollar sign ends none.
+/// Merges adjacent inline formulas into one; an escaped dollar sign does not end a formula.
 fn one_formula(signs: &str) -> String {
     let mut parts = signs.split("$$");
     let mut out = parts.next().unwrap_or_default().to_owned();
@@ -148,7 +148,7 @@ fn one_formula(signs: &str) -> String {
     out
 }
 
-/// Mathematics on a line, as words have it: `2/h² skew`, `Ad*`, `Ωᵀ P`.
+/// Inline mathematics as it is written in plain words: `2/h² skew`, `Ad*`, `Ωᵀ P`.
 pub(super) fn spelt(s: &str) -> String {
     let mut out: Vec<String> = Vec::new();
     let mut rest = s.chars().peekable();
@@ -169,7 +169,7 @@ pub(super) fn spelt(s: &str) -> String {
     joined(out.into_iter())
 }
 
-/// Words of a sentence, in which arrows and names of groups are mathematics.
+/// Words of a sentence, with arrows and names of groups set as mathematics.
 pub(super) fn prose(s: &str) -> String {
     let mut out = String::new();
     let mut rest = s;
@@ -179,7 +179,7 @@ pub(super) fn prose(s: &str) -> String {
             rest = after;
             continue;
         }
-        // `SO(3)`, `GL(n)`: not behind a letter.
+        // `SO(3)`, `GL(n)`: but not directly after a letter.
         let begins = !out.ends_with(|c: char| c.is_ascii_alphanumeric());
         let group = GROUPS.iter().filter(|_| begins).find_map(|g| {
             let size = rest.strip_prefix(g)?.strip_prefix('(')?.split_once(')')?.0;
@@ -200,10 +200,10 @@ pub(super) fn prose(s: &str) -> String {
     one_formula(&out)
 }
 
-/// Groups that sentences name with a size.
+/// Groups that sentences write with a size.
 const GROUPS: [&str; 4] = ["SO", "SU", "SE", "GL"];
 
-/// Concatenates, with a space where a command would run into a letter.
+/// Concatenates, and inserts a space where a command would run into a letter.
 pub(super) fn joined(parts: impl Iterator<Item = String>) -> String {
     let mut out = String::new();
     for part in parts {

@@ -1,5 +1,5 @@
-//! Displayed equations of a document: one by one, or several in a row as a group under one number, each with a name
-//! that says what it is. Sources are footnotes of the sentence before.
+//! Displayed equations of a document, single or as a group of consecutive equations under one number. Each has a
+//! descriptive label. Sources become footnotes of the preceding sentence.
 
 use super::characters::{prose, spelt, symbol_of};
 use super::sources::citing;
@@ -10,11 +10,11 @@ use crate::print::document::{Block, Document, Work};
 use crate::print::name;
 use unicode_normalization::UnicodeNormalization;
 
-/// The names of all equations by their number.
+/// The LaTeX labels of all equations, by number.
 pub(super) struct Labels(Vec<String>);
 
 impl Labels {
-    /// Names made of the model's and of what an equation is called, or of its section and place there.
+    /// Builds labels from the name of the model and the name of the equation, or else from its section and position.
     pub(super) fn of(page: &Page, document: &Document) -> Labels {
         let model = document.title.split(':').next().unwrap_or_default();
         let model = slug(model);
@@ -31,7 +31,7 @@ impl Labels {
                     None => format!("{}-{place}", slug(&section.title)),
                 };
                 let mut name = format!("eq:{model}:{own}");
-                // Two equations that are called alike.
+                // Two equations may have the same name.
                 while names.contains(&name) {
                     name.push('b');
                 }
@@ -41,14 +41,14 @@ impl Labels {
         Labels(names)
     }
 
-    /// That of the equation with this number, counted from 1.
+    /// The label of the equation with this number, counted from 1.
     pub(super) fn name(&self, number: usize) -> &str {
         let name = number.checked_sub(1).and_then(|i| self.0.get(i));
         name.map_or("eq:none", String::as_str)
     }
 }
 
-/// What an equation is called: `relation 4` by the symbol that is varied, the first of its kind without a number.
+/// The name of an equation: `relation 4` is named after the varied symbol, and the first of a kind omits its number.
 fn called(page: &Page, label: &str) -> String {
     let varied = label.strip_prefix("relation ").and_then(|id| {
         let id: u32 = id.parse().ok()?;
@@ -61,9 +61,9 @@ fn called(page: &Page, label: &str) -> String {
     }
 }
 
-/// Words as part of a label: ASCII, small, with hyphens.
+/// Words as part of a label: ASCII, lower case, with hyphens.
 pub(super) fn slug(title: &str) -> String {
-    // Accents are left out, not spelt.
+    // Accents are dropped, not transcribed.
     let bare: String = title
         .nfd()
         .filter(|c| !matches!(c, '\u{300}'..='\u{36f}'))
@@ -80,7 +80,7 @@ pub(super) fn slug(title: &str) -> String {
     out.trim_end_matches('-').to_owned()
 }
 
-/// The footnote with the sources of equations `from`, `from + 1`, ... in a work; none where they have none.
+/// The footnote with the sources of equations `from`, `from + 1`, ... in a work; empty if there are none.
 pub(super) fn footnote(run: &[Block], from: usize, labels: &Labels, work: Option<&Work>) -> String {
     let several = run.len() > 1;
     let sources = run.iter().enumerate().filter_map(|(i, block)| {
@@ -100,7 +100,7 @@ pub(super) fn footnote(run: &[Block], from: usize, labels: &Labels, work: Option
     }
 }
 
-/// `thesis (2.145) corrected: ...` as a citation of the work with what is said of it.
+/// Turns `thesis (2.145) corrected: ...` into a citation of the work, followed by the remark.
 fn cited(tag: &str, work: Option<&Work>) -> String {
     let place = work.and_then(|w| Some((w.key, tag.strip_prefix(w.named)?.strip_prefix(' ')?)));
     let Some((key, rest)) = place else {
@@ -133,7 +133,7 @@ fn said_of(tag: &str) -> String {
         .collect()
 }
 
-/// Equations in a row, the first of which has the number `from`.
+/// Consecutive equations, the first of which has the number `from`.
 pub(super) fn displayed(page: &Page, run: &[Block], from: usize, labels: &Labels) -> String {
     let mut lines = Vec::new();
     let mut notes = Vec::new();
@@ -183,7 +183,7 @@ pub(super) fn displayed(page: &Page, run: &[Block], from: usize, labels: &Labels
     out
 }
 
-/// Equations below one another, each of which fits on a page, or one that does not.
+/// A group of equations on separate lines, each short enough for a page, or one longer equation.
 fn group(equations: &[(Vec<String>, &str)]) -> String {
     if let [(rows, name)] = equations
         && rows.len() > TALL
@@ -200,10 +200,10 @@ fn group(equations: &[(Vec<String>, &str)]) -> String {
     )
 }
 
-/// Lines of a formula from which on a page may end between them: a third of a page of fractions.
+/// A formula with more lines than this may break across pages: a third of a page of fractions.
 const TALL: usize = 8;
 
-/// An equation that may go on on the next page, numbered at its end.
+/// An equation that may break across pages, numbered at its end.
 fn over_pages(rows: &[String], name: &str) -> String {
     format!(
         "\\begin{{align}}\n{} \\label{{{name}}}\n\\end{{align}}\n",
@@ -211,7 +211,7 @@ fn over_pages(rows: &[String], name: &str) -> String {
     )
 }
 
-/// A formula of a sentence in lines of its own, with the sign of punctuation behind it.
+/// A formula of a sentence, displayed on lines of its own, with the punctuation mark that follows it.
 pub(super) fn unnumbered(rows: &[String], end: &str) -> String {
     match rows.len() <= TALL {
         true => format!("\n\\[\n{}{end}\n\\]\n", aligned(rows)),
@@ -222,7 +222,7 @@ pub(super) fn unnumbered(rows: &[String], end: &str) -> String {
     }
 }
 
-/// A sentence that goes on behind a colon.
+/// A sentence after a colon, in lower case.
 fn lowered(sentence: &str) -> String {
     let mut letters = sentence.chars();
     let first = letters.next().into_iter().flat_map(char::to_lowercase);

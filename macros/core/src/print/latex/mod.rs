@@ -1,5 +1,5 @@
-//! LaTeX: formulas for math mode and documents as a section for a paper. Needs amsmath and
-//! nothing else; every character of the output that LaTeX must know is ASCII or a Latin letter.
+//! LaTeX: formulas for math mode, and documents as a section of a paper. Only amsmath is required; the output
+//! contains only ASCII and Latin letters.
 
 mod characters;
 mod equations;
@@ -18,12 +18,12 @@ use sources::citing;
 
 pub use sources::standalone;
 
-/// Whose commands may be used.
+/// The set of commands to use.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Dialect {
     /// LaTeX with amsmath.
     Amsmath,
-    /// What GitHub renders: it refuses `\operatorname`.
+    /// The subset that GitHub renders, which rejects `\operatorname`.
     GitHub,
 }
 
@@ -138,7 +138,7 @@ fn word(s: &str, dialect: Dialect) -> String {
         ) => {
             format!("\\operatorname{{{escaped}}}")
         }
-        // An operator would carry its scripts below and above.
+        // An operator would place its scripts below and above.
         (
             "tr" | "sym" | "skew" | "diag" | "vee" | "hat" | "Ad" | "ad" | "adj" | "sign",
             Dialect::GitHub,
@@ -162,7 +162,7 @@ fn pieces(list: &[Piece], dialect: Dialect) -> String {
                     parts.extend([open, pieces(inside, dialect), close]);
                     rest = beyond;
                 }
-                // `\left` and `\right` cannot be parted by the end of a line.
+                // `\left` and `\right` must be on the same line.
                 None => parts.push(parted("l", brackets(*fence).0, *tall)),
             },
             Piece::Close(fence, tall) => parts.push(parted("r", brackets(*fence).1, *tall)),
@@ -172,7 +172,7 @@ fn pieces(list: &[Piece], dialect: Dialect) -> String {
     joined(parts.into_iter())
 }
 
-/// Brackets as high as what they enclose.
+/// Brackets that scale with their content if it is tall.
 fn sized(fence: Fence, tall: bool) -> (String, String) {
     let (open, close) = brackets(fence);
     if tall {
@@ -182,7 +182,7 @@ fn sized(fence: Fence, tall: bool) -> (String, String) {
     }
 }
 
-/// One bracket of a pair on different lines.
+/// One bracket of a pair whose brackets are on different lines.
 fn parted(side: &str, bracket: &str, tall: bool) -> String {
     let size = if tall { "Bigg" } else { "big" };
     format!("\\{size}{side}{bracket}")
@@ -193,7 +193,7 @@ pub(super) fn display(page: &Page, f: &Formula, dialect: Dialect) -> String {
     aligned(&rows(page, f, dialect))
 }
 
-/// Lines of a formula as one block.
+/// The lines of a formula as one block.
 fn aligned(rows: &[String]) -> String {
     match rows {
         [only] => only.clone(),
@@ -219,7 +219,7 @@ fn rows(page: &Page, f: &Formula, dialect: Dialect) -> Vec<String> {
     }
 }
 
-/// Lines with the place at which they are aligned.
+/// Lines with their alignment mark `&`.
 fn aligned_rows(broken: &lines::Lines, dialect: Dialect) -> Vec<String> {
     let mut rows = Vec::new();
     for (i, row) in broken.lines.iter().enumerate() {
@@ -229,25 +229,26 @@ fn aligned_rows(broken: &lines::Lines, dialect: Dialect) -> Vec<String> {
         } else {
             String::new()
         };
-        // `{}` makes the sign at the start of a line a binary one.
+        // `{}` makes the sign at the start of a line a binary operator.
         let start = if i == 0 || row.relation {
             String::new()
         } else {
             "\\quad ".repeat(row.depth + 1) + "{}"
         };
-        // A bracket there would be an argument of the environment.
+        // A bracket there would be read as an argument of the environment.
         let guard = if left.starts_with('[') { "{}" } else { "" };
         rows.push(format!("{guard}{left} &{start}{text}").trim().to_owned());
     }
     rows
 }
 
-/// A whole document: a section with labelled equations; those that follow one another without words share a number.
+/// A whole document: a section with labelled equations. Consecutive equations without words between them share a
+/// number.
 pub(super) fn document(page: &Page, document: &Document) -> String {
     let mut out = String::new();
     let title = text(&document.title);
     let letters = document.title.chars().map(upright).sum::<usize>();
-    // The names of models have no hyphens: a title of several lines is set ragged.
+    // Names of models cannot be hyphenated: a title of several lines is set ragged right.
     out.push_str(
         &match letters * HEADING / 100 > 10 * (page.style.points + NUMBER) {
             true => format!("\\section[{title}]{{\\raggedright {title}}}\n"),
@@ -268,8 +269,8 @@ pub(super) fn document(page: &Page, document: &Document) -> String {
             .chunk_by(|a, b| is_equation(a) && is_equation(b))
         {
             let Some(block) = run.first() else { continue };
-            // An empty line before an equation would end the paragraph it belongs to, and one behind it a sentence that
-            // goes on.
+            // An empty line before an equation would end its paragraph, and one after it would split a sentence that
+            // continues.
             if !is_equation(block) && !goes_on(block) {
                 out.push('\n');
             }
@@ -278,7 +279,7 @@ pub(super) fn document(page: &Page, document: &Document) -> String {
                     out.push_str(&format!("{}\n", sentence(page, &labels, parts)))
                 }
                 Block::List(items) => {
-                    // Items begin with names and formulas, which cannot be parted: lines may be loose.
+                    // Items begin with names and formulas, which cannot be broken; allow loose lines.
                     out.push_str("\\begin{itemize}\\emergencystretch=3em\n");
                     for item in items {
                         out.push_str(&format!("  \\item{{}} {}\n", sentence(page, &labels, item)));
@@ -287,7 +288,7 @@ pub(super) fn document(page: &Page, document: &Document) -> String {
                 }
                 Block::Code(code) => out.push_str(&listing(page, code)),
                 Block::Equation { .. } => {
-                    // Behind the sentence that leads to the equations.
+                    // The footnote follows the sentence that leads to the equations.
                     let end = out.trim_end_matches('\n').len();
                     out.insert_str(
                         end,
@@ -302,10 +303,11 @@ pub(super) fn document(page: &Page, document: &Document) -> String {
     sources::needs(&out, document.work.as_ref()) + &out
 }
 
-/// The letters of a heading, larger and bold, in percent of those of a sentence; a little is taken off for the number.
+/// Width of the larger, bold letters of a heading in percent of text letters, slightly reduced for the section
+/// number.
 const HEADING: usize = 185;
 
-/// Whether a paragraph is the rest of a sentence: it begins with a small letter.
+/// Whether a paragraph continues a sentence, that is, begins with a lower-case letter.
 fn goes_on(block: &Block) -> bool {
     let Block::Paragraph(parts) = block else {
         return false;
@@ -316,7 +318,7 @@ fn goes_on(block: &Block) -> bool {
 fn sentence(page: &Page, labels: &Labels, parts: &[Inline]) -> String {
     let mut out = String::new();
     let mut rest = parts.iter().peekable();
-    // A sign of punctuation that stands in a formula already.
+    // Length of the punctuation mark that is already part of a formula.
     let mut taken = 0;
     while let Some(part) = rest.next() {
         let before = std::mem::take(&mut taken);
@@ -350,12 +352,12 @@ fn sentence(page: &Page, labels: &Labels, parts: &[Inline]) -> String {
     out
 }
 
-/// The part of a line, in percent, that mathematics in a sentence may take; what is longer stands in lines of its own.
+/// The share of a line, in percent, that inline mathematics may occupy; a longer formula is displayed on its own.
 const INLINE: usize = 50;
 
-/// Code in a typewriter face; `verbatim` would not know the Greek letters.
+/// Code in a typewriter face; `verbatim` does not support Greek letters.
 pub(super) fn listing(page: &Page, code: &str) -> String {
-    // The numbers of equations take nothing from lines of text.
+    // Lines of code do not reserve space for an equation number.
     let limit = 10 * (page.style.points + NUMBER);
     let rows: Vec<String> = listing::fitted(code, limit, &typewriter)
         .iter()
@@ -367,10 +369,10 @@ pub(super) fn listing(page: &Page, code: &str) -> String {
     )
 }
 
-/// Points that the number of an equation takes.
+/// Points reserved for the number of an equation.
 const NUMBER: usize = 35;
 
-/// A character of code in tenths of a point; what is no letter of the face is set as mathematics.
+/// The width of a code character in tenths of a point; a character outside the typewriter face is set as mathematics.
 fn typewriter(c: char) -> usize {
     match c {
         '<' | '>' | '|' => 78,

@@ -1,8 +1,8 @@
-//! What printed derivations cite: the works that sentences name, and the one that the document gives sources in.
+//! Citations in printed derivations: works named in sentences, and the work that a document cites as its source.
 
 use crate::print::document::Work;
 
-/// Works that sentences name, with the year behind the name, whose place the citation takes.
+/// Works named in sentences, and the year after the name that the citation replaces.
 static NAMED: [(Work, &str); 2] = [
     (
         Work {
@@ -30,7 +30,7 @@ static NAMED: [(Work, &str); 2] = [
     ),
 ];
 
-/// Words in LaTeX with citations behind the works that they name.
+/// Adds citations after the works named in LaTeX text.
 pub(super) fn citing(words: &str) -> String {
     let cite = |words: String, (work, year): &(Work, &str)| {
         let cited = format!("{}~\\cite{{{}}}", work.named, work.key);
@@ -39,7 +39,7 @@ pub(super) fn citing(words: &str) -> String {
     NAMED.iter().fold(words.to_owned(), cite)
 }
 
-/// The works that a text in LaTeX cites, the one that it gives sources in before the others.
+/// The works that a LaTeX text cites, with the document's source first.
 fn cited<'a>(text: &str, work: Option<&'a Work>) -> impl Iterator<Item = &'a Work> {
     let cites = |w: &&Work| {
         let key = format!("{{{}}}", w.key);
@@ -52,7 +52,7 @@ fn cited<'a>(text: &str, work: Option<&'a Work>) -> impl Iterator<Item = &'a Wor
     work.into_iter().chain(named).filter(cites)
 }
 
-/// The head of a section: what it needs of the document that it becomes part of.
+/// The head of a section: comments on what the enclosing document must provide.
 pub(super) fn needs(section: &str, work: Option<&Work>) -> String {
     let entries: Vec<&str> = cited(section, work).map(|w| w.entry).collect();
     match entries.is_empty() {
@@ -65,7 +65,8 @@ pub(super) fn needs(section: &str, work: Option<&Work>) -> String {
     }
 }
 
-/// A section, whose equations have their sources in `work`, as a document that compiles by itself, with its bibliography.
+/// Turns a section into a document that compiles on its own, with a bibliography. The sources of its equations are in
+/// `work`.
 pub fn standalone(section: &str, work: Option<&Work>) -> String {
     let lines = section.lines().skip_while(|line| line.starts_with('%'));
     let body: Vec<&str> = lines.collect();
@@ -86,6 +87,7 @@ pub fn standalone(section: &str, work: Option<&Work>) -> String {
     )
 }
 
-/// The class and the packages of a document by itself; the last two hold letters that a model may be typeset with.
+/// Class and packages of a standalone document; the last two packages provide letters that a model may be typeset
+/// with.
 const HEAD: &str = "\\documentclass{article}\n\\usepackage[T1]{fontenc}\n\\usepackage[utf8]{inputenc}\n\\usepackage{amsmath}\n\
                     \\usepackage{amssymb}\n\\usepackage{bm}\n";

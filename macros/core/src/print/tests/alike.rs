@@ -1,6 +1,5 @@
-//! Letters of the engine beside letters of the model that would print as they do. Takes models with
-//! a parameter named as a reader would read an engine's letter; asserts that every letter of a
-//! derivation stays one letter in print.
+//! Model letters that would print like letters of the engine. In models with a parameter of such a name, every letter
+//! of the derivation must stay distinct in print.
 
 use crate::document::printed;
 use crate::expr::spelling::seen;
@@ -8,7 +7,7 @@ use crate::pipeline::derive_source;
 use crate::print::Format;
 use std::collections::BTreeSet;
 
-/// A heavy top whose parameter has this name, on SO(3) or on another group by the same letters.
+/// Heavy tops whose parameter has this name, and models on other groups with the same letters.
 fn models(name: &str) -> [String; 4] {
     [
         format!(
@@ -33,7 +32,7 @@ fn models(name: &str) -> [String; 4] {
     ]
 }
 
-/// How often a letter stands in a text with nothing below or after it that makes it another one.
+/// How often a letter occurs in a text without a script or another letter that makes it a different name.
 fn occurrences(text: &str, letter: &str) -> usize {
     text.match_indices(letter)
         .filter(|(at, _)| {
@@ -77,7 +76,7 @@ fn a_parameter_stands_in_the_document_where_it_stands_by_another_name() {
         ("lambda", "λ"),
         ("iota", "ι"),
     ] {
-        // A letter that the engine never writes says how often the parameter stands there.
+        // The count with a letter that the engine never writes shows how often the parameter occurs.
         for (model, plain) in models(name).iter().zip(models("psi")) {
             let text = |model: &str| {
                 let d = derive_source(model).unwrap_or_else(|e| panic!("{e}\n{model}"));
@@ -121,7 +120,7 @@ fn names_that_print_as_another_are_refused() {
         let message = derive_source(&model).map_or_else(|e| e.to_string(), |_| String::new());
         assert!(message.contains(said), "{names}: {message}");
     }
-    // Letters that differ to the eye are names of their own.
+    // Letters that look different are different names.
     let model = "model M { param J: Sym<3>; param ϵ, ε, ϑ, θ, ϕ, φ, ϖ, π, ϱ, ρ, ς, σ, p, ж: Real; \
                  group G: SO<3> velocity W; constraint next(G) = G*W; \
                  lagrangian = -(ϵ*ε + ϑ*θ + ϕ*φ + ϖ*π + ϱ*ρ + ς*σ + p*ж)*tr(J*W)/h; }";
@@ -191,7 +190,7 @@ fn names_that_are_typeset_as_another_are_refused() {
     ] {
         assert!(derive_source(&with(names)).is_ok(), "{names}");
     }
-    // Letters of the engine make way.
+    // Letters of the engine are renamed.
     let d = derive_source(&with(r#"a: Real as "M_k""#)).unwrap_or_else(|e| panic!("{e}"));
     for id in d
         .letters

@@ -1,5 +1,4 @@
-//! Printed derivations of whole models: what a referee would strike out. Takes statements, looks
-//! for the right formula and for the wrong one that stood there once.
+//! Printed derivations of whole models: checks for the correct formulas, and for the absence of earlier wrong ones.
 
 use crate::Derivation;
 use crate::derive_source;
@@ -38,7 +37,7 @@ fn text(statements: &str) -> String {
 
 #[track_caller]
 fn holds(text: &str, wanted: &[&str], unwanted: &[&str]) {
-    // Lines of a paragraph are broken anywhere.
+    // Paragraphs may break between any words.
     let flat: String = text.split_whitespace().collect::<Vec<_>>().join(" ");
     for w in wanted {
         assert!(flat.contains(w), "missing: {w}\n{text}");
@@ -59,7 +58,7 @@ fn gradients_have_the_structure_of_their_letter() {
         constraint next(Λ) = ω*Λ; constraint next(B) = ω*B*ω^T;
         lagrangian = -tr(ω)/h - h*tr(A*B);";
     holds(&text(skew), &["h skew(A)"], &["- h Aᵀ", "+ h Aᵀ"]);
-    // A diagonal quantity that no rotation moves.
+    // A diagonal quantity that does not change under rotations.
     let diagonal = "param A: Mat<3>; group Λ: SO<3> velocity Ω; advected D: Diag<3>;
         constraint next(Λ) = Λ*Ω; constraint next(D) = D;
         lagrangian = -tr(D*Ω)/h - h*tr(A*D);";
@@ -88,7 +87,7 @@ fn momentum_maps_bear_their_side() {
         &["J_k^R = skew(Λ_kᵀ P_k)", "right translation"],
         &["J_k^L"],
     );
-    // The coadjoint action is that of the inverse on the other side.
+    // On the other side, the coadjoint action uses the inverse.
     holds(
         &text(SPATIAL),
         &["Ad*_{ω_k} M_k = M_{k-1} + ∇_{J_k} ℓ_k ◇ J_k"],
@@ -115,11 +114,11 @@ fn like_terms_are_collected() {
         &["ℓ = -tr(Ω_k J)/h - h gU·Γ_k"],
         &["h²/(2 h)", "h² gU·Γ_k/"],
     );
-    // What is taken off the momentum stands without brackets of its own.
+    // A term subtracted from the momentum does not need brackets.
     holds(&text(COUPLED), &["N₁ = μ_{1,k} + eps"], &["μ_{1,k} - (eps"]);
 }
 
-/// A table with every place of a body that is coupled to none.
+/// A table that cites every equation of an uncoupled body.
 const CITED: Citations = Citations {
     work: Some(Work {
         named: "lecture",
@@ -164,7 +163,7 @@ fn what_is_cited_is_the_table_of_the_model() {
         ],
         &[],
     );
-    // Without a table nothing is cited, whatever the model.
+    // Without a table there are no citations, whatever the model.
     for statements in [FREE, SPATIAL, COUPLED, ELLIPSOID] {
         holds(&text(statements), &[], &["thesis", "system of section"]);
     }
@@ -189,7 +188,7 @@ fn letters_that_the_model_bears_are_left_to_it() {
         )
     };
     holds(&text(&body("C")), &["Ω_k Cᵀ - C Ω_kᵀ = h μ_k"], &["C = C"]);
-    // A model that calls its own parameters A and S.
+    // A model with parameters called A and S.
     let taken = "param A, S: Sym<3>; group Λ: SO<3> velocity Ω; constraint next(Λ) = Λ*Ω;
         lagrangian = -tr((A + S)*Ω)/h;";
     holds(&text(taken), &["C = A + S", "S₁² + S₁ A₁"], &["S² + S A"]);
@@ -280,7 +279,7 @@ fn the_solution_is_that_of_the_model() {
         &["There is no Riccati form for G_k"],
         &["quartic"],
     );
-    // A stepper is spoken of where there is one.
+    // The text mentions a stepper only if one is emitted.
     let many = "param J: Sym<3>;
         group A: SO<3> velocity a; group B: SO<3> velocity b; group C: SO<3> velocity c;
         group D: SO<3> velocity d;

@@ -18,7 +18,7 @@ fn long(s: &Sample) -> Expr {
     expr::sum((1..=7).map(word), Shape::SCALAR)
 }
 
-/// A section on the heavy top with hostile words.
+/// A section on the heavy top with characters that need escapes.
 fn sample(s: &Sample) -> Document {
     let (k, k1) = (|n: &str| s.v(n), |n: &str| s.at(n, -1));
     let gradient = || Formula::gradient("ℓ", s.letter("Γ", 0));
@@ -124,7 +124,7 @@ fn latex_is_a_section_with_numbered_equations() {
     }
     assert_eq!(tex.matches("\\label{eq:heavy-top:").count(), 5);
     assert!(tex.contains("\n&\\quad {} + 3\\,c"), "{tex}");
-    // A bracket that ends on another line has a fixed size.
+    // A bracket whose partner is on another line has a fixed size.
     assert!(tex.contains("\\bigl(") && tex.contains("\\bigr)"));
     assert!(tex.contains("\\item{} [not an argument]"));
     assert!(!tex.contains("\n\n\\begin{equation}"));
@@ -138,7 +138,8 @@ const WORK: Work = Work {
     item: "\\emph{Tops}, 2007.",
 };
 
-/// A bare document: equations that follow one another are one group, their sources a footnote of the sentence before.
+/// In a bare document, consecutive equations form one group, and their sources are a footnote of the preceding
+/// sentence.
 #[test]
 fn equations_in_a_row_share_a_number() {
     let s = Sample::new();
@@ -176,7 +177,7 @@ fn equations_in_a_row_share_a_number() {
         alone.contains("\\bibitem{top2007} \\emph{Tops}, 2007.\n"),
         "{alone}"
     );
-    // A source in no work of the document is words.
+    // A source outside the work of the document is plain text.
     doc.work = None;
     let plain = render(&doc, &s.symbols, &Style::default(), Format::Latex);
     assert!(
@@ -185,7 +186,7 @@ fn equations_in_a_row_share_a_number() {
     );
 }
 
-/// A sum of so many terms.
+/// A sum with this many terms.
 fn sum_of(terms: usize) -> Formula {
     let letter = |i: usize| Formula::name(&format!("a_{i}"));
     Formula::Sum((0..terms).map(letter).collect())
@@ -218,7 +219,7 @@ fn long_formulas_of_a_sentence_stand_alone_and_go_over_pages() {
         tex.contains(" + a_{149},\n\\end{align*}}\n is long."),
         "{tex}"
     );
-    // Lines beyond the first of an equation that goes over pages bear no number.
+    // Further lines of an equation that breaks across pages do not get a number.
     assert_eq!((count("\\begin{align}"), count("\\label")), (2, 3), "{tex}");
     assert!(count("\\notag \\\\") > 20, "{tex}");
     assert_eq!(count("\\label{eq:top:momentum-of-poincare-2}"), 1, "{tex}");
@@ -239,7 +240,7 @@ fn long_titles_are_ragged_and_statements_fit_on_a_page() {
     let lines: Vec<&str> = tex.lines().filter(|l| l.starts_with("\\mbox")).collect();
     assert_eq!(lines.len(), 4, "{tex}");
     assert!(lines[1].starts_with("\\mbox{~~~~+~a*b"), "{tex}");
-    // Text that is copied stays on one line.
+    // Plain text keeps code on one line, so that it can be copied.
     let text = render(&doc, &s.symbols, &Style::default(), Format::Text);
     assert!(text.contains(&code), "{text}");
 }
@@ -285,7 +286,7 @@ fn rows_of_rustdoc_begin_with_the_left_side_once() {
     assert_eq!(rows.iter().filter(|r| told(r)).count(), 1, "{md}");
 }
 
-/// Skips one JSON value; panics where it is none.
+/// Skips one JSON value; panics if there is none.
 fn skip(text: &str) -> &str {
     let text = text.trim_start();
     let list = |open: char, close: char, keyed: bool| {

@@ -1,5 +1,5 @@
-//! MathML: well-formed, with the right number of children, on one line, and free of characters
-//! that Markdown reads.
+//! MathML must be well-formed, with the right number of children, on one line, and without characters that Markdown
+//! interprets.
 
 use super::sample::Sample;
 use crate::print::formula::Formula;
@@ -78,7 +78,7 @@ fn check_arity(e: &Element) {
     e.children.iter().for_each(check_arity);
 }
 
-/// Whether the text is MathML that Markdown leaves alone; panics if not.
+/// Checks that the text is MathML without Markdown characters; panics if not.
 pub fn check(text: &str) {
     check_arity(&parse(text));
 }

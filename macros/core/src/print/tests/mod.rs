@@ -1,4 +1,4 @@
-//! Tests of the printers on one list of expressions that holds every kind of node.
+//! Tests of the printers on a shared list of expressions with every kind of node.
 
 mod alike;
 mod derivations;

@@ -1,10 +1,10 @@
-//! What readers of a document are spared: equations that say nothing, sides that repeat, and two spellings of one name.
+//! Documents for human readers omit trivial equations, repeated sides and second spellings of a name.
 
 use crate::derive_source;
 use crate::document::printed;
 use crate::print::Format;
 
-/// A wheel that rolls, and a place that is held.
+/// A rolling wheel with a constrained coordinate.
 const ROLLING: &str = "model Rolling {
     param m, I, r: Real;
     field x: Real;

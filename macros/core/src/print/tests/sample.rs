@@ -1,5 +1,4 @@
-//! Expressions and formulas for the tests: a table of symbols, and a list in which every kind of
-//! node occurs.
+//! Expressions and formulas for the tests: a symbol table, and lists that contain every kind of node.
 
 use crate::algebra::Rational;
 use crate::expr::Constant;
@@ -12,7 +11,7 @@ use crate::print::formula::{Formula, Operator, Relation};
 
 pub const THREE: Dim = Dim::Fixed(3);
 
-/// Symbols of a heavy top and of whatever else the printers must cope with.
+/// Symbols of a heavy top, and symbols for other cases that the printers must support.
 pub struct Sample {
     pub symbols: Symbols,
 }
@@ -220,7 +219,7 @@ impl Sample {
         ]
     }
 
-    /// Formulas with every kind.
+    /// Formulas of every kind.
     pub fn formulas(&self) -> Vec<Formula> {
         let f = |name: &str| Formula::Expr(self.v(name));
         let b = Box::new;
@@ -301,7 +300,7 @@ impl Sample {
     }
 }
 
-/// Which kind of node this is.
+/// The number of a node's kind.
 fn kind(node: &Node) -> usize {
     match node {
         Node::Number(_) => 0,

@@ -1,4 +1,4 @@
-//! Literal spellings in plain text and LaTeX, and what every LaTeX spelling must satisfy.
+//! Exact output in plain text and LaTeX, and conditions on all LaTeX output.
 
 use super::sample::{Sample, THREE};
 use crate::algebra::Rational;

@@ -1,4 +1,4 @@
-//! Model text: parsing what was printed gives the same expression again.
+//! Model text: parsing the printed text gives the same expression again.
 
 use super::sample::Sample;
 use crate::algebra::Rational;
@@ -7,7 +7,7 @@ use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
 use crate::print::{Style, statement};
 
-/// The symbols of the sample as a model declares them, and two letters to pair with.
+/// The symbols of the sample as model declarations, and two letters for pairings.
 const DECLARATIONS: &str = "param c, x_ref: Real; param J, C0: Sym<3>; param A, B: Mat<3>; \
     param gU, z, d1, u: Vec<3>; group Λ: SO<3> velocity Ω; advected Λ1: SO<3>; \
     advected Q: GL<3>; advected Γ: Vec<3>; advected chi: Vec<3>; \
@@ -25,7 +25,7 @@ fn parsed(text: &str) -> (Symbols, Expr) {
     (spec.symbols, spec.typed)
 }
 
-/// A number that contains the expression.
+/// A scalar that contains the expression.
 fn number(symbols: &Symbols, e: Expr) -> Expr {
     let here = |name: &str| expr::here(symbols, symbols.find(name).unwrap());
     let shape = e.shape();
@@ -55,9 +55,9 @@ fn printed_text_parses_to_the_same_expression() {
             (l, expr::letter(&symbols, id, l.shift))
         };
         let letters = expr::letters(&original);
-        // A model may not look back, and the language has no word for an adjugate.
+        // A model may not refer to earlier nodes, and the language does not have a word for the adjugate.
         let adjugate = matches!(original.node(), expr::Node::Adjugate(_));
-        // Nor does a statement make a functional yet.
+        // Statements cannot define functionals.
         let functional = matches!(
             original.node(),
             expr::Node::Given(_) | expr::Node::PullBack(..)
@@ -69,7 +69,7 @@ fn printed_text_parses_to_the_same_expression() {
         let e = expr::substitute(&symbols, &original, &replacements);
         let whole = expr::add(kinetic.clone(), number(&symbols, e));
         let text = statement(&whole, &symbols, &style);
-        // Inclusions stand for themselves in derived expressions only.
+        // Inclusions occur in derived expressions only.
         if text.contains('ι') {
             continue;
         }

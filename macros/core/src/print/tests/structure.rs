@@ -1,5 +1,5 @@
-//! What LaTeX and GitHub ask of a printed derivation, without either at hand: environments, braces
-//! and brackets are balanced, commands are those of plain amsmath, references have their labels.
+//! Conditions of LaTeX and GitHub on printed derivations, checked without either: environments, braces and brackets
+//! are balanced, commands belong to plain amsmath, and references have labels.
 
 use crate::derive_source;
 use crate::document::printed;
@@ -25,7 +25,7 @@ const MODELS: [&str; 4] = [
         lagrangian = -tr(C^T*Ω)/h; }",
 ];
 
-/// Commands of LaTeX and amsmath that may appear.
+/// The commands of LaTeX and amsmath that may appear.
 const KNOWN: [&str; 75] = [
     "Bigg",
     "Biggl",
@@ -104,7 +104,7 @@ const KNOWN: [&str; 75] = [
     "raggedright",
 ];
 
-/// Braces, environments, `\left` and `\right`, and the commands of a text.
+/// Checks braces, environments, `\left` and `\right`, and the commands of a text.
 fn check(tex: &str, what: &str) {
     let mut depth = 0i64;
     let mut environments: Vec<String> = Vec::new();
@@ -120,7 +120,7 @@ fn check(tex: &str, what: &str) {
                     name.push(letter);
                 }
                 if name.is_empty() {
-                    // `\{`, `\\`, `\,`: one character.
+                    // `\{`, `\\` and `\,` are commands of one character.
                     rest.next();
                     continue;
                 }
@@ -134,7 +134,7 @@ fn check(tex: &str, what: &str) {
                     "begin" => environments.push(argument()),
                     "end" => assert_eq!(environments.pop(), Some(argument()), "{what}"),
                     "left" => fences.push(depth),
-                    // A pair must close within the same group.
+                    // A pair must close within its group.
                     "right" => assert_eq!(fences.pop(), Some(depth), "{what}"),
                     _ => {}
                 }

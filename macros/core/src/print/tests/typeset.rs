@@ -1,4 +1,4 @@
-//! Documentation and typeset names of declarations: where they reach, what is refused.
+//! Documentation and typeset names of declarations: where they appear, and what is rejected.
 
 use crate::document::{printed, source};
 use crate::pipeline::derive_source;
@@ -60,7 +60,7 @@ fn typeset_names_reach_formulas() {
         mathml.contains("<mi>χ</mi>") && mathml.contains("<mi>ν</mi>"),
         "{mathml}"
     );
-    // Text is what the model says.
+    // Plain text keeps the names of the model.
     let text = printed(&d, Format::Text);
     assert!(
         text.contains("gU·Γ_k") && text.contains("the `vertical`"),

@@ -1,19 +1,17 @@
-//! Expressions that could be read in two ways, or that are written as in another language: each is an error that
-//! shows both ways to write it. Takes the parsed expression and the cursor after it; gives the error, if there is
-//! one.
+//! Reports expressions that are ambiguous or use the notation of another language. Each error shows both readings.
 
 use super::{Cursor, Expression, Kind, Token, unknown};
 use crate::algebra::Rational;
 use crate::diagnostic::{Diagnostic, Place};
 use crate::syntax::FUNCTIONS;
 
-/// Types that Rust glues to numbers.
+/// Types that Rust allows as suffixes of numbers.
 const SUFFIXES: [&str; 14] = [
     "f32", "f64", "i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16", "u32", "u64", "u128",
     "usize",
 ];
 
-/// The name of an operand in a message: as it was written, if that is one word.
+/// The name of an operand in a message: its text if that is one word, otherwise `a`.
 fn spelled(e: &Expression) -> &str {
     match &e.kind {
         Kind::Name(name) => name,
@@ -47,7 +45,7 @@ pub(super) fn after_divisor(c: &Cursor, divisor: &Expression) -> Diagnostic {
     }
 }
 
-/// `2h`: no product, and after `/` read in two ways; `0x10` and `2f64` are numbers of other languages.
+/// `2h`: not a product, and ambiguous after `/`; `0x10` and `2f64` are numbers of other languages.
 pub(super) fn glued(c: &Cursor, number: &str, name: &str) -> Diagnostic {
     if let Some(value) = of_another_base(number, name) {
         let message = format!("`{number}{name}`: numbers are written in decimal digits");
@@ -73,8 +71,8 @@ pub(super) fn glued(c: &Cursor, number: &str, name: &str) -> Diagnostic {
     })
 }
 
-/// The value of `0x10`, `0o17` or `0b11`, which came as `0` and the rest; `Some(None)` where it has
-/// none that fits.
+/// The value of `0x10`, `0o17` or `0b11`, which arrive as `0` and the rest; `Some(None)` if the value is invalid or
+/// too large.
 fn of_another_base(number: &str, name: &str) -> Option<Option<u128>> {
     let base = match name.as_bytes().first()? {
         b'x' => 16,
@@ -87,9 +85,9 @@ fn of_another_base(number: &str, name: &str) -> Option<Option<u128>> {
     (number == "0" && all).then(|| u128::from_str_radix(&digits, base).ok())
 }
 
-/// The error for a missing `*` after a factor, before one of these: a number (`v[1] 2`, `(a + b)2`: a product, a
-/// power, an index?), or parentheses after what looks like a call, an index or a power (`dot(a, b)(2)`). `opened`
-/// is whether the factor began with a parenthesis.
+/// The error for a missing `*` after a factor. A number may follow (`v[1] 2`, `(a + b)2`: a product, a power or an
+/// index?), or parentheses after a call, an index or a power (`dot(a, b)(2)`). `opened` is whether the factor began
+/// with a parenthesis.
 pub(super) fn after_factor(
     c: &Cursor,
     factor: Option<&Expression>,
@@ -128,7 +126,7 @@ pub(super) fn after_factor(
     Some(Diagnostic::new(factor.place.to(c.place()), what).help(remedy))
 }
 
-/// `sin^2(q)`, `sin^-1(x)`: a power is written after the argument of the function.
+/// `sin^2(q)`, `sin^-1(x)`: a power belongs after the argument of the function.
 fn power_of_function(factor: &Kind, place: Place) -> Option<Diagnostic> {
     let Kind::Power(base, q) = factor else {
         return None;
@@ -148,8 +146,8 @@ fn power_of_function(factor: &Kind, place: Place) -> Option<Diagnostic> {
     Some(Diagnostic::new(place, message).help(help))
 }
 
-/// `x^1/2` is half of `x`, and nobody writes the exponent 1 who does not mean the root; `x^2/2` is
-/// half of the square, and `x^-1/2` of the inverse.
+/// The error for `x^1/2`, which is half of `x` but probably means the root. `x^2/2` and `x^-1/2` are accepted as half
+/// of the power.
 pub(super) fn after_exponent(c: &Cursor, base: &Expression, q: Rational) -> Option<Diagnostic> {
     let Some(Token::Number(n)) = c.peek_at(1).filter(|_| q.is_one() && c.is_punct('/')) else {
         return None;

@@ -1,27 +1,27 @@
-//! Functions of other languages: how the language writes them, or that it cannot.
+//! Functions of other languages: their form in the language, or the advice if there is none.
 
 /// The advice for inverses of trigonometric functions.
 const NO_INVERSE: &str = "the language has no inverse of sine, cosine or tangent. Make the angle itself a configuration, for \
     example `field θ: Real;`, so that its potential `k*θ^2/2` can be stated";
 
-/// The advice for functions in pieces.
+/// The advice for piecewise functions.
 const NO_CASES: &str = "functions in pieces are not supported yet, except by `abs` and `sign`: `(x + abs(x))/2` is x where x > 0 \
     and 0 elsewhere, `(1 + sign(x))/2` is 1 or 0";
 
-/// A rate of change is a difference.
+/// The advice for rates of change.
 const RATE: &str = "the discrete Lagrangian writes a rate of change as a difference over the step: `(next(x) - x)/h`";
 
 /// The advice for units of angles.
 pub(crate) const RADIANS: &str = "angles are in radians: 30 degrees are `30*pi/180`, or `pi/6`";
 
-/// Derivatives and integrals are taken by the engine.
+/// The advice for derivatives and integrals.
 const ENGINE: &str = "state the Lagrangian itself: derivatives are taken by the engine";
 
 /// The advice for sums over pairs of sites.
 pub(crate) const PAIRS: &str = "terms couple neighbours along a label, not all pairs of sites. Declare the bodies one by one, \
     `field x, y, z: Vec<3>;`, and write a term for each pair";
 
-/// How the language writes a function of another language, or what to do if it does not have the function.
+/// The notation of the language for a function of another language, or advice if there is none.
 pub(crate) fn function(name: &str) -> Option<&'static str> {
     Some(match name {
         "norm" | "Norm" | "length" | "len" | "magnitude" | "mag" | "hypot" | "modulus" => {

@@ -1,6 +1,6 @@
-//! Names of constants and of quantities as other languages and papers have them.
+//! Names of constants and quantities in other languages and papers.
 
-/// Names of constants, with what the language writes.
+/// Names of constants in other languages, and their form in the language.
 const CONSTANTS: [(&str, &str); 15] = [
     ("PI", "pi"),
     ("Pi", "pi"),
@@ -19,30 +19,30 @@ const CONSTANTS: [(&str, &str); 15] = [
     ("identity", "Id"),
 ];
 
-/// Names of the time step elsewhere.
+/// Common names of the time step.
 pub(crate) const STEPS: [&str; 7] = ["h", "dt", "Dt", "Δt", "delta_t", "deltat", "tau"];
 
-/// Names of time.
+/// Common names of time.
 pub(crate) const TIMES: [&str; 2] = ["t", "time"];
 
-/// Names of a velocity.
+/// Common names of a velocity.
 pub(crate) const VELOCITIES: [&str; 5] = ["v", "vel", "velocity", "xdot", "qdot"];
 
 /// Units of angles.
 pub(crate) const ANGLES: [&str; 6] = ["deg", "degree", "degrees", "rad", "radian", "radians"];
 
-/// Modules of functions in Python.
+/// Python modules with functions.
 pub(crate) const MODULES: [&str; 12] = [
     "np", "numpy", "math", "cmath", "scipy", "sp", "sympy", "sym", "jnp", "jax", "torch", "linalg",
 ];
 
-/// How the language writes a constant of this name.
+/// The form of a constant in the language.
 pub(crate) fn name(name: &str) -> Option<&'static str> {
     let found = CONSTANTS.iter().find(|(other, _)| *other == name);
     found.map(|(_, written)| *written)
 }
 
-/// The shape that has this name in other languages.
+/// The shape that other languages call by this name.
 pub(crate) fn shape(name: &str) -> Option<&'static str> {
     Some(match name {
         "Scalar" | "Number" | "R" | "ℝ" | "f64" | "Float" | "float" | "Double" | "double"

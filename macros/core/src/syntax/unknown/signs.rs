@@ -1,14 +1,14 @@
-//! Signs that no expression of the language has: comparisons, points, lists.
+//! Signs that do not occur in expressions: comparisons, dots, lists.
 
 use super::super::token::{Cursor, SIZES, Token};
 use super::{MODULES, function};
 use crate::diagnostic::{Diagnostic, closest};
 use crate::syntax::FUNCTIONS;
 
-/// How a vector is written.
+/// The advice for vectors.
 pub(in crate::syntax) const VECTOR: &str = "a vector is the sum of its components times unit vectors, `a*E1 + b*E2`, or a parameter, `param v: Vec<3>;`";
 
-/// A sign in an expression that ends there.
+/// The error for a sign after which an expression cannot continue.
 pub(in crate::syntax) fn ends_expression(c: &Cursor) -> Option<Diagnostic> {
     let sign = comparison(c).or_else(|| point(c)).or_else(|| product(c));
     sign.or_else(|| {
@@ -50,7 +50,7 @@ pub(in crate::syntax) fn instead_of_operand(c: &Cursor) -> Diagnostic {
     }
 }
 
-/// `x > 0`, `x == 0`, `x != 0`: no expression has cases.
+/// `x > 0`, `x == 0`, `x != 0`: expressions do not have cases.
 fn comparison(c: &Cursor) -> Option<Diagnostic> {
     let doubled = matches!(c.peek_at(1), Some(Token::Punct('=', _)));
     let sign = match c.peek() {

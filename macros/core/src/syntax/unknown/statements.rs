@@ -1,18 +1,18 @@
-//! Words that begin no statement.
+//! Words that do not begin a statement.
 
 use super::super::ast::Name;
 use super::super::token::{Cursor, KEYWORDS, Token};
 use super::names::STEPS;
 use crate::diagnostic::{Diagnostic, closest};
 
-/// How uniform damping is stated.
+/// The advice for uniform damping.
 const DAMPING: &str = "damping of all momenta at one rate γ can be stated: declare a clock, `advected t: Real; constraint next(t) = t + h;`, \
     and multiply kinetic terms by `exp(γ*(t + next(t))/2)` and potentials by `exp(γ*t)`";
 
-/// How a force with a potential is stated.
+/// The advice for a force with a potential.
 const POTENTIAL: &str = "a force with a potential V is the term `-h*V` of the Lagrangian; a constant force F along a number x is `h*F*x`";
 
-/// Forces that may have a potential, and need not.
+/// Names of forces that may have a potential.
 const FORCES: [&str; 8] = [
     "force",
     "forces",
@@ -24,7 +24,7 @@ const FORCES: [&str; 8] = [
     "actuator",
 ];
 
-/// Forces that have none.
+/// Names of dissipative forces.
 const FRICTION: [&str; 9] = [
     "friction",
     "dissipation",
@@ -37,7 +37,7 @@ const FRICTION: [&str; 9] = [
     "Rayleigh",
 ];
 
-/// Whether a name means a force.
+/// Whether a name probably means a force.
 pub(crate) fn is_force(name: &str) -> bool {
     FORCES.contains(&name) || FRICTION.contains(&name)
 }
@@ -97,7 +97,7 @@ fn declaration(word: &str) -> Option<&'static str> {
     })
 }
 
-/// The advice for other meanings of the word.
+/// The advice for other probable meanings of the word.
 fn meant(c: &Cursor, word: &str) -> String {
     let assigned = matches!(c.peek(), Some(Token::Punct('=', _)));
     if assigned && let Some(said) = assignment(c, word) {
@@ -120,7 +120,7 @@ fn meant(c: &Cursor, word: &str) -> String {
     }
 }
 
-/// The probable meaning of `word = ...`, if it is not an abbreviation.
+/// The probable meaning of `word = ...`, if it is not a definition.
 fn assignment(c: &Cursor, word: &str) -> Option<String> {
     let number = match (c.peek_at(1), c.peek_at(2)) {
         (Some(Token::Number(n)), Some(Token::Punct(';', _))) => Some(n.as_str()),

@@ -1,9 +1,9 @@
-//! Words and signs of Python and of other languages: what is underlined, and what is said of it.
+//! Words and signs of Python and other languages: the underlined part and the message.
 
 use crate::diagnostic::Diagnostic;
 use crate::pipeline::derive_source;
 
-/// A model of a number and a vector of the plane with one more statement and one more potential.
+/// A model with a scalar and a planar vector, one more statement and one more potential.
 fn source(statements: &str, term: &str) -> String {
     format!(
         "model M {{ param m, k, c: Real; field q: Real; field x: Vec<2>; {statements} lagrangian = m*(next(q) - q)^2/(2*h) \
@@ -11,7 +11,7 @@ fn source(statements: &str, term: &str) -> String {
     )
 }
 
-/// The first mistake of a model, and the part of its text that is underlined.
+/// The first mistake of a model, and the underlined part of its text.
 fn first(source: &str) -> (String, Diagnostic) {
     let Err(errors) = derive_source(source) else {
         panic!("derives: {source}");
@@ -25,7 +25,7 @@ fn first(source: &str) -> (String, Diagnostic) {
     (marked, first)
 }
 
-/// Of each model what is underlined and what is said, as one text.
+/// Checks the underlined part and the message of each model.
 fn told(all: &[(&str, &str, &str, &str)]) {
     for (statements, term, marked, wanted) in all {
         let (found, d) = first(&source(statements, term));
@@ -35,7 +35,7 @@ fn told(all: &[(&str, &str, &str, &str)]) {
             "{statements} {term}\n{}",
             d.text()
         );
-        // At most two sentences of advice, and no list of all functions beside it.
+        // At most two sentences of advice, and not the list of all functions.
         assert!(d.help.len() <= 2, "{}", d.text());
         assert!(!d.text().contains("functions: tr"), "{}", d.text());
     }
@@ -52,7 +52,7 @@ fn forces_are_said_not_to_be_supported_and_damping_to_be_stated_by_a_clock() {
         assert!(help.contains("`exp(γ*(t + next(t))/2)`"), "{help}");
         assert!(!help.contains("`let "), "{help}");
     }
-    // What the advice says derives, and is of second order.
+    // The suggested model derives and is of second order.
     let advised = "model Damped { param m, k, γ: Real; field x: Real; advected t: Real; constraint next(t) = t + h; \
          lagrangian = exp(γ*(t + next(t))/2)*m*(next(x) - x)^2/(2*h) - exp(γ*t)*h*k*x^2/2; }";
     let derived = derive_source(advised).unwrap_or_else(|e| panic!("{e}"));
@@ -243,10 +243,10 @@ fn names_and_shapes_are_told_with_what_is_meant() {
         ("", "k*dot(q, q)", "q", "`a^2`"),
         ("", "cross(x, x)", "x", "`dot(perp(a), b)`"),
     ]);
-    // The clock of the advice derives.
+    // The suggested clock derives.
     let clock = "advected t: Real; constraint next(t) = t + h;";
     assert!(derive_source(&source(clock, "q*cos(c*t)")).is_ok());
-    // Moments of inertia have their usual names.
+    // The usual names of moments of inertia are allowed.
     let moments = derive_source(&source("param I1, I2, I3: Real;", "(I1 + I2 + I3)*q"));
     assert!(moments.is_ok(), "{moments:?}");
 }

@@ -1,10 +1,10 @@
-//! Invariants of short and longer lattices, and what is printed of them for every number of sites.
+//! Compares invariants of short and longer chains with what is printed for every number of sites.
 
 use crate::lattice::Lattice;
 use crate::pipeline;
 use crate::print::Format;
 
-/// The items of the section on invariants, each line of the plain text joined to its item.
+/// The items of the section on invariants, each joined into one line.
 fn items(model: &str) -> Vec<String> {
     let parsed = pipeline::parse_source(model).unwrap_or_else(|e| panic!("{e}"));
     let printed = crate::document::printed_lattice(&parsed, model, Format::Text, 1000).unwrap();
@@ -44,7 +44,7 @@ fn what_an_end_holds_is_read_from_that_end() {
         has("across F g: (∑_{i=0}^N p_{i,k})·(F_N × g) (exact"),
         "{list:#?}"
     );
-    // The written-out lattice has four segments.
+    // The expanded chain has four segments.
     for short in ["_4", "₄", "₂", "_{4", "_{N-2", " 4"] {
         assert!(!has(short), "{short}: {list:#?}");
     }
@@ -52,7 +52,7 @@ fn what_an_end_holds_is_read_from_that_end() {
 
 #[test]
 fn parts_over_some_of_the_sites_are_told_together() {
-    // Sites are coupled to the next but one: on a line even and odd ones are two chains.
+    // Sites couple only to the next site but one: on an open chain, the even and the odd sites are separate chains.
     let list = items(
         "model M { label i in 0..N; param m: Real at nodes; param e: Real; field q: Real at nodes;
          lagrangian = m*(next(q) - q)^2/(2*h) - h*e*(next(next(q, i), i) - q)^4; }",
@@ -86,8 +86,8 @@ fn names_are_those_of_longer_lattices() {
     }
 }
 
-/// Sites without neighbours are summed over all of them, in totals and in the equations of what stands beside them,
-/// whose momentum has the number that the derivation gives it.
+/// Totals of sites without neighbours are sums over all sites, and so are the equations of a configuration that
+/// couples to all of them. The momentum of that configuration has the number that the derivation assigns.
 #[test]
 fn sets_without_neighbours_are_summed_over_all_their_sites() {
     let model =
@@ -113,7 +113,7 @@ fn sets_without_neighbours_are_summed_over_all_their_sites() {
     for short in ["a+1", "p_3", "p_{3"] {
         assert!(!printed.text.contains(short), "{}", printed.text);
     }
-    // What is shown beside a run is of as many sites as it has.
+    // The description of a run covers its actual number of sites.
     let lattice = Lattice::read(&parsed).unwrap();
     for count in [1, 2, 9] {
         let mut choice = pipeline::representative(&parsed, &lattice).unwrap();
