@@ -106,6 +106,11 @@ fn fluids() {
 }
 
 #[test]
+fn results() {
+    follow("results");
+}
+
+#[test]
 fn long_runs() {
     follow("long-runs");
 }
@@ -118,11 +123,13 @@ fn programs_are_the_examples() {
         .lines()
         .filter_map(|line| line.strip_prefix("{{#include ")?.strip_suffix("}}"))
         .collect();
-    assert_eq!(included.len(), 5);
+    assert_eq!(included.len(), 6);
     for path in included {
         assert!(Path::new(&source()).join(path).exists(), "{path}");
     }
-    assert_eq!(blocks(&page).len(), 5);
+    let blocks = blocks(&page);
+    let programs = blocks.iter().filter(|(info, _)| info == "rust");
+    assert_eq!(programs.count(), 6);
 }
 
 #[test]
@@ -137,6 +144,7 @@ fn every_chapter_is_followed() {
         "rigid-body",
         "chains",
         "fluids",
+        "results",
         "long-runs",
         // Its code runs in `python/tests/test_book.py`.
         "python",
