@@ -76,7 +76,10 @@ fn follow(chapter: &str) {
             _ => panic!("{chapter}: a block of an unknown kind, {info}"),
         }
     }
-    for (name, made) in [("swing.svg", "out/swing/fields.svg")] {
+    for (name, made) in [
+        ("swing.svg", "out/swing/fields.svg"),
+        ("toda-chain/momentum.svg", "out/toda/momentum.svg"),
+    ] {
         if page.contains(name) {
             let shown = std::fs::read(format!("{}/{name}", source())).expect("a picture");
             let made = std::fs::read(folder.path(made)).expect("a picture");
