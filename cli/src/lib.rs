@@ -164,8 +164,3 @@ fn answer_clap(error: &clap::Error, streams: &mut Streams<'_>) -> u8 {
         Err(_) => FAILED,
     }
 }
-
-/// The README's examples are compiled and run.
-#[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
-pub struct Readme;

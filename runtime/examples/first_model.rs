@@ -41,6 +41,7 @@ fn main() -> Result<(), Error> {
             );
         }
     }
+    assert!((top.momentum_Gamma(&state) - casimir).abs() < 1e-13);
     Ok(())
 }
 

@@ -76,7 +76,10 @@ fn follow(chapter: &str) {
             _ => panic!("{chapter}: a block of an unknown kind, {info}"),
         }
     }
-    for (name, made) in [("swing.svg", "out/swing/fields.svg")] {
+    for (name, made) in [
+        ("swing.svg", "out/swing/fields.svg"),
+        ("toda-chain/momentum.svg", "out/toda/momentum.svg"),
+    ] {
         if page.contains(name) {
             let shown = std::fs::read(format!("{}/{name}", source())).expect("a picture");
             let made = std::fs::read(folder.path(made)).expect("a picture");
@@ -106,6 +109,11 @@ fn fluids() {
 }
 
 #[test]
+fn results() {
+    follow("results");
+}
+
+#[test]
 fn long_runs() {
     follow("long-runs");
 }
@@ -118,11 +126,13 @@ fn programs_are_the_examples() {
         .lines()
         .filter_map(|line| line.strip_prefix("{{#include ")?.strip_suffix("}}"))
         .collect();
-    assert_eq!(included.len(), 5);
+    assert_eq!(included.len(), 6);
     for path in included {
         assert!(Path::new(&source()).join(path).exists(), "{path}");
     }
-    assert_eq!(blocks(&page).len(), 5);
+    let blocks = blocks(&page);
+    let programs = blocks.iter().filter(|(info, _)| info == "rust");
+    assert_eq!(programs.count(), 6);
 }
 
 #[test]
@@ -137,6 +147,7 @@ fn every_chapter_is_followed() {
         "rigid-body",
         "chains",
         "fluids",
+        "results",
         "long-runs",
         // Its code runs in `python/tests/test_book.py`.
         "python",

@@ -1,10 +1,10 @@
-//! What the documents show is what the programs do: every model of the language page derives, the
-//! extract of a derivation is part of what is printed, and the figures are those that the command
-//! beside them writes, byte for byte.
+//! What the documents show is what the programs do: the models of the language page and of the first page derive, the
+//! extract of a derivation is part of what is printed, and the figures equal, byte for byte, the ones that the command
+//! writes.
 
 use clebsch_cli::gallery::Gallery;
 use clebsch_cli::{Streams, execute};
-use clebsch_core::document::printed_telling;
+use clebsch_core::document::{Citations, printed_telling};
 use clebsch_core::print::Format;
 use std::ffi::OsString;
 use std::fs;
@@ -35,10 +35,10 @@ fn flat(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The indented block of the page that follows these words.
-fn block_after<'a>(page: &'a str, words: &str) -> &'a str {
+/// The first block of a kind that follows these words.
+fn block_after<'a>(page: &'a str, words: &str, kind: &str) -> &'a str {
     let rest = page.split(words).nth(1).expect("the words");
-    let block = rest.split("```text\n").nth(1).expect("a block");
+    let block = rest.split(&format!("```{kind}\n")).nth(1).expect("a block");
     block.split("```").next().expect("its end")
 }
 
@@ -49,7 +49,18 @@ fn the_extract_on_the_first_page_is_what_is_printed() {
     let d = clebsch_core::derive_source(model.card.source).expect("derives");
     let printed = printed_telling(&d, Format::Text, 100, model.citations, None);
     let printed = flat(&printed);
-    let extract = block_after(&page, "derive heavy-top` prints the whole derivation");
+    // The model on the page gives the same equations.
+    let shown = block_after(&page, "## A model", "clebsch");
+    let shown = clebsch_core::derive_source(shown).expect("derives");
+    let shown = flat(&printed_telling(
+        &shown,
+        Format::Text,
+        100,
+        Citations::NONE,
+        None,
+    ));
+    let words = "derive heavy-top` prints the whole derivation";
+    let extract = block_after(&page, words, "text");
     let equations: Vec<&str> = extract.split("\n\n").collect();
     assert!(equations.len() >= 5, "the page has lost its extract");
     for equation in equations {
@@ -57,10 +68,11 @@ fn the_extract_on_the_first_page_is_what_is_printed() {
             printed.contains(&flat(equation)),
             "not in the derivation any more: {equation}"
         );
+        assert!(shown.contains(&flat(equation)), "{equation}");
         // A changed number or sign is noticed.
         assert!(!printed.contains(&flat(&equation.replace("= ", "= -"))));
     }
-    let refused = block_after(&page, "A model that is wrong is told where and why");
+    let refused = block_after(&page, "If a model is wrong", "text");
     let wrong = model.card.source.replace("Ω^T*Γ", "Ω*Γ");
     assert_ne!(wrong, model.card.source);
     let told = clebsch_core::derive_source(&wrong).expect_err("refused");
@@ -88,11 +100,11 @@ fn the_figures_are_what_the_command_writes() {
     );
     assert_eq!(code, 0, "{}", String::from_utf8_lossy(&err));
     for name in ["momentum.svg", "invariants.svg", "attitude.svg"] {
-        let shown = fs::read(root().join("docs/heavy-top").join(name)).unwrap();
+        let shown = fs::read(root().join("docs/book/src/heavy-top").join(name)).unwrap();
         let written = fs::read(folder.join(name)).unwrap();
         assert!(
             shown == written,
-            "docs/heavy-top/{name} is stale: copy it from `clebsch run heavy-top --case general --out DIR`"
+            "docs/book/src/heavy-top/{name} is stale: copy it from `clebsch run heavy-top --case general --out DIR`"
         );
     }
     fs::remove_dir_all(folder).unwrap();
