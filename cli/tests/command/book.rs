@@ -118,6 +118,43 @@ fn long_runs() {
     follow("long-runs");
 }
 
+/// The tutorial, as a reader follows it: each model is saved with the case below it, derives and runs; the lines in between and
+/// after are printed.
+#[test]
+fn tutorial() {
+    let path = format!("{}/../docs/tutorial.md", env!("CARGO_MANIFEST_DIR"));
+    let page = std::fs::read_to_string(path).expect("the tutorial");
+    let folder = Folder::new("tutorial");
+    let mut names = ["free", "top", "pendulum", "string", "water"].into_iter();
+    let (mut name, mut printed) = ("", String::new());
+    for (info, text) in blocks(&page) {
+        match info.as_str() {
+            "clebsch" => {
+                name = names.next().expect("a name for each model");
+                assert!(page.contains(&format!("`{name}.clebsch`")), "{name}");
+                folder.write(&format!("{name}.clebsch"), &text);
+                printed = folder.runs(&format!("derive @{name}.clebsch")).out;
+            }
+            "toml" => {
+                assert!(page.contains(&format!("`{name}.toml`")), "{name}");
+                folder.write(&format!("{name}.toml"), &text);
+                printed = folder.runs(&format!("run @{name}.clebsch")).out;
+            }
+            "text" => {
+                for line in text.lines() {
+                    assert!(
+                        printed.contains(line),
+                        "{name}: `{line}` is not in\n{printed}"
+                    );
+                }
+            }
+            "sh" => {}
+            _ => panic!("a block of an unknown kind, {info}"),
+        }
+    }
+    assert!(names.next().is_none(), "the tutorial has lost a model");
+}
+
 /// The programs of the book are the examples, which run as tests of their own.
 #[test]
 fn programs_are_the_examples() {

@@ -1,4 +1,4 @@
-//! What the documents show is what the programs do: the models of the language page and of the first page derive, the
+//! What the documents show is what the programs do: the models of the pages about the language and of the first page derive, the
 //! extract of a derivation is part of what is printed, and the figures equal, byte for byte, the ones that the command
 //! writes.
 
@@ -15,17 +15,39 @@ fn root() -> PathBuf {
 }
 
 #[test]
-fn every_model_of_the_language_page_derives() {
-    let page = fs::read_to_string(root().join("docs/language.md")).unwrap();
-    let blocks: Vec<&str> = page
-        .split("```clebsch\n")
-        .skip(1)
-        .filter_map(|rest| rest.split("```").next())
-        .collect();
-    assert!(blocks.len() >= 4, "the page has lost its models");
-    for text in blocks {
-        if let Err(errors) = clebsch_core::derive_source(text) {
-            panic!("{text}\n{errors}");
+fn every_model_of_the_language_pages_derives() {
+    for (name, least) in [("tutorial", 5), ("language", 12), ("limits", 0)] {
+        let page = fs::read_to_string(root().join(format!("docs/{name}.md"))).unwrap();
+        let blocks: Vec<&str> = page
+            .split("```clebsch\n")
+            .skip(1)
+            .filter_map(|rest| rest.split("```").next())
+            .collect();
+        assert!(blocks.len() >= least, "{name}.md has lost its models");
+        for text in blocks {
+            if let Err(errors) = clebsch_core::derive_source(text) {
+                panic!("{name}.md: {text}\n{errors}");
+            }
+        }
+    }
+}
+
+/// Links between the pages, which rustdoc reads too, have their targets in the same folder.
+#[test]
+fn the_language_pages_link_to_each_other() {
+    for name in ["tutorial", "language", "limits"] {
+        let page = fs::read_to_string(root().join(format!("docs/{name}.md"))).unwrap();
+        let targets: Vec<&str> = page
+            .lines()
+            .filter_map(|line| line.strip_prefix('[')?.split_once("]: "))
+            .map(|(_, target)| target)
+            .collect();
+        assert!(!targets.is_empty(), "{name}.md has lost its links");
+        for target in targets {
+            assert!(
+                root().join("docs").join(target).exists(),
+                "{name}.md: {target}"
+            );
         }
     }
 }

@@ -432,7 +432,7 @@ fn assumptions_that_say_nothing_are_told() {
     }
 }
 
-/// The shipped texts: the gallery, and the models in the language reference.
+/// The shipped texts: the gallery, and the models in the pages about the language.
 fn shipped() -> Vec<(String, String)> {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
     let files = std::fs::read_dir(format!("{root}/models/src")).map_or(Vec::new(), |list| {
@@ -449,11 +449,13 @@ fn shipped() -> Vec<(String, String)> {
         })
         .filter(|(_, text)| text.contains("clebsch::model! {"))
         .collect();
-    let language = std::fs::read_to_string(format!("{root}/docs/language.md")).unwrap_or_default();
-    let blocks = language.split("```clebsch\n").skip(1);
-    all.extend(
-        blocks.filter_map(|b| Some(("language.md".to_owned(), b.split("```").next()?.to_owned()))),
-    );
+    for page in ["language.md", "limits.md", "tutorial.md"] {
+        let text = std::fs::read_to_string(format!("{root}/docs/{page}")).unwrap_or_default();
+        let blocks = text.split("```clebsch\n").skip(1);
+        all.extend(
+            blocks.filter_map(|b| Some((page.to_owned(), b.split("```").next()?.to_owned()))),
+        );
+    }
     all.sort();
     all
 }
