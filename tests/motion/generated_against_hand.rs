@@ -152,7 +152,7 @@ fn integrable_motions_of_a_faulty_stepper_part() {
 
 #[test]
 fn both_refuse_beyond_the_bound_and_only_there() {
-    // The draw determines its bound to one part in 10^4.
+    // `draws` computes the bound on the momentum to one part in 10^4.
     let mut draws = Draws::new(13);
     for _ in 0..1000 {
         for (share, solvable) in [(0.999, true), (1.001, false), (3.0, false)] {

@@ -1,5 +1,5 @@
-//! Matrices of any size over the oracle's numbers, rows first; a number is 1 x 1, a vector one column.
-//! Takes entries; gives the operations of the language as their definitions say, no shape special.
+//! Matrices of any size over the oracle's numbers, row-major; a scalar is 1 x 1, a vector is one column. Implements the operations
+//! of the language by their definitions, with no special cases by shape.
 
 use crate::oracle::dual::Number;
 
