@@ -145,7 +145,7 @@ impl System for InFields {
     }
 }
 
-/// An ellipsoid of N rows near its reference; `MOMENTS` for an energy of the second moments in space.
+/// An ellipsoid in N dimensions near its reference. With `MOMENTS`, the energy depends on the spatial second moments.
 #[derive(Clone, Copy)]
 struct Elastic<const N: usize, const MOMENTS: bool> {
     body: Ellipsoid<N>,

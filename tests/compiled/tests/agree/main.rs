@@ -50,7 +50,7 @@ fn residuals(compiled: &Compiled) -> Result<f64, String> {
     Ok(worst)
 }
 
-/// The initial values by field, from the oracle's letters; momenta, body after body, are drawn.
+/// Initial values by field, from the oracle's symbols; momenta are random, one body after another.
 fn initial(
     model: &Model,
     card: &Card,

@@ -34,7 +34,7 @@ fn off(angle: f64, momentum: f64, g: Vector3<f64>) -> f64 {
     let model = Hinge::new(HingeParameters { J: j, g, a }).expect("parameters");
     let initial = HingeInitial {
         R: Rotation::from_matrix(&about_third(angle)).expect("a rotation"),
-        // Of a velocity about the axis, with what the products of inertia add across it.
+        // The momentum of a rotation about the axis; products of inertia add components perpendicular to it.
         body_momentum: BodyMomentum(
             (Matrix3::identity() * j.trace() - j).column(2) * (momentum / inertia),
         ),
@@ -60,10 +60,10 @@ fn off(angle: f64, momentum: f64, g: Vector3<f64>) -> f64 {
 
 #[test]
 fn a_hinge_along_an_axis_of_the_basis_is_a_pendulum() {
-    // Three hundred steps of a few roundings each, of a motion that does not amplify them.
+    // Three hundred steps with a few rounding errors each; the motion does not amplify them.
     let least = 1e-12;
     let weight = Vector3::new(0.1, -1.0, 0.2);
-    // From rest; turned; on its way; without a force.
+    // From rest; rotated; with an initial velocity; without a force.
     for (angle, momentum, g) in [
         (0.0, 0.0, weight),
         (0.4, 0.0, weight),
