@@ -3,7 +3,7 @@
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables, confusable_idents)]
-// Some models are deliberately of first order or have no small-step limit; the macro warns about these with this lint.
+// Some models are deliberately of first order or lack a small-step limit; the macro warns about these with this lint.
 #![allow(deprecated)]
 
 mod allocation;

@@ -74,7 +74,7 @@ fn values(m: &Matrix) -> &[f64] {
     &m.data
 }
 
-/// The largest entry of `D B D^T - B'` relative to that of `B'`; `change` modifies the brackets first.
+/// The largest entry of `D B D^T - B'` relative to the largest entry of `B'`; `change` modifies the brackets first.
 fn defect(step: &Step, change: impl Fn(&mut Matrix)) -> f64 {
     let at = |point: &Assignment| {
         let mut b = step

@@ -212,7 +212,7 @@ fn a_free_body_turns_uniformly_and_goes_straight() {
         let place = motion.translation + linear * (n * h / 2.0);
         let gap = (state.G().translation - place).norm() / place.norm();
         assert!(gap < 1e-13, "straight: {gap:e}");
-        // A spatial step rotates by the angle with sine h L / tr J, to rounding; a body step by h L / tr J.
+        // A step rotates by the angle with sine h L / tr J, to rounding; the continuous motion rotates by h L / tr J.
         let turn = |angle: f64| PlaneMotion::new(0.3 + angle, place).rotation.matrix();
         let own = n * (h * moment / second_moments().trace()).asin();
         let gap = (state.G().rotation.matrix() - turn(own)).norm();

@@ -515,7 +515,7 @@ fn data_off_a_constraint_are_refused_with_numbers() {
     let Err(StartError::Initial(e)) = start([0.6, 0.0, 0.8], [0.6, 0.3, 0.8]) else {
         panic!("away from the sphere");
     };
-    // Half the position equals 1/4 of the constraint gradient, twice the position.
+    // The normal part of the momentum is 0.5 times the constraint gradient, which is twice the position.
     assert!(
         matches!(e.problem, Problem::AcrossConstraint { impulse, taken, .. }
             if (impulse - 0.5).abs() < 1e-12 && (taken - 1.0).abs() < 1e-12),

@@ -124,7 +124,7 @@ impl Problem {
                     }
                 }
                 let found = self.evaluated(f, [&given, &start, &from, &to]).slope.slope;
-                // Of the directions varied together, at most one is near enough to contribute.
+                // Among the directions varied together, at most one is near enough to contribute.
                 if let Some((k, ..)) = all.iter().find(|(_, b, _)| self.is_near(row, b)) {
                     out[*k] = found;
                 }
