@@ -184,7 +184,8 @@ fn closed_form_is_the_continuous_motion() {
 /// The exact separatrix: parameter m = 1, where the functions are hyperbolic.
 #[test]
 fn separatrix_is_followed() {
-    // |mu|^2 = 2 E I_2 means mu_1^2 (1/2 - 1/4) = mu_3^2 (1 - 1/2) for I = (4, 2, 1). The first pair satisfies this exactly for squares rounded to f64, the second pair up to rounding.
+    // For I = (4, 2, 1), the condition |mu|^2 = 2 E I_2 means mu_1^2 (1/2 - 1/4) = mu_3^2 (1 - 1/2). The first pair satisfies this
+    // exactly for squares rounded to f64, the second pair up to rounding.
     let pairs = [(0.6187184335382291_f64, 0.4375), (2.0_f64.sqrt(), 1.0)];
     assert!(pairs[0].0.powi(2) == 2.0 * pairs[0].1.powi(2));
     for ((x, z), time) in pairs
