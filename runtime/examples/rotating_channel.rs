@@ -37,8 +37,8 @@ fn main() {
     }
 }
 
-/// The depth that balances the initial velocities: the exact depth of the particles; an exact depth from which the smoother makes
-/// the particle depth; or the smoothed depth on the grid, whose gradient is the force.
+/// The depth that balances the initial velocities: the particle depth from a formula; the same formula for the smoothed depth,
+/// with the particle depth sharpened accordingly; or the smoothed depth on the grid, whose gradient is the force.
 #[derive(Clone, Copy, Debug)]
 enum Start {
     Depth,

@@ -101,8 +101,8 @@ fn divergence_is_the_rate_of_areas() {
     }
 }
 
-/// Orders of accuracy on regular lattices and for irregular particles: errors of the exact gradient decrease there, errors of the
-/// mean-value gradient do not.
+/// Orders of accuracy on regular lattices and for irregular particles. For irregular particles, errors of the exact gradient
+/// decrease with the spacing; errors of the mean-value gradient do not.
 #[test]
 fn orders_of_consistency() {
     let error = |n: usize, size: f64, of_means: bool| -> f64 {

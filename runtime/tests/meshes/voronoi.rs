@@ -111,7 +111,7 @@ fn flips_and_making_anew_give_the_same_cells() {
 }
 
 /// Rows of a lattice slide past each other by exact fractions of their distance, so that every in-circle test is repeatedly a tie.
-/// Cells equal those of a new mesh, and areas are equal when the rows form a lattice.
+/// Cells equal those of a new mesh, and areas are equal if the rows form a lattice.
 #[test]
 fn rows_slide_through_ties() {
     let n = 8;

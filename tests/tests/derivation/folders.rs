@@ -1,5 +1,5 @@
 //! Checks the import order of the folders in `cli/src`: each folder imports only from folders before it in [`ORDER`], so that
-//! imports have no cycle.
+//! imports are acyclic.
 
 use std::fs;
 use std::path::Path;
