@@ -57,8 +57,8 @@ fn turned(v: Place) -> Place {
     Place::new(v[1], -v[0])
 }
 
-/// Two vortices in a rotating channel: the largest relative energy error up to time 1. The initial balance uses the exact or the
-/// smoothed depth; the rotation is centred or the exact flow of a free particle.
+/// Two vortices in a rotating channel: the largest relative energy error up to time 1. The initial balance uses a depth from
+/// a formula or the smoothed depth; the rotation is centred or the exact flow of a free particle.
 fn vortices(smoothed: bool, centred: bool, dt: f64) -> f64 {
     let (side, cells, f) = (64, [31, 32], TAU);
     let of = setting(Domain::channel([TAU; 2]), cells, side * side);
