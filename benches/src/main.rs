@@ -1,6 +1,6 @@
 //! Time per step of generated and hand-written steppers, called like a user calls them, one step at a time. Takes part of the name
-//! of the cases to run, or nothing for all; prints a table of medians over eight processes, with the worst. `cargo run --release
-//! --manifest-path benches/Cargo.toml`, about two minutes; `-- coupled` behind it for some.
+//! of the cases to run, or nothing for all; prints a table of medians over eight processes, with the worst.
+//! `cargo run --release --manifest-path benches/Cargo.toml`, about two minutes; `-- coupled` behind it for some.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables)]

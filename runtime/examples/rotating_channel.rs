@@ -93,8 +93,8 @@ impl Rotation {
     }
 }
 
-/// A high next to a low, and the gradient of the depth. The depth is sharpened over the length `alpha`, by `(1 - α²∂_1²)(1 -
-/// α²∂_2²)`.
+/// A high next to a low, and the gradient of the depth. The depth is sharpened over the length `alpha`, by
+/// `(1 - α²∂_1²)(1 - α²∂_2²)`.
 fn depth(x: &Place, alpha: f64) -> (f64, Place) {
     let mut all = (1.0, Place::zeros());
     for (height, at) in [(0.1, -0.8), (-0.1, 0.8)] {

@@ -1,6 +1,6 @@
 //! Time per step of the generated and the hand-written free body in four to eight dimensions, at several fractions of the
-//! solvability bound. Takes no arguments; prints a table. `cargo run --release --manifest-path benches/Cargo.toml --bin
-//! dimensions`, a minute.
+//! solvability bound. Takes no arguments; prints a table.
+//! `cargo run --release --manifest-path benches/Cargo.toml --bin dimensions`, a minute.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables)]

@@ -1,6 +1,6 @@
 //! Time of the macro for each gallery model, in an unoptimised engine, as rustc builds it. Prints the minimum, median and maximum
-//! over 25 processes in milliseconds, each the first expansion of its process. `cargo run --release --manifest-path
-//! benches/Cargo.toml --bin expansion`
+//! over 25 processes in milliseconds, each the first expansion of its process.
+//! `cargo run --release --manifest-path benches/Cargo.toml --bin expansion`
 
 use std::io::Write as _;
 use std::process::{Command, Stdio};

@@ -1,8 +1,8 @@
 //! Time per site and step of chains compiled for any number of sites. Compares Toda's chain, the sine-Gordon equation, coupled
 //! tops, elastic and inextensible rods, shallow water and velocity-coupled bodies with hand-written steppers. Also compares tops
 //! and rod with single heavy tops, the rod in quaternions with the rod in rotations, and constrained chains with the elastic rod.
-//! Takes part of a row's name to select rows; prints a table. `cargo run --release --manifest-path benches/Cargo.toml --bin lines
-//! [-- ROW]`, two minutes.
+//! Takes part of a row's name to select rows; prints a table.
+//! `cargo run --release --manifest-path benches/Cargo.toml --bin lines [-- ROW]`, two minutes.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables, non_snake_case)]

@@ -1,6 +1,6 @@
 //! Time per particle and step of particle-mesh shallow water in a channel with four particles per cell: depth, smoothing and forces
-//! by the runtime's functionals, against a plain loop over particles. Takes no arguments; prints a table. `cargo run --release
-//! --manifest-path benches/Cargo.toml --bin particle_mesh`, a minute.
+//! by the runtime's functionals, against a plain loop over particles. Takes no arguments; prints a table.
+//! `cargo run --release --manifest-path benches/Cargo.toml --bin particle_mesh`, a minute.
 
 use clebsch::mesh::{Domain, Functional, Nodes, Setting, deposit, smooth};
 use clebsch::nalgebra::SVector;

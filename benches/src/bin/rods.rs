@@ -1,6 +1,6 @@
 //! A free bending elastic rod, against PyElastica: the path of its first end, and the time of a step. Takes no arguments; prints a
-//! table. If Python is available, PyElastica is installed and measured; otherwise the table omits that column. `cargo run --release
-//! --manifest-path benches/Cargo.toml --bin rods`
+//! table. If Python is available, PyElastica is installed and measured; otherwise the table omits that column.
+//! `cargo run --release --manifest-path benches/Cargo.toml --bin rods`
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables, non_snake_case)]

@@ -1,7 +1,7 @@
 //! The pseudo-rigid body Q = Rᵀ D S in the discretisation of the thesis (3.55), with the signs of (3.62) corrected, and the
-//! variables of the bipolar form for any motion of a placement. With J = D (2 - wᵀ) D and K = D (2 - Ωᵀ) D, a step solves `2
-//! skew(Ωᵀ J) = -h hat(m)`, `2 skew(wᵀ K) = -h hat(n)` by Newton's method with hand-written derivatives. The stretches then follow
-//! explicitly. Takes rotations, stretches and their momenta; gives these after one step.
+//! variables of the bipolar form for any motion of a placement. With J = D (2 - wᵀ) D and K = D (2 - Ωᵀ) D, a step solves
+//! `2 skew(Ωᵀ J) = -h hat(m)`, `2 skew(wᵀ K) = -h hat(n)` by Newton's method with hand-written derivatives. The stretches then
+//! follow explicitly. Takes rotations, stretches and their momenta; gives these after one step.
 
 use super::Unsolvable;
 use super::attitude::{
@@ -164,8 +164,8 @@ impl PseudoRigid {
 }
 
 impl Bipolar {
-    /// The placement Rᵀ D S and its momentum P, defined by `P·δQ = m·ξ + n·ζ + p·δD` for rotations ξ of R and ζ of S. With `Y = R P
-    /// Sᵀ`, the momenta are `2 vee(D Yᵀ)`, `-2 vee(Yᵀ D)` and the diagonal of Y. The stretches must be distinct.
+    /// The placement Rᵀ D S and its momentum P, defined by `P·δQ = m·ξ + n·ζ + p·δD` for rotations ξ of R and ζ of S. With
+    /// `Y = R P Sᵀ`, the momenta are `2 vee(D Yᵀ)`, `-2 vee(Yᵀ D)` and the diagonal of Y. The stretches must be distinct.
     pub fn placed(&self) -> [Matrix; 2] {
         let d = &self.d;
         let [m, n, p] = &self.momenta;

@@ -83,8 +83,8 @@ pub fn lift_matrix<T: Real>(m: &Matrix3<f64>) -> Matrix3<T> {
     m.map(T::from_f64)
 }
 
-/// An independent solver for the tests: Newton's method on the quaternion form `q0 I Q + Q x I Q = h N / 2`, `q0 = sqrt(1 -
-/// |Q|^2)`.
+/// An independent solver for the tests: Newton's method on the quaternion form `q0 I Q + Q x I Q = h N / 2`,
+/// `q0 = sqrt(1 - |Q|^2)`.
 pub fn quaternion_newton(j: &Matrix3<f64>, h_n: &Vector3<f64>) -> Vector3<f64> {
     let inertia = Matrix3::from_diagonal_element(j.trace()) - j;
     let mut q = inertia.lu().solve(&(h_n * 0.5)).expect("regular inertia");

@@ -52,8 +52,8 @@ fn moments() -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::new(0.7, 0.8, 0.3))
 }
 
-/// The momentum of a rotation about the third axis by `θ` per step: the body's part, plus the part of the quartic term `(k/h³) (2 -
-/// 2 cos θ)²`.
+/// The momentum of a rotation about the third axis by `θ` per step: the body's part, plus the part of the quartic term
+/// `(k/h³) (2 - 2 cos θ)²`.
 fn momentum(θ: f64, h: f64) -> f64 {
     let half = (θ / 2.0).sin();
     let inertia = moments().m11 + moments().m22;

@@ -1,6 +1,6 @@
 //! Elastic ellipsoids on GL(n), convective and spatial, n = 2 to 4. Their balance is linear in the velocity, so each step is
-//! explicit. Compared with the material form, in which the force is the second difference of the placement: `C0 (Q'' - 2 Q' + Q) I0
-//! = -h² ∇V(Q')`, Störmer-Verlet.
+//! explicit. Compared with the material form, in which the force is the second difference of the placement:
+//! `C0 (Q'' - 2 Q' + Q) I0 = -h² ∇V(Q')`, Störmer-Verlet.
 
 use clebsch::integrate::Stepper;
 use clebsch::nalgebra::SMatrix;

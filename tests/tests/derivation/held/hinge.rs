@@ -25,8 +25,8 @@ fn about_third(angle: f64) -> Matrix3<f64> {
     Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0)
 }
 
-/// The final difference between the hinge and the pendulum, whose action in one angle is `-(J11 + J22) cos(θ_{k+1} - θ_k)/h + h/2
-/// (U(θ_k) + U(θ_{k+1}))`.
+/// The final difference between the hinge and the pendulum, whose action in one angle is
+/// `-(J11 + J22) cos(θ_{k+1} - θ_k)/h + h/2 (U(θ_k) + U(θ_{k+1}))`.
 fn off(angle: f64, momentum: f64, g: Vector3<f64>) -> f64 {
     let j = Matrix3::new(0.5, 0.1, 0.05, 0.1, 0.7, 0.02, 0.05, 0.02, 0.9);
     let a = Vector3::new(1.0, 0.2, 0.3);

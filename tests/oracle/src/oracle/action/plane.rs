@@ -94,9 +94,9 @@ pub fn plane_twists() -> Vec<Square<f64, 3>> {
         .collect()
 }
 
-/// A body given by its second moments about its origin, in potentials, with a term linear in the velocity `V`: the sum of `tr((V -
-/// Id)*Q*(V - Id)^T)/(2*h)`, `a5*dot(pos(V^-1), A*u)`, `a14*dot(P, K*P)`, `a15*dot(Γ, u)` and `a19*exp(-dot(pos(G), pos(G)))*dot(Γ,
-/// A*Γ)`, with an advected vector `Γ` and an advected line `P`.
+/// A body given by its second moments about its origin, in potentials, with a term linear in the velocity `V`: the sum of
+/// `tr((V - Id)*Q*(V - Id)^T)/(2*h)`, `a5*dot(pos(V^-1), A*u)`, `a14*dot(P, K*P)`, `a15*dot(Γ, u)` and
+/// `a19*exp(-dot(pos(G), pos(G)))*dot(Γ, A*Γ)`, with an advected vector `Γ` and an advected line `P`.
 #[derive(Clone, Debug)]
 pub struct PlaneSum {
     /// The step size.
