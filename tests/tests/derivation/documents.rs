@@ -1,5 +1,6 @@
-//! Checks that the documents match the programs: every model of the language page derives, the printed extract is part of the
-//! actual output, and figures equal the output of the command next to them, byte for byte.
+//! What the documents show is what the programs do: every model of the language page derives, the
+//! extract of a derivation is part of what is printed, and the figures are those that the command
+//! beside them writes, byte for byte.
 
 use clebsch_cli::gallery::Gallery;
 use clebsch_cli::{Streams, execute};
@@ -29,12 +30,12 @@ fn every_model_of_the_language_page_derives() {
     }
 }
 
-/// Words and signs without line breaks, which depend on the surrounding text.
+/// Words and signs without the breaks between lines, which depend on what stands before.
 fn flat(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The indented block that follows these words on the page.
+/// The indented block of the page that follows these words.
 fn block_after<'a>(page: &'a str, words: &str) -> &'a str {
     let rest = page.split(words).nth(1).expect("the words");
     let block = rest.split("```text\n").nth(1).expect("a block");
@@ -56,7 +57,7 @@ fn the_extract_on_the_first_page_is_what_is_printed() {
             printed.contains(&flat(equation)),
             "not in the derivation any more: {equation}"
         );
-        // The comparison detects a changed sign.
+        // A changed number or sign is noticed.
         assert!(!printed.contains(&flat(&equation.replace("= ", "= -"))));
     }
     let refused = block_after(&page, "A model that is wrong is told where and why");

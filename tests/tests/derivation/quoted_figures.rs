@@ -21,7 +21,7 @@ const fn place(row: &'static str, column: &'static str) -> Place {
     }
 }
 
-/// Rows of the README's table, and the cell of benches/RESULTS.md that contains each measurement.
+/// Rows of the README's table, and where in benches/RESULTS.md each is measured.
 const QUOTED: [(&str, Place); 9] = [
     (
         "one step: by hand, the same method",
