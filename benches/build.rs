@@ -1,6 +1,6 @@
-//! Hands two things to the benchmarks: the version of the compiler, printed beside the times, and the path of this very
-//! program. A build script is built without optimisation in every profile, as a macro is: run again with an argument it
-//! expands the statement on its standard input and prints the microseconds.
+//! Passes the compiler version, which the benchmarks print next to the times, and the path of this program to the benchmarks. A
+//! build script is built without optimisation in every profile, like a macro. With an argument, this program expands the statement
+//! on its standard input and prints the microseconds.
 
 use clebsch_core::pipeline::expand;
 use std::io::Read as _;
@@ -24,7 +24,7 @@ fn main() {
     println!("cargo::rustc-env=UNOPTIMISED_ENGINE={}", this.display());
 }
 
-/// One expansion, the first of its process, as in rustc.
+/// One expansion, the first in its process, as in rustc.
 fn measure() {
     let mut source = String::new();
     if std::io::stdin().read_to_string(&mut source).is_err() {
@@ -36,7 +36,7 @@ fn measure() {
     let start = Instant::now();
     let expanded = expand(tokens);
     let time = start.elapsed();
-    // The stepper, not an error message in its place.
+    // The output is the stepper and not an error message.
     if expanded.to_string().contains(":: clebsch :: stepper !") {
         println!("{}", time.as_micros());
     }

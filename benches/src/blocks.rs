@@ -1,25 +1,25 @@
-//! Interleaved timing of two ways to do the same: blocks in the order A B B A, so that a slow drift of the machine
-//! falls on both alike. Takes what makes a fresh block of work; gives medians and the spread of the ratio.
+//! Interleaved timing of two implementations: blocks in the order A B B A, so that a slow drift of the machine affects both
+//! equally. Takes functions that make a fresh block of work; gives medians and the spread of the ratio.
 
 use rustix::time::{ClockId, clock_gettime};
 
-/// Groups of four blocks in each process; a median of 42 blocks each.
+/// Groups of four blocks in each process, which gives a median over 42 blocks for each implementation.
 pub const QUADRUPLES: usize = 21;
 
-/// Steps of one block: about a millisecond, far above the resolution of the clock and below a time slice.
+/// Steps per block: about a millisecond, far above the clock resolution and below a time slice.
 pub const STEPS: u32 = 32_000;
 
 /// Times per step in nanoseconds.
 pub struct Comparison {
     /// Median over the blocks of the generated stepper.
     pub generated: f64,
-    /// Median over the blocks of the hand-written one.
+    /// Median over the blocks of the hand-written stepper.
     pub hand: f64,
     /// Lower and upper quartile of the ratio within groups of four.
     pub quartiles: [f64; 2],
 }
 
-/// Times both; `generated` and `hand` make work that is ready to run, outside the clock: blocks of [`STEPS`] steps.
+/// Times both. `generated` and `hand` prepare, outside the measured time, a block of [`STEPS`] steps.
 pub fn compare<A: FnOnce(), B: FnOnce()>(
     generated: impl Fn() -> A,
     hand: impl Fn() -> B,
@@ -27,7 +27,7 @@ pub fn compare<A: FnOnce(), B: FnOnce()>(
     compare_blocks(STEPS, STEPS, QUADRUPLES, generated, hand)
 }
 
-/// The same with blocks of so many steps each, in so many groups of four.
+/// Like `compare`, with the given numbers of steps per block and of groups of four blocks.
 pub fn compare_blocks<A: FnOnce(), B: FnOnce()>(
     steps_generated: u32,
     steps_hand: u32,
@@ -55,7 +55,7 @@ pub fn compare_blocks<A: FnOnce(), B: FnOnce()>(
     }
 }
 
-/// Nanoseconds that this thread has computed: waiting for a processor that others use is not counted.
+/// CPU time of this thread in nanoseconds, without the time spent waiting for a processor.
 pub fn computed() -> f64 {
     let now = clock_gettime(ClockId::ThreadCPUTime);
     now.tv_sec as f64 * 1e9 + now.tv_nsec as f64

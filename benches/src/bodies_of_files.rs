@@ -1,6 +1,6 @@
-//! Blocks of work of the elastic bodies whose statements are files of `models/elastic/`, compiled, beside steppers by hand: the
-//! same steps from the same start, that of the case beside the file. Takes nothing; gives closures for the clock. The
-//! stepper by hand is held to the file by `interpret/tests/elastic/against_hand.rs`, and each statement here to the stepper by hand.
+//! Blocks of work for the elastic bodies in `models/elastic/`, compiled, and for hand-written steppers: the same steps from the
+//! initial state of the model's case. `interpret/tests/elastic/against_hand.rs` compares the hand-written steppers with the model
+//! files; here each statement is compared with the hand-written stepper.
 
 use crate::counted::Block;
 use crate::loops::{generated, written};
@@ -50,14 +50,14 @@ clebsch::model! {
 
 const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// The step of all of them.
+/// The step size of all of them.
 const H: f64 = 0.02;
 
 fn matrix(rows: &Matrix) -> Matrix3<f64> {
     Matrix3::from_fn(|r, c| rows[r][c])
 }
 
-/// Placement and momentum, stepped by a function of them.
+/// Placement and momentum, and the function that steps them.
 #[derive(Clone, Copy)]
 struct Stepped<F> {
     at: [Matrix; 2],
@@ -71,7 +71,7 @@ impl<F: Fn(&[Matrix; 2]) -> Result<[Matrix; 2], Unsolvable>> Stepped<F> {
     }
 }
 
-/// A generated block whose first step leads to the placement to which one by hand leads.
+/// A generated block, after a check that its first step gives the placement of the hand-written step.
 macro_rules! agreeing {
     ($model:expr, $initial:expr, $hand:expr, $place:expr) => {{
         let (model, mut hand) = ($model.expect("parameters"), $hand);
@@ -122,7 +122,7 @@ pub fn generated_hooke() -> Block<impl FnOnce()> {
     )
 }
 
-/// A block of the neo-Hookean body by hand.
+/// A block of the hand-written neo-Hookean body.
 pub fn written_hooke() -> impl FnOnce() {
     written!(hooke_by_hand())
 }
@@ -134,7 +134,7 @@ const NATURAL: [Matrix; 2] = [
 
 const MOONEY_RIVLIN: [f64; 4] = [0.1, 10.0, 10.0, 60.2];
 
-/// The stepper by hand, which keeps the velocity of its placement.
+/// The hand-written stepper, which stores the velocity of the placement.
 struct Mooney {
     at: [Matrix; 1],
     body: ElasticEllipsoid<3>,
@@ -156,11 +156,11 @@ fn mooney_by_hand() -> ElasticEllipsoid<3> {
         of: Of::Metric,
     };
     let [place, momentum] = &NATURAL;
-    // Seen from the body the momentum is the same where the placement is the identity.
+    // At the identity placement, the body momentum equals the material momentum.
     ElasticEllipsoid::start(&body, place, momentum, H).expect("solvable")
 }
 
-/// A block of the generated body of Mooney and Rivlin, by its placement.
+/// A block of the generated Mooney-Rivlin body, stated by its placement.
 pub fn generated_mooney() -> Block<impl FnOnce()> {
     let [a, b, c, d] = MOONEY_RIVLIN;
     let model = MooneyRivlin::new(MooneyRivlinParameters {
@@ -185,7 +185,7 @@ pub fn generated_mooney() -> Block<impl FnOnce()> {
     })
 }
 
-/// A block of the body of Mooney and Rivlin by hand.
+/// A block of the hand-written Mooney-Rivlin body.
 pub fn written_mooney() -> impl FnOnce() {
     written!(mooney_by_hand())
 }
@@ -209,7 +209,7 @@ clebsch::model! {
     }
 }
 
-/// An ellipsoid of axes 1.25, 1 and 0.8 with a momentum that turns and shears it.
+/// An ellipsoid with axes 1.25, 1 and 0.8, and a momentum that rotates and shears it.
 const FLUID: [Matrix; 2] = [
     [[1.25, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.8]],
     [[0.05, -0.12, 0.0], [0.16, 0.02, 0.03], [0.0, 0.02, -0.048]],
@@ -245,7 +245,7 @@ pub fn generated_fluid() -> Block<impl FnOnce()> {
     )
 }
 
-/// A block of the fluid ellipsoid by hand.
+/// A block of the hand-written fluid ellipsoid.
 pub fn written_fluid() -> impl FnOnce() {
     written!(fluid_by_hand())
 }

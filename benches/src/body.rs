@@ -1,5 +1,4 @@
-//! The generated free body as one of the methods that are compared, and what all of them start from.
-//! Takes principal moments, a momentum and a step; gives a start, and the generated motion from it.
+//! The generated free body in the interface of the compared methods, and their common initial data.
 
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::solvers::Method;
@@ -12,7 +11,7 @@ use clebsch_models::free_body::{
 };
 use std::hint::black_box;
 
-/// A body with principal moments of inertia along its axes, at the identity.
+/// A body at the identity with principal moments of inertia along its axes.
 pub fn start_of(moments: [f64; 3], body_momentum: [f64; 3], h: f64) -> Start {
     let half = moments.iter().sum::<f64>() / 2.0;
     let entry = |r: usize, c: usize| if r == c { half - moments[r] } else { 0.0 };
@@ -36,27 +35,27 @@ pub fn body_of(start: &Start) -> (FreeBodyParameters, FreeBodyInitial) {
     (parameters, initial)
 }
 
-/// The generated stepper as one of the methods.
+/// The generated stepper as a method for comparison.
 #[derive(Clone)]
 pub struct Generated {
     /// The body.
     pub model: FreeBody<f64>,
-    /// The present node.
+    /// The state at the current node.
     pub state: FreeBodyState<f64>,
-    /// What its solver keeps.
+    /// The workspace of its solver.
     pub workspace: FreeBodyWorkspace<f64>,
 }
 
 impl Generated {
-    /// Starts a motion that is known to be solvable.
+    /// Starts a solvable motion.
     pub fn start(start: &Start, order: Order) -> Self {
         Self::solved_by(start, order, Method::Kappa).expect("solvable")
     }
 
-    /// The same, its steps solved by the solver named.
+    /// Starts a motion with the given solver.
     ///
     /// # Errors
-    /// When that does not solve this body's first step.
+    /// If the solver does not solve the first step of this body.
     pub fn solved_by(start: &Start, order: Order, method: Method) -> Result<Self, StartError> {
         let (parameters, initial) = body_of(start);
         let model = FreeBody::new(parameters)
@@ -70,7 +69,7 @@ impl Generated {
         })
     }
 
-    /// A block of so many steps, as a user writes the loop.
+    /// A block of `steps` steps in the loop that a user would write.
     pub fn block(self, steps: u32) -> impl FnOnce() {
         move || {
             let (model, mut state, mut workspace) =

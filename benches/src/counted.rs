@@ -1,5 +1,5 @@
-//! What a step takes, counted while it is made: a number that notes every operation made with it.
-//! Takes a model and a state over plain numbers; gives operations and bytes of one step, solvers included.
+//! Counts the work of a step with a number type that records every operation. Takes a model and a state over plain numbers; gives
+//! the operations and bytes of one step, including solvers.
 
 use clebsch::integrate::{Model, Stepper};
 use clebsch::num_traits::{One, Zero};
@@ -7,20 +7,20 @@ use clebsch::{OfScalars, Real};
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// Operations of one step, and bytes of what it reads and writes.
+/// Operations of one step, and bytes of its state and workspace.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Work {
     /// Additions, subtractions and multiplications.
     pub operations: f64,
-    /// Divisions and square roots, which take as long as ten operations.
+    /// Divisions and square roots; each takes about as long as ten other operations.
     pub divisions: f64,
-    /// Exponentials, logarithms, sines and their like.
+    /// Exponentials, logarithms, sines and other functions.
     pub functions: f64,
-    /// Of the state and the workspace.
+    /// Bytes of the state and the workspace.
     pub bytes: usize,
 }
 
-/// Steps over which the work is averaged: iterations differ from step to step.
+/// Steps for the average, because the number of iterations differs from step to step.
 const STEPS: u32 = 200;
 
 thread_local! {
@@ -37,7 +37,7 @@ fn taken() -> [u64; 3] {
     [OPERATIONS.take(), DIVISIONS.take(), FUNCTIONS.take()]
 }
 
-/// The work of a step of `h` from this state, a mean over the steps that follow; none where they cannot be made.
+/// The mean work of a step of size `h` over the steps from this state; `None` if a step fails.
 pub fn work_of<M: Model<Scalar = f64>>(model: &M, state: &M::State, h: f64) -> Option<Work> {
     let counted = |x: f64| Counted(x);
     let model = <M::Over<Counted>>::of(model.given().over(&mut { counted })).ok()?;
@@ -52,12 +52,12 @@ pub fn work_of<M: Model<Scalar = f64>>(model: &M, state: &M::State, h: f64) -> O
         operations,
         divisions,
         functions,
-        // The number has the size of a double.
+        // `Counted` has the size of a double.
         bytes: size_of_val(&state) + size_of_val(&work),
     })
 }
 
-/// A double that notes what is done with it. Signs and comparisons are free.
+/// A double that records its operations. Signs and comparisons are not counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Counted(f64);
 
@@ -153,9 +153,9 @@ impl Real for Counted {
     }
 }
 
-/// A block of steps ready to run, and the work of one of them.
+/// A block of steps that is ready to run, and the work of one step.
 pub struct Block<F> {
-    /// Of one step.
+    /// The work of one step.
     pub work: Work,
     /// The steps.
     pub run: F,

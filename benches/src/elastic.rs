@@ -1,6 +1,5 @@
-//! Blocks of work of elastic ellipsoids in three dimensions and of four configurations joined by springs: the same steps
-//! from the same start, that of a case of the gallery, each step a call that may refuse. Takes nothing; gives closures for
-//! the clock. Everything is started outside them.
+//! Blocks of work for elastic ellipsoids in three dimensions and for four configurations coupled by springs: the same steps from
+//! the initial state of a gallery case. Each step is a fallible call, and initialisation is outside the measured time.
 
 use crate::counted::Block;
 use crate::loops::{generated, written};
@@ -24,17 +23,17 @@ use clebsch_oracle::reference::H;
 
 const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// Soft enough for the step of the benches; without stress at the identity.
+/// Soft enough for the step size of the benchmarks, and free of stress at the identity.
 const ENERGY: [f64; 4] = [0.1, 1.0, 1.0, 6.2];
 
-/// The velocity, which is the momentum too where placement, metric and second moments are the identity.
+/// The velocity, which equals the momentum if placement, metric and second moments are the identity.
 const VELOCITY: Matrix = [[0.1, -0.5, 0.3], [0.4, -0.1, -0.2], [-0.3, 0.35, 0.05]];
 
 fn matrix(rows: &Matrix) -> Matrix3<f64> {
     Matrix3::from_fn(|r, c| rows[r][c])
 }
 
-/// A block of the generated ellipsoid seen from the body.
+/// A block of the generated convective ellipsoid.
 pub fn generated_convective() -> Block<impl FnOnce()> {
     let [a, b, c, d] = ENERGY;
     let parameters = EllipsoidConvectiveParameters {
@@ -52,7 +51,7 @@ pub fn generated_convective() -> Block<impl FnOnce()> {
     generated!(EllipsoidConvective::<3>::new(parameters), initial)
 }
 
-/// A block of the generated ellipsoid seen from space.
+/// A block of the generated spatial ellipsoid.
 pub fn generated_spatial() -> Block<impl FnOnce()> {
     let [a, b, c, d] = ENERGY;
     let parameters = EllipsoidSpatialParameters {
@@ -81,12 +80,12 @@ fn written_ellipsoid(of: Of) -> impl FnOnce() {
     written!(motion.expect("solvable"))
 }
 
-/// A block of the ellipsoid by hand, its energy a function of the metric seen from the body.
+/// A block of the hand-written ellipsoid with an energy of the convective metric.
 pub fn written_convective() -> impl FnOnce() {
     written_ellipsoid(Of::Metric)
 }
 
-/// A block of the ellipsoid by hand, its energy a function of the second moments in space.
+/// A block of the hand-written ellipsoid with an energy of the spatial second moments.
 pub fn written_spatial() -> impl FnOnce() {
     written_ellipsoid(Of::Moments)
 }
@@ -153,7 +152,7 @@ pub fn generated_four() -> Block<impl FnOnce()> {
     generated!(MixedFour::new(parameters), initial)
 }
 
-/// A block of the four by hand.
+/// A block of the four hand-written configurations.
 pub fn written_four() -> impl FnOnce() {
     let motion = handwritten::mixed_four::MixedFour::start(&FOUR, &PLACES, &MOMENTA, H);
     written!(motion.expect("solvable"))

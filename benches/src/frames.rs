@@ -1,5 +1,5 @@
-//! Blocks of work of ten frames that springs join to a ring, in one model, and of ten that a spring binds to space each,
-//! stepped one after the other: as many bodies of the same inertia. Takes nothing; gives closures for the clock.
+//! Blocks of work for a ring of ten frames coupled by springs in one model, and for ten single frames, each coupled to space by a
+//! spring and stepped in turn, with the same inertia.
 
 use crate::blocks::STEPS;
 use crate::counted::Block;
@@ -45,7 +45,7 @@ clebsch::model! {
     }
 }
 
-// A model of its own, not the top of the gallery: that one would no longer be compiled into one loop alone.
+// A separate model instead of the gallery's top, which would otherwise no longer be compiled into a single loop.
 clebsch::model! {
     /// A frame whose axis is bound to one in space: a heavy top.
     model Frame {
@@ -61,7 +61,7 @@ clebsch::model! {
     }
 }
 
-/// The attitude and the momentum of each of ten bodies at the start.
+/// The initial attitude and momentum of each of the ten bodies.
 fn start(i: u8) -> (Rotation<f64>, BodyMomentum<f64>) {
     let at = f64::from(i);
     let turn = Vector3::new(0.1 * at, 0.2, -0.05 * at);
@@ -108,7 +108,7 @@ pub fn generated_frames() -> Block<impl FnOnce()> {
     generated!(Frames::new(parameters), initial)
 }
 
-/// A block of ten frames bound to space, each stepped by itself.
+/// A block of ten frames coupled to space, each stepped separately.
 pub fn generated_single_frames() -> impl FnOnce() {
     let top = generic_top();
     let parameters = FrameParameters {

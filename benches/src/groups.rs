@@ -1,5 +1,5 @@
-//! Blocks of work of models on SU(2) and SE(3), in unit quaternions and in a fluid: the same steps from the same start,
-//! each step a call that may refuse. Takes starting data; gives closures for the clock.
+//! Blocks of work for models on SU(2) and SE(3), in unit quaternions and in a fluid: the same steps from the same initial state.
+//! Each step is a fallible call, and initialisation is outside the measured time.
 
 use crate::counted::Block;
 use crate::loops::{generated, written};
@@ -21,7 +21,7 @@ const MOMENTS: Vector = [3.5, 2.5, 2.0];
 
 const MOMENTUM: Vector = [-0.5, 0.3, 1.0];
 
-/// The body starts at the identity, so that one inertia and one momentum serve body and space.
+/// The body starts at the identity, so that inertia and momentum are the same in body and space.
 fn inertia() -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::from(MOMENTS))
 }
@@ -36,7 +36,7 @@ pub fn generated_cayley_klein(c: f64) -> Block<impl FnOnce()> {
     generated!(CayleyKlein::new(parameters), initial)
 }
 
-/// A block of the generated body in unit quaternions, seen from space.
+/// A block of the generated body in unit quaternions, spatial representation.
 pub fn generated_cayley_klein_spatial(c: f64) -> Block<impl FnOnce()> {
     let initial = CayleyKleinSpatialInitial {
         q: UnitQuaternion::identity(),
@@ -58,7 +58,7 @@ fn matrix(rows: &Matrix) -> Matrix3<f64> {
     Matrix3::from_fn(|r, c| rows[r][c])
 }
 
-/// A block of the generated body in a fluid, without net weight: a heavy one would fall ever faster.
+/// A block of the generated body in a fluid, without net weight, because a heavy body accelerates without limit.
 pub fn generated_kirchhoff_body() -> Block<impl FnOnce()> {
     let (body, attitude, place, momentum) = submerged(0.0);
     let [a, b, c] = body.moment;

@@ -1,5 +1,4 @@
-//! What the programs that time and compare share: interleaved timing, the generated free body as a method among others.
-//! Takes starts; gives motions and times.
+//! Shared by the benchmark programs: interleaved timing, and the generated free body as a method for comparison.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables)]

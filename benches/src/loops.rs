@@ -1,7 +1,7 @@
-//! The loops that are timed, as a user writes them: one call a step, each of which may refuse. Takes a model with its
-//! initial values, or a motion; gives a closure for the clock, everything started outside it.
+//! The timed loops, as a user would write them, with one fallible call per step. Takes a model with its initial values, or a
+//! motion; gives a closure to time. Initialisation is outside the measured time.
 
-/// Steps a generated model from these initial values, with the step of the references or another.
+/// Steps a generated model from these initial values, with the reference step size or another one.
 macro_rules! generated {
     ($model:expr, $initial:expr) => {
         $crate::loops::generated!($model, $initial, clebsch_oracle::reference::H)

@@ -1,5 +1,5 @@
-//! Time per step of generated steppers beside hand-written ones, called as a user calls them: one step at a time.
-//! Takes a part of the names of the cases wanted, or nothing for all; prints a table of medians over eight processes, with the worst.
+//! Time per step of generated and hand-written steppers, called like a user calls them, one step at a time. Takes part of the name
+//! of the cases to run, or nothing for all; prints a table of medians over eight processes, with the worst.
 //! `cargo run --release --manifest-path benches/Cargo.toml`, about two minutes; `-- coupled` behind it for some.
 
 // The fields of the models are Greek letters, as in the papers.
@@ -154,7 +154,7 @@ fn main() {
     );
 }
 
-/// What is printed: every case, or those whose names contain a text.
+/// The cases to print: all, or those whose names contain a text.
 struct Table {
     only: Option<String>,
 }
@@ -180,7 +180,7 @@ impl Table {
     }
 }
 
-/// Name of the processor, where the system tells it.
+/// Name of the processor, if the system provides it.
 fn machine() -> String {
     std::fs::read_to_string("/proc/cpuinfo")
         .ok()

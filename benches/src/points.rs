@@ -1,5 +1,5 @@
-//! Blocks of work of points in space, a planet and a charge: the same steps from the same start, each step a call that
-//! may refuse. Takes nothing; gives closures for the clock. Everything is started outside them.
+//! Blocks of work for points in space, a planet and a charge: the same steps from the same initial state. Each step is a fallible
+//! call, and initialisation is outside the measured time.
 
 use crate::counted::Block;
 use crate::loops::{generated, written};
@@ -14,7 +14,7 @@ use clebsch_oracle::handwritten::attitude::Vector;
 use clebsch_oracle::handwritten::charged_particle::Charge;
 use clebsch_oracle::reference::H;
 
-/// Circular with a sun of parameter 1, which the step of the benches resolves.
+/// A circular orbit about a sun with gravitational parameter 1, which the step size of the benchmarks resolves.
 const PLACE: Vector = [1.0, 0.0, 0.0];
 
 const MOMENTUM: Vector = [0.0, 0.8, 0.6];
@@ -35,7 +35,7 @@ pub fn generated_kepler() -> Block<impl FnOnce()> {
     generated!(Kepler::new(KeplerParameters { m: 1.0, k: 1.0 }), initial)
 }
 
-/// A block of the planet by hand.
+/// A block of the hand-written planet.
 pub fn written_kepler() -> impl FnOnce() {
     let motion = handwritten::kepler::Kepler::start(1.0, 1.0, &PLACE, &MOMENTUM, H);
     written!(motion.expect("solvable"))
@@ -56,7 +56,7 @@ pub fn generated_charge() -> Block<impl FnOnce()> {
     generated!(ChargedParticle::new(parameters), initial)
 }
 
-/// A block of the charge by hand.
+/// A block of the hand-written charge.
 pub fn written_charge() -> impl FnOnce() {
     let motion =
         handwritten::charged_particle::ChargedParticle::start(&CHARGE, &PLACE, &MOMENTUM, H);

@@ -1,43 +1,43 @@
-//! Every case in several processes, each with stack and heap shifted: how memory is laid out decides up to two thirds of the
-//! time of a short step on some processors. Takes the rows of one process after the other; gives medians and the worst.
+//! Runs every case in several processes, each with a shifted stack and heap, because on some processors the memory layout
+//! determines up to two thirds of the time of a short step. Takes the rows of each process; gives medians and the worst.
 
 use crate::counted::Work;
 use std::process::{Command, exit};
 
-/// How many processes, and by how many bytes the environment of each is longer, which shifts its stack.
+/// The number of processes, and the extra bytes in the environment of each, which shift its stack.
 pub const SHIFTS: [usize; 8] = [0, 16, 512, 1040, 2064, 3000, 4080, 6160];
 
-/// The variable that tells a process which one it is.
+/// The variable with the number of a process.
 const NUMBER: &str = "CLEBSCH_BENCH_PROCESS";
 
 /// The variable whose length shifts the stack.
 const PADDING: &str = "CLEBSCH_BENCH_PADDING";
 
-/// The number of this process among those that measure; none in the one that gathers.
+/// The number of this measuring process; `None` in the process that gathers the results.
 pub fn number() -> Option<usize> {
     std::env::var(NUMBER).ok()?.parse().ok()
 }
 
-/// Shifts the heap of the process with this number: what is kept stays allocated.
+/// Shifts the heap of the process with this number by an allocation that is never freed.
 pub fn shift_heap(number: usize) {
     let bytes = SHIFTS.get(number).copied().unwrap_or_default();
     std::mem::forget(vec![0_u8; 16 + bytes]);
 }
 
-/// What one process measured of a case.
+/// The measurement of a case in one process.
 #[derive(Clone, Debug)]
 pub struct Row {
     /// The case.
     pub name: String,
-    /// Nanoseconds a step of the generated stepper.
+    /// Nanoseconds per step of the generated stepper.
     pub generated: f64,
-    /// And of the one by hand.
+    /// Nanoseconds per step of the hand-written stepper.
     pub hand: f64,
-    /// What a generated step takes.
+    /// The work of a generated step.
     pub work: Work,
 }
 
-/// A row as processes hand it on.
+/// Prints a row in the format that `gather` parses.
 pub fn hand_on(row: &Row) {
     let Work {
         operations,
@@ -66,7 +66,7 @@ fn read(line: &str) -> Option<Row> {
     })
 }
 
-/// Runs all processes one after the other, and prints the table of what they measured.
+/// Runs all processes in sequence, and prints the table of their measurements.
 pub fn gather(only: Option<&str>) {
     let mut all: Vec<Vec<Row>> = Vec::new();
     for (number, bytes) in SHIFTS.into_iter().enumerate() {

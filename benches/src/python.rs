@@ -1,14 +1,14 @@
-//! Scripts in Python beside this crate, run in an environment of their own, which they make.
-//! Takes a script with its arguments; gives the JSON that it writes, or why there is none.
+//! Runs Python scripts of this crate in a virtual environment that they create. Returns the JSON output of a script, or an error
+//! message.
 
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
-/// What a script of the folder `python` writes into `result`, a file of the build folder.
+/// Runs a script of the folder `python` and returns the content of `result`, a file in the build folder.
 ///
 /// # Errors
-/// In words: Python cannot be run, or the script could not measure.
+/// A message if Python cannot run or the script failed to measure.
 pub fn told(script: &str, result: &str, arguments: &[&str]) -> Result<Value, String> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let (script, made) = (here.join("python").join(script), here.join("target/python"));

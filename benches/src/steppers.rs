@@ -1,5 +1,5 @@
-//! One block of work of each stepper: the same steps from the same start, each step a call that may refuse.
-//! Takes starting data; gives closures for the clock. Everything is started outside them.
+//! One block of work for each stepper: the same steps from the same initial state. Each step is a fallible call, and initialisation
+//! is outside the measured time.
 
 use crate::blocks::STEPS;
 use crate::counted::Block;

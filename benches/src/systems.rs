@@ -1,5 +1,5 @@
-//! Blocks of work of the spatial forms, coupled bodies and bodies in fields: the same steps from the same start, each
-//! step a call that may refuse. Takes nothing; gives closures for the clock. Everything is started outside them.
+//! Blocks of work for the spatial forms, coupled bodies and bodies in fields: the same steps from the same initial state. Each step
+//! is a fallible call, and initialisation is outside the measured time.
 
 use crate::blocks::STEPS;
 use crate::counted::Block;
@@ -39,7 +39,7 @@ fn rotation(q: &Quaternion) -> Rotation<f64> {
     Rotation::from_quaternion(q.0).expect("a unit quaternion")
 }
 
-/// A block of the generated free body in space.
+/// A block of the generated free body, spatial representation.
 pub fn generated_free_body_spatial() -> Block<impl FnOnce()> {
     let start = spatial_body(H);
     let initial = FreeBodySpatialInitial {
@@ -53,7 +53,7 @@ pub fn generated_free_body_spatial() -> Block<impl FnOnce()> {
     generated!(FreeBodySpatial::new(parameters), initial)
 }
 
-/// A block of the hand-written free body in space.
+/// A block of the hand-written free body, spatial representation.
 pub fn written_free_body_spatial() -> impl FnOnce() {
     let body = spatial_body(H);
     move || {
@@ -65,7 +65,7 @@ pub fn written_free_body_spatial() -> impl FnOnce() {
     }
 }
 
-/// A block of the generated top in space.
+/// A block of the generated top, spatial representation.
 pub fn generated_heavy_top_spatial() -> Block<impl FnOnce()> {
     let start = spatial_top(H);
     let initial = HeavyTopSpatialInitial {
@@ -81,7 +81,7 @@ pub fn generated_heavy_top_spatial() -> Block<impl FnOnce()> {
     generated!(HeavyTopSpatial::new(parameters), initial)
 }
 
-/// A block of the hand-written top in space.
+/// A block of the hand-written top, spatial representation.
 pub fn written_heavy_top_spatial() -> impl FnOnce() {
     written!(spatial_top(H))
 }

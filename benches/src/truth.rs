@@ -1,5 +1,5 @@
-//! The motion of a free body to thirty digits, by its Taylor series: what errors near the rounding of a double are taken
-//! against. Takes a start with a diagonal inertia and a time in double-double; gives attitude and body momentum.
+//! The motion of a free body to thirty digits by its Taylor series, as the reference for errors near double-precision rounding.
+//! Takes a start with diagonal inertia and a time in double-double; gives attitude and body momentum.
 
 use clebsch::num_traits::{One, Zero};
 use clebsch::{DoubleDouble, Real};
@@ -7,7 +7,7 @@ use clebsch_comparisons::body::Start;
 
 type Quad = DoubleDouble;
 
-/// Coefficients kept; with expansions over an eighth of a unit of time and rates of order one the last is below 1e-34.
+/// Number of coefficients. With expansions over 1/8 time unit and rates of order one, the last is below 1e-34.
 const TERMS: usize = 30;
 
 /// A state of the continuous motion.
@@ -20,18 +20,18 @@ pub struct Phase {
 }
 
 impl Phase {
-    /// The larger of the errors of a momentum, relative, and of an attitude, the angle in radians.
+    /// The larger of the relative momentum error and the attitude error in radians.
     pub fn error(&self, attitude: &[f64; 4], body_momentum: &[f64; 3]) -> f64 {
         let length = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         let away: [f64; 3] = std::array::from_fn(|i| body_momentum[i] - self.body_momentum[i]);
-        // q and -q are one rotation; for a small angle their distance is half of it.
+        // q and -q are the same rotation; for a small angle, their distance is half of it.
         let apart = |sign: f64| {
             let difference: [f64; 4] =
                 std::array::from_fn(|i| attitude[i] - sign * self.attitude[i]);
             length(&difference)
         };
         let angle = 4.0 * (0.5 * apart(1.0).min(apart(-1.0))).min(1.0).asin();
-        // A NaN must not be the smaller one.
+        // NaN must not count as the smaller error.
         let momentum = length(&away) / length(&self.body_momentum);
         if momentum.is_nan() || angle.is_nan() {
             return f64::INFINITY;
@@ -44,7 +44,7 @@ impl Phase {
 pub fn at(start: &Start, time: Quad) -> Phase {
     let [[x, ..], [_, y, _], [.., z]] = start.poinsot;
     let quad = Quad::from_f64;
-    // Moments are sums, each rounded once in a double: the body of the others.
+    // Moments are sums that the other methods round once to a double; uses the same rounded body.
     let rate = [y + z, z + x, x + y].map(|moment| Quad::one() / quad(moment));
     let pieces = (time.value() * 8.0).ceil().max(1.0);
     let h = time / quad(pieces);

@@ -1,7 +1,7 @@
-//! What of the loss of ordered motion in fluids of particles is the flow's own: the vortices of Taylor and Green of the
-//! example `thermalisation`, by Fourier components from the noisy fields with which particles begin. Masses and momenta of the
-//! Voronoi cells are distributed over the boxes of a grid. Takes the sides of the squares of particles and the number of seeds;
-//! prints a table of the kinetic energy that is left along the initial profile after one turnover.
+//! Measures how much of the decay of ordered motion in particle fluids is physical. Solves the Taylor-Green vortices of the example
+//! `thermalisation` with a pseudospectral method, from the same noisy fields as the particles. Masses and momenta of the Voronoi
+//! cells are distributed over the boxes of a grid. Takes the numbers of particles along a side and the number of seeds; prints a
+//! table of the fraction of kinetic energy that remains in the initial profile after one turnover.
 //!
 //! `cargo run --release -p clebsch-comparisons --example noisy_vortices -- 24 32 48 --seeds 5`, some minutes
 
@@ -33,7 +33,7 @@ fn main() {
     }
 }
 
-/// How particles make depth of masses: as the area of their cell says, or smoothed over two of their mean distances.
+/// The depth of particles: from the area of the Voronoi cell, or smoothed over two mean particle distances.
 #[derive(Clone, Copy, Debug)]
 enum Depth {
     Area,
@@ -42,7 +42,7 @@ enum Depth {
 }
 
 impl Depth {
-    /// The smoothing of the equations, and its length for particles at a mean distance.
+    /// The smoothing length of the equations for particles at this mean distance, and the kind of smoothing.
     fn smoothing(self, spacing: f64) -> (f64, Smoothing) {
         match self {
             Self::Area => (0.0, Smoothing::Isotropic),
@@ -66,15 +66,15 @@ fn velocity(at: Place) -> Place {
     Place::new(0.1 * sx * cy, -0.1 * cx * sy)
 }
 
-/// The depth that balances it on a plane with f = 2π, in units in which the mean depth and the wave speed are 1; each wave
-/// multiplied by a factor for the square of its wave number.
+/// The depth that balances `velocity` on a plane with f = 2π, in units of the mean depth and the wave speed. `factor` multiplies
+/// each wave, as a function of its squared wave number.
 fn depth(at: Place, factor: impl Fn(f64) -> f64) -> f64 {
     let [x, y] = [TAU * at[0], TAU * at[1]];
     let twice = ((2.0 * x).cos() + (2.0 * y).cos()) * factor(4.0 * TAU * TAU);
     1.0 + 0.0025 * twice - 0.1 * x.sin() * y.sin() * factor(2.0 * TAU * TAU)
 }
 
-/// Depth and velocity in the boxes of a grid: masses and momenta of the cells of particles at random places.
+/// Depth and velocity in the boxes of a grid, from the masses and momenta of the Voronoi cells of randomly placed particles.
 fn noisy(side: usize, boxes: usize, of: Depth, seed: u64) -> Fields {
     let domain = Domain::torus([1.0, 1.0]);
     let count = side * side;
@@ -96,7 +96,7 @@ fn noisy(side: usize, boxes: usize, of: Depth, seed: u64) -> Fields {
         let each: Vec<f64> = masses.iter().zip(&at).map(|(m, x)| m * of(*x)).collect();
         let mut out = vec![0.0; boxes * boxes];
         mesh.rezone(&each, [boxes; 2], &mut out).expect("a grid");
-        // Rows of boxes lie along x; here y is contiguous.
+        // In `rezone`, x is contiguous; here y is.
         let turned = |k: usize| out[k % boxes * boxes + k / boxes];
         (0..boxes * boxes).map(turned).collect::<Vec<f64>>()
     };
@@ -109,7 +109,7 @@ fn noisy(side: usize, boxes: usize, of: Depth, seed: u64) -> Fields {
     }
 }
 
-/// The same without particles: a depth that the equations smooth to what balances the velocity.
+/// The same fields without particles: a depth whose smoothed value balances the velocity.
 fn smooth(boxes: usize, spectral: &Spectral, (alpha, smoothing): (f64, Smoothing)) -> Fields {
     let half = Place::repeat(0.5 / boxes as f64);
     spectral.fields(|x| {
@@ -120,14 +120,14 @@ fn smooth(boxes: usize, spectral: &Spectral, (alpha, smoothing): (f64, Smoothing
     })
 }
 
-/// What is left of a run.
+/// The results of a run.
 #[derive(Clone, Copy)]
 struct Left {
-    /// Of the kinetic energy, along the initial profile.
+    /// Fraction of the kinetic energy that remains in the initial profile.
     kept: f64,
-    /// The change of the energy, in units of the kinetic one.
+    /// Change of the energy, relative to the kinetic energy.
     energy: f64,
-    /// The kinetic energy that does not lie along the initial profile at the start, of the whole.
+    /// Fraction of the initial kinetic energy outside the initial profile.
     noise: f64,
 }
 
@@ -142,7 +142,7 @@ fn run(boxes: usize, spectral: &mut Spectral, mut now: Fields) -> Left {
     let square = (0..now.h.len()).map(|i| now.h[i] * (profile.u[i].powi(2) + profile.v[i].powi(2)));
     let square = square.sum::<f64>() / now.h.len() as f64;
     let (first, [kinetic, potential]) = (along(&now), spectral.energy(&now));
-    // A third of the limit of the classical Runge-Kutta method, for waves that the flow carries along.
+    // A third of the stability limit of the classical Runge-Kutta method, for advected waves.
     let time = 10.0;
     let carried = 0.2 * TAU * boxes as f64 / 3.0;
     let steps = (time * (spectral.fastest_wave() + carried)).ceil() as usize;
@@ -158,8 +158,8 @@ fn run(boxes: usize, spectral: &mut Spectral, mut now: Fields) -> Left {
 }
 
 fn row(side: usize, of: Depth, seeds: u64) {
-    // Components are kept up to a third of the number of boxes: of waves that particles tell apart, up to half of the number of
-    // particles along a side, almost all.
+    // Wave numbers are kept up to a third of the number of boxes. This covers almost all waves that the particles resolve, up to
+    // half the number of particles along a side.
     let boxes = (4 * side / 3).next_power_of_two();
     let made = || {
         let smoothing = of.smoothing(1.0 / side as f64);

@@ -1,11 +1,11 @@
-//! Elliptic functions and integrals of real arguments, to a few units of rounding. Takes amplitudes,
-//! arguments and the complementary parameter m1 = 1 - k^2 in (0, 1]; gives Carlson's R_F and R_J (Numer. Algorithms 10,
-//! 1995), and Jacobi's amplitude by the descending arithmetic-geometric mean (DLMF 22.20).
+//! Elliptic functions and integrals of real arguments, to a few rounding errors: Carlson's R_F and R_J (Numer. Algorithms 10,
+//! 1995), and Jacobi's amplitude by the descending arithmetic-geometric mean (DLMF 22.20). The complementary parameter is m1 = 1 -
+//! k^2 in (0, 1].
 
 /// Carlson's R_F(x, y, z) for non-negative arguments of which at most one is zero.
 pub fn carlson_rf(x: f64, y: f64, z: f64) -> f64 {
     let (mut x, mut y, mut z) = (x, y, z);
-    // Each pass brings the arguments four times closer; the series errs by spread^6 / 100 or so.
+    // Each iteration brings the arguments closer by a factor of four; the series has an error of about spread^6 / 100.
     for _ in 0..200 {
         let mean = (x + y + z) / 3.0;
         let (dx, dy, dz) = (1.0 - x / mean, 1.0 - y / mean, 1.0 - z / mean);
@@ -28,10 +28,10 @@ pub fn carlson_rf(x: f64, y: f64, z: f64) -> f64 {
     f64::NAN
 }
 
-/// R_C(1, 1 + e), for e > -1: arctangent or area tangent, whichever is real.
+/// R_C(1, 1 + e) for e > -1: an inverse tangent or inverse hyperbolic tangent, whichever is real.
 fn carlson_rc_beside_one(e: f64) -> f64 {
     if e.abs() < 1e-3 {
-        // Six terms of the common Taylor series leave 1e-19.
+        // Six terms of the common Taylor series have an error of 1e-19.
         let mut sum = 0.0;
         for n in (0..=6).rev() {
             sum = sum * -e + 1.0 / f64::from(2 * n + 1);
@@ -89,14 +89,14 @@ pub fn complete(m1: f64) -> f64 {
     carlson_rf(0.0, m1, 1.0)
 }
 
-/// F(phi), the inverse of Jacobi's amplitude, for |phi| <= pi/2 given by its sine and cosine.
+/// F(phi), the inverse of Jacobi's amplitude, for |phi| <= pi/2, in terms of the sine and cosine of phi.
 pub fn incomplete(sine: f64, cosine: f64, m1: f64) -> f64 {
     let (s2, c2) = (sine * sine, cosine * cosine);
     sine * carlson_rf(c2, c2 + m1 * s2, 1.0)
 }
 
-/// The integral of the third kind, int dphi / ((1 - n sin^2 phi) sqrt(1 - k^2 sin^2 phi)), for
-/// |phi| <= pi/2 given by sine and cosine; `rest` is 1 - n, positive.
+/// The integral of the third kind, int dphi / ((1 - n sin^2 phi) sqrt(1 - k^2 sin^2 phi)), for |phi| <= pi/2, in terms of the sine
+/// and cosine of phi; `rest` is 1 - n, positive.
 pub fn third_kind(rest: f64, sine: f64, cosine: f64, m1: f64) -> f64 {
     let (s2, c2) = (sine * sine, cosine * cosine);
     let (y, p) = (c2 + m1 * s2, c2 + rest * s2);
@@ -105,8 +105,8 @@ pub fn third_kind(rest: f64, sine: f64, cosine: f64, m1: f64) -> f64 {
 
 /// sn, cn, dn of u with |u| <= K.
 pub fn jacobi(u: f64, m1: f64) -> [f64; 3] {
-    // Ratios c/a of the mean from its second member on; eight squarings of the defect reach rounding
-    // for any m1 a double can hold, which twenty members surely do.
+    // Ratios c/a of the mean, from its second member. Convergence is quadratic; for any m1 that a double can represent, twenty
+    // members reach rounding.
     let mut ratios = [0.0; 20];
     let (mut a, mut b) = (1.0_f64, m1.sqrt());
     let mut power = 1.0;
@@ -126,6 +126,6 @@ pub fn jacobi(u: f64, m1: f64) -> [f64; 3] {
         phi = 0.5 * (phi + (ratio * phi.sin()).asin());
     }
     let (sn, cn) = phi.sin_cos();
-    // The form without cancellation where dn is small: dn^2 = cn^2 + m1 sn^2.
+    // This form avoids cancellation if dn is small: dn^2 = cn^2 + m1 sn^2.
     [sn, cn, (cn * cn + m1 * sn * sn).sqrt()]
 }

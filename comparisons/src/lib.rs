@@ -1,6 +1,6 @@
-//! Other ways to compute the motions of the gallery, as yardsticks: steppers written by hand, methods
-//! from the literature, closed forms, Runge-Kutta references. Takes plain numbers; gives attitudes and
-//! momenta. Nothing here uses the runtime or emitted code, so that agreement is worth something.
+//! Other methods for the motions of the gallery, as references: hand-written steppers, methods from the literature, closed forms,
+//! and Runge-Kutta methods. They take plain numbers and give attitudes and momenta. They share no code with the runtime or the
+//! emitted steppers, so that an agreement is independent evidence.
 
 pub mod body;
 pub mod continuous;

@@ -1,13 +1,12 @@
-//! Runge-Kutta methods with error control: Dormand and Prince 5(4), as Matlab's ode45, their 8(5,3),
-//! and Verner's 9(8) for references. Takes a motion, a start, a tolerance and the distance of nodes;
-//! gives the state at every node. A step of the method ends there, so that nothing is interpolated.
+//! Runge-Kutta methods with error control: Dormand and Prince 5(4), the method of Matlab's ode45; their 8(5,3); and Verner's 9(8)
+//! for references. Gives the state at every node. Steps end at the nodes, so that nothing is interpolated.
 
 use crate::continuous::Motion;
 use crate::handwritten::Unsolvable;
 use differential_equations::methods::{Adaptive, DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
 
-/// The equations as the library of methods wants them.
+/// The equations in the interface of the integrator library.
 #[derive(Clone, Debug)]
 struct Equations<M>(M);
 
@@ -28,9 +27,9 @@ pub type Method85<const N: usize> =
 pub type Method98<const N: usize> =
     ExplicitRungeKutta<Ordinary, Adaptive, f64, [f64; N], 9, 16, 21>;
 
-/// A method: how it is made for a tolerance.
+/// A Runge-Kutta method.
 pub trait Scheme<const N: usize>: OrdinaryNumericalMethod<f64, [f64; N]> {
-    /// The method with this tolerance of the error of one step, absolute and relative, and this first step.
+    /// The method with this absolute and relative tolerance for the error of one step, and this first step size.
     fn with(tolerance: f64, first: f64) -> Self;
 }
 
@@ -55,17 +54,17 @@ impl<const N: usize> Scheme<N> for Method98<N> {
     }
 }
 
-/// How finely a method works.
+/// The accuracy of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// Tolerance of the error of one step, absolute and relative.
+    /// Absolute and relative tolerance for the error of one step.
     pub tolerance: f64,
-    /// Longest step as a part of the distance of nodes, at most 1.
+    /// Largest step size relative to the node distance, at most 1.
     pub part: f64,
 }
 
 impl Accuracy {
-    /// A tolerance, and steps as long as nodes allow.
+    /// A tolerance, with steps as large as the node distance permits.
     pub const fn of(tolerance: f64) -> Self {
         Self {
             tolerance,
@@ -73,7 +72,7 @@ impl Accuracy {
         }
     }
 
-    /// Rounding level, whatever the estimate of the error says: at least `pieces` steps a node.
+    /// Accuracy at rounding level, with at least `pieces` steps per node, whatever the error estimate says.
     pub fn reference(pieces: u32) -> Self {
         Self {
             tolerance: 1e-15,
@@ -82,7 +81,7 @@ impl Accuracy {
     }
 }
 
-/// A motion that visits the nodes.
+/// A motion sampled at the nodes.
 #[derive(Clone, Debug)]
 pub struct RungeKutta<R, M, const N: usize> {
     method: R,
@@ -92,10 +91,10 @@ pub struct RungeKutta<R, M, const N: usize> {
 }
 
 impl<R: Scheme<N>, M: Motion<N>, const N: usize> RungeKutta<R, M, N> {
-    /// Starts a motion whose nodes are `h` apart.
+    /// Starts a motion with node distance `h`.
     ///
     /// # Errors
-    /// [`Unsolvable`] when the start is not finite.
+    /// [`Unsolvable`] if the initial state is not finite.
     pub fn start(
         motion: M,
         start: &[f64; N],
@@ -104,7 +103,7 @@ impl<R: Scheme<N>, M: Motion<N>, const N: usize> RungeKutta<R, M, N> {
     ) -> Result<Self, Unsolvable> {
         let mut method = R::with(accuracy.tolerance, accuracy.part * h);
         let equations = Equations(motion);
-        // The library asks for an end, and only to bound steps; nodes bound them here.
+        // The library needs an end time only to bound steps; here the nodes bound them.
         let end = h * 1e15;
         method
             .init(&equations, 0.0, end, start)
@@ -117,17 +116,17 @@ impl<R: Scheme<N>, M: Motion<N>, const N: usize> RungeKutta<R, M, N> {
         })
     }
 
-    /// Goes to the next node.
+    /// Advances to the next node.
     ///
     /// # Errors
-    /// [`Unsolvable`] when the tolerance cannot be met: the motion is not finite.
+    /// [`Unsolvable`] if the tolerance cannot be met because the motion is not finite.
     pub fn step(&mut self) -> Result<(), Unsolvable> {
-        // Time is counted from the node: the sum of all steps would lose a digit in a thousand nodes,
-        // and the equations do not contain it.
+        // Time is measured from the last node: the sum of all steps would lose a digit in a thousand nodes, and the equations are
+        // autonomous.
         let mut left = self.h;
         while left > 1e-10 * self.h {
             let wanted = self.method.h().abs().min(self.longest);
-            // Two equal steps rather than a whole one and a splinter.
+            // Takes two equal steps instead of a full step and a tiny remainder.
             let taken = if wanted >= (1.0 - 1e-9) * left {
                 left
             } else {
@@ -141,7 +140,7 @@ impl<R: Scheme<N>, M: Motion<N>, const N: usize> RungeKutta<R, M, N> {
             self.method.step(&self.equations).map_err(|_| Unsolvable)?;
             if self.method.t() > before {
                 left -= taken;
-                // A step cut short says nothing against a longer one.
+                // A shortened step must not reduce the next step size.
                 if self.method.h() < wanted {
                     self.method.set_h(wanted);
                 }
@@ -150,7 +149,7 @@ impl<R: Scheme<N>, M: Motion<N>, const N: usize> RungeKutta<R, M, N> {
         Ok(())
     }
 
-    /// The state at the present node.
+    /// The state at the current node.
     pub fn state(&self) -> &[f64; N] {
         self.method.y()
     }

@@ -14,7 +14,7 @@ pub fn address(function: Function) -> Option<usize> {
         }};
     }
     Some(match function {
-        // An instruction of every processor.
+        // Every processor has an instruction for it.
         Function::Sqrt => return None,
         Function::Exp => of!(Exp),
         Function::Log => of!(Log),
@@ -27,12 +27,12 @@ pub fn address(function: Function) -> Option<usize> {
     })
 }
 
-/// Calls a function that is taken as a whole. Its numbers are NaN if it panics: nothing unwinds into compiled code.
+/// Calls a whole function. If it panics, its outputs are NaN, because a panic must not unwind into compiled code.
 ///
 /// # Safety
-/// `call` is valid, `inputs` and `outputs` hold as many numbers as the call has.
+/// `call` is valid, and `inputs` and `outputs` hold as many numbers as the call has.
 pub unsafe extern "C" fn whole(call: *const Called, inputs: *const f64, outputs: *mut f64) {
-    // SAFETY: promised by the caller.
+    // SAFETY: the caller guarantees it.
     let (call, inputs, outputs) = unsafe {
         let call = &*call;
         (

@@ -8,20 +8,20 @@ use cranelift_module::{Linkage, Module, default_libcall_names};
 use std::fmt;
 use std::sync::Mutex;
 
-/// Most instructions of a machine that is compiled: these take two tenths of a second.
+/// Maximum number of instructions of a compiled machine; compiling this many takes 0.2 seconds.
 const MOST: usize = 20_000;
 
 /// Why a machine is not compiled.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// It has more instructions than compiling pays for.
+    /// It has too many instructions for compilation to pay off.
     TooLarge {
-        /// How many it has.
+        /// The number of its instructions.
         instructions: usize,
-        /// How many are compiled at most.
+        /// The maximum number of instructions.
         most: usize,
     },
-    /// Cranelift does not know the processor, or the system gives no memory to run code in.
+    /// Cranelift does not support the processor, or the system provides no executable memory.
     Unsupported(String),
 }
 
@@ -48,7 +48,7 @@ pub struct Native {
     function: unsafe extern "C" fn(*mut f64) -> u8,
     registers: usize,
     size: usize,
-    /// The code holds their addresses.
+    /// Kept alive because the code contains their addresses.
     _calls: Box<[Called]>,
     /// Owns the memory of the code.
     module: Mutex<Option<JITModule>>,
@@ -61,10 +61,10 @@ impl fmt::Debug for Native {
 }
 
 impl Native {
-    /// The code of a machine.
+    /// Compiles a machine.
     ///
     /// # Errors
-    /// [`Refusal`] if the machine is too large, or this computer compiles nothing.
+    /// [`Refusal`] if the machine is too large, or if this computer cannot compile.
     pub fn of(machine: &Machine) -> Result<Self, Refusal> {
         let instructions = machine.operations();
         if instructions > MOST {
@@ -85,7 +85,7 @@ impl Native {
         let size = context.compiled_code().map_or(0, |c| c.code_buffer().len());
         module.finalize_definitions().map_err(unsupported)?;
         let code = module.get_finalized_function(name);
-        // SAFETY: the function was declared with this signature in memory that `module` owns.
+        // SAFETY: the function was declared with this signature, in memory that `module` owns.
         let function =
             unsafe { std::mem::transmute::<*const u8, unsafe extern "C" fn(*mut f64) -> u8>(code) };
         Ok(Native {
@@ -97,7 +97,7 @@ impl Native {
         })
     }
 
-    /// How many bytes it has.
+    /// The size of the code in bytes.
     #[must_use]
     pub fn size(&self) -> usize {
         self.size
@@ -126,8 +126,8 @@ impl Compiled for Native {
         if registers.len() < self.registers {
             return false;
         }
-        // SAFETY: the code reads and writes the registers of its machine, of which there are as many, and the calls,
-        // which live as long as it does.
+        // SAFETY: the code accesses only the registers of its machine, whose number is correct, and the calls, which live as long
+        // as the code.
         unsafe { (self.function)(registers.as_mut_ptr().cast()) != 0 }
     }
 }
@@ -136,7 +136,7 @@ impl Drop for Native {
     fn drop(&mut self) {
         let module = self.module.get_mut();
         if let Some(module) = module.ok().and_then(Option::take) {
-            // SAFETY: nothing runs the code once this is dropped.
+            // SAFETY: nothing runs the code after it is dropped.
             unsafe { module.free_memory() };
         }
     }

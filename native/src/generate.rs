@@ -1,5 +1,5 @@
-//! The function of a machine in Cranelift's intermediate form: of a pointer to the registers, it gives 1 if every
-//! decision came out as recorded.
+//! Translates a machine to Cranelift's intermediate representation. The function takes a pointer to the registers and returns 1 if
+//! every decision comes out as recorded.
 
 use crate::calls::{address, whole};
 use clebsch_program::{Called, Check, Function, Instruction, Machine, Register};
@@ -14,20 +14,20 @@ use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::JITModule;
 use cranelift_module::Module;
 
-/// The function while it is written, and the values of its registers.
+/// The function under construction, and the values of its registers.
 struct Writer<'a, 'b> {
     machine: &'a Machine,
     builder: FunctionBuilder<'b>,
     /// The first register.
     registers: Value,
     pointer: Type,
-    /// The newest value of each register.
+    /// The current value of each register.
     values: Vec<Option<Value>>,
-    /// The instruction that writes each register last.
+    /// The index of the last instruction that writes each register.
     last: Vec<usize>,
-    /// The checks that can be made once a register is written for the last time.
+    /// The checks that become possible after the last write of a register.
     checks: Vec<Vec<usize>>,
-    /// The registers whose values leave the function.
+    /// Whether the function must store the register as a result.
     is_result: Vec<bool>,
     /// Whether all decisions came out as recorded so far.
     holds: Option<Value>,
@@ -103,13 +103,12 @@ fn looks_at(check: Check) -> [Register; 2] {
 }
 
 impl Writer<'_, '_> {
-    /// Whether a register holds an input or a constant throughout.
+    /// Whether a register always holds an input or a constant.
     fn is_given(&self, register: Register) -> bool {
         (register as usize) < self.machine.inputs() + self.machine.constants().len()
     }
 
-    /// Checks are made as soon as their numbers are known. A register that a check looks at is not written again after
-    /// its number is there.
+    /// Schedules each check as soon as its operands are known. No later instruction may overwrite a register that a check reads.
     fn place_checks(&mut self) {
         for (at, instruction) in self.machine.instructions().iter().enumerate() {
             match *instruction {
@@ -145,7 +144,7 @@ impl Writer<'_, '_> {
     }
 
     fn at(&self, register: Register) -> i32 {
-        // A machine has fewer registers than instructions, inputs and constants.
+        // The index fits, because a machine has fewer registers than instructions, inputs and constants.
         i32::try_from(register as usize * size_of::<f64>()).unwrap_or(i32::MAX)
     }
 
@@ -172,8 +171,8 @@ impl Writer<'_, '_> {
         self.values[register as usize] = Some(value);
     }
 
-    /// Notes that an instruction has written a register. If it is the last to do so, its number is stored if it leaves
-    /// the function, and what can be checked now is checked.
+    /// Records that an instruction has written a register. After the last write, stores the register if it is a result, and emits
+    /// the checks that are now possible.
     fn written(&mut self, register: Register, by: usize) {
         if self.last[register as usize] != by {
             return;
@@ -266,7 +265,7 @@ impl Writer<'_, '_> {
         self.builder.inst_results(call)[0]
     }
 
-    /// Inputs go through memory of the stack, and outputs come back so.
+    /// Passes inputs and outputs through stack memory.
     fn call(&mut self, at: usize, call: &Called) {
         let bytes =
             |count: usize| u32::try_from(count.max(1) * size_of::<f64>()).unwrap_or(u32::MAX);

@@ -15,15 +15,15 @@ pub use code::{Native, Refusal};
 use clebsch_program::{Compiled, Compiler, Machine, compile_by};
 use std::sync::Arc;
 
-/// Compiling takes as long as some thousand runs save.
+/// Compiling takes as long as several thousand runs save.
 const AFTER: u32 = 4000;
 
-/// From now on, tapes of this process that run often are compiled. False if another compiler was set before.
+/// Compiles the frequently run tapes of this process from now on. Returns false if another compiler was set before.
 pub fn install() -> bool {
     install_after(AFTER)
 }
 
-/// As [`install`], with the number of runs after which a tape is compiled.
+/// Like [`install`], with the number of runs after which a tape is compiled.
 pub fn install_after(after: u32) -> bool {
     compile_by(Compiler { compile, after })
 }

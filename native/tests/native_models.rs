@@ -1,5 +1,5 @@
-//! The models of the gallery, read from their texts and run by native code from the third step on, against the same models
-//! built: steps, observables, invariants and scales agree to the last bit.
+//! Gallery models interpreted from their texts, with native code from the third step on, against the compiled models: steps,
+//! observables, invariants and scales agree bit for bit.
 
 #[path = "../../interpret/tests/side_by_side/mod.rs"]
 mod side_by_side;
@@ -8,10 +8,10 @@ use clebsch::card::Settings;
 use clebsch_models::gallery;
 use side_by_side::compare;
 
-/// How many steps are compared.
+/// Number of compared steps.
 const STEPS: u64 = 200;
 
-/// How many steps of the second order higher than the plain one: of nine parts each.
+/// Number of compared steps with the second available order, which consist of nine substeps each.
 const COMPOSED: u64 = 20;
 
 #[test]

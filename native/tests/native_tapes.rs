@@ -1,4 +1,4 @@
-//! Random tapes compiled, against their steps computed one after the other: the same bits.
+//! Random tapes, compiled to native code, against sequential evaluation of their steps: the results agree bit for bit.
 
 #[path = "../../program/tests/random_tapes/mod.rs"]
 mod random_tapes;
@@ -7,7 +7,7 @@ use clebsch_native::{Native, Refusal};
 use clebsch_program::{Compiled, Function, Machine, Recording, Scalar, Step, Test};
 use random_tapes::{INPUTS, Random, computed, random_tape, same};
 
-/// Random tapes, and sets of inputs for each.
+/// Number of random tapes, and of input sets for each.
 const TAPES: usize = 2000;
 const SETS: usize = 40;
 
@@ -52,14 +52,14 @@ fn compiled_tapes_give_the_bits_of_their_steps() {
             failed += usize::from(!holds);
         }
     }
-    // Decisions of both kinds are met.
+    // Decisions with both outcomes occur.
     assert!(
         held > 10_000 && failed > 10_000,
         "{held} held, {failed} failed"
     );
 }
 
-/// A polynomial of so many steps.
+/// A polynomial with this many steps.
 fn long(steps: u32) -> Machine {
     let mut recording = Recording::default();
     let x = recording.step(Step::Input(0));

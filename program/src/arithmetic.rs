@@ -1,12 +1,12 @@
-//! What an evaluation computes with.
+//! The arithmetic of an evaluation.
 
 use crate::array::Array;
 use crate::operation::{Call, Number, Single};
 
-/// The numbers of an evaluation and what is done to them.
+/// The numbers of an evaluation and their operations.
 ///
-/// Every operation rounds once, as binary64 does; none is contracted or reordered. An arithmetic may be a table of
-/// operations (a [`Recorder`](crate::Recorder)), so its numbers need not be numbers of the machine.
+/// Every operation rounds once, like binary64; none is contracted or reordered. An arithmetic may record operations (a
+/// [`Recorder`](crate::Recorder)), so its numbers need not be floating-point numbers.
 pub trait Arithmetic {
     /// A number.
     type Number: Copy;
@@ -32,19 +32,19 @@ pub trait Arithmetic {
     /// A function of one number: the square root, the exponential and so on.
     fn function(&self, which: Single, a: Self::Number) -> Self::Number;
 
-    /// A whole power.
+    /// An integer power.
     fn power(&self, a: Self::Number, exponent: i32) -> Self::Number;
 
     /// A rational power `num/den`.
     fn root(&self, a: Self::Number, num: i64, den: i64) -> Self::Number;
 
-    /// The inverse of a square matrix, NaN where there is none; nothing if this arithmetic lacks inverses.
+    /// The inverse of a square matrix, NaN if the matrix is singular; `None` if this arithmetic lacks inverses.
     fn inverse(&self, a: &Array<Self::Number>) -> Option<Array<Self::Number>>;
 
-    /// The determinant of a matrix of four rows or more; nothing if this arithmetic has none.
+    /// The determinant of a matrix with four or more rows; `None` if this arithmetic lacks it.
     fn determinant(&self, a: &Array<Self::Number>) -> Option<Self::Number>;
 
-    /// A functional of the model, or a derivative of one; nothing if it is not known here.
+    /// A functional of the model, or a derivative of one; `None` if this arithmetic does not know it.
     fn functional(
         &self,
         call: &Call,
@@ -55,7 +55,7 @@ pub trait Arithmetic {
     }
 }
 
-/// What answers calls of functionals with plain numbers.
+/// Evaluates calls of functionals with plain numbers.
 pub type Functionals<'a> = &'a dyn Fn(&Call, &[&Array<f64>]) -> Option<Array<f64>>;
 
 /// Plain binary64 numbers.
@@ -118,7 +118,7 @@ impl Arithmetic for Doubles<'_> {
             Single::Abs => a.abs(),
             Single::Sign if a == 0.0 => 0.0,
             Single::Sign => a.signum(),
-            // Not functions of a number: the evaluation does not ask for them.
+            // Not functions of a number; the evaluation never requests them.
             _ => f64::NAN,
         }
     }
@@ -144,7 +144,7 @@ impl Arithmetic for Doubles<'_> {
     }
 }
 
-/// The inverse and the determinant, by elimination with pivots.
+/// The inverse and the determinant, by elimination with pivoting.
 fn eliminated(of: &Array<f64>) -> (Array<f64>, f64) {
     let n = of.rows();
     let mut a = of.clone();

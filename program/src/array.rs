@@ -1,6 +1,6 @@
 //! Numbers in rows and columns.
 
-/// A matrix, column after column.
+/// A column-major matrix.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Array<N> {
     rows: usize,
@@ -27,19 +27,19 @@ impl<N: Copy> Array<N> {
         }
     }
 
-    /// The array with these numbers, column after column; nothing if they are not as many.
+    /// The array with these column-major numbers; `None` if the count differs.
     #[must_use]
     pub fn from_columns(rows: usize, cols: usize, data: Vec<N>) -> Option<Self> {
         (data.len() == rows * cols).then_some(Array { rows, cols, data })
     }
 
-    /// How many rows.
+    /// The number of rows.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.rows
     }
 
-    /// How many columns.
+    /// The number of columns.
     #[must_use]
     pub fn cols(&self) -> usize {
         self.cols
@@ -59,7 +59,7 @@ impl<N: Copy> Array<N> {
     /// An entry.
     ///
     /// # Panics
-    /// Outside the array. A verified kernel asks for none.
+    /// If the entry is outside the array. A verified kernel never reads such an entry.
     #[must_use]
     pub fn at(&self, i: usize, j: usize) -> N {
         assert!(
@@ -77,7 +77,7 @@ impl<N: Copy> Array<N> {
         (i < self.rows && j < self.cols).then(|| self.data[j * self.rows + i])
     }
 
-    /// Puts an entry; nothing happens outside.
+    /// Sets an entry; does nothing outside the array.
     pub fn set(&mut self, i: usize, j: usize, x: N) {
         if i < self.rows && j < self.cols {
             self.data[j * self.rows + i] = x;

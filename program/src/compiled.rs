@@ -1,28 +1,28 @@
-//! Code of the processor for a machine, made by a crate of its own once a machine has run often.
+//! Native code for a machine. A separate crate compiles it once the machine has run often.
 
 use crate::machine::Machine;
 use std::fmt::Debug;
 use std::sync::{Arc, OnceLock};
 
-/// Code of the processor for a machine: it computes the same numbers, to the last bit.
+/// Native code for a machine, with bitwise identical results.
 pub trait Compiled: Debug + Send + Sync {
-    /// Computes in the registers of a frame of the machine. False if a decision comes out otherwise than recorded: the
-    /// outputs then mean nothing.
+    /// Computes in the registers of a frame of the machine. Returns false if a decision differs from the recorded one; the outputs
+    /// are then meaningless.
     fn run(&self, registers: &mut [[f64; 1]]) -> bool;
 }
 
-/// Makes code, if it can.
+/// A compiler for machines.
 #[derive(Clone, Copy, Debug)]
 pub struct Compiler {
-    /// Nothing if a machine is too large, or the processor is not known.
+    /// Compiles a machine; returns `None` if the machine is too large, or the processor is not supported.
     pub compile: fn(&Machine) -> Option<Arc<dyn Compiled>>,
-    /// After how many runs in one frame: compiling takes as long as some thousand runs.
+    /// The number of runs in one frame before compilation, which takes as long as several thousand runs.
     pub after: u32,
 }
 
 static COMPILER: OnceLock<Compiler> = OnceLock::new();
 
-/// Machines of this process are compiled by `compiler` from now on. False if another one was set before.
+/// Compiles the machines of this process with `compiler` from now on. Returns false if another compiler was set before.
 pub fn compile_by(compiler: Compiler) -> bool {
     COMPILER.set(compiler).is_ok()
 }
@@ -34,7 +34,7 @@ pub(crate) struct Code {
 }
 
 impl Code {
-    /// The code, made at the run of this number in a frame.
+    /// The code, compiled at the configured number of runs in a frame.
     #[inline]
     pub(crate) fn at(&self, runs: &mut u32, machine: &Machine) -> Option<&dyn Compiled> {
         if let Some(made) = self.made.get() {

@@ -1,7 +1,7 @@
 //! The evaluation of a kernel over any arithmetic.
 //!
-//! Every operation takes the steps of the runtime's one on matrices of a static size, in the same order, so that
-//! results agree to the last bit.
+//! Every operation performs the steps of the runtime's operation on statically sized matrices in the same order, so that results
+//! agree bit for bit.
 
 use crate::arithmetic::Arithmetic;
 use crate::array::Array;
@@ -13,13 +13,13 @@ use core::fmt;
 /// Why an evaluation of a kernel failed.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Unvalued {
-    /// No value was given for this input, or one of another size.
+    /// The value of this input is missing, or has another size.
     Input(String),
     /// A declared name lacks a size.
     Size(Dim),
     /// The arithmetic does not offer this operation.
     Operation(&'static str),
-    /// No value is known for this functional, by its number.
+    /// No value is known for the functional with this index.
     Functional(usize),
 }
 
@@ -38,7 +38,7 @@ impl fmt::Display for Unvalued {
 
 impl std::error::Error for Unvalued {}
 
-/// The outputs of a kernel. `inputs` are in the kernel's order, `sizes` belong to declared names.
+/// The outputs of a kernel. `inputs` are in the kernel's order; `sizes` are those of declared names.
 ///
 /// # Errors
 /// [`Unvalued`] if an input does not fit, a size is missing or the arithmetic lacks an operation.
@@ -92,7 +92,7 @@ impl<A: Arithmetic> Running<'_, A> {
         self.arithmetic.constant(Number::Double(x))
     }
 
-    /// Ones where the row is the column and so many more, zeros elsewhere.
+    /// Ones on the diagonal `at` rows below the main diagonal, zeros elsewhere.
     fn ones(&self, shape: crate::Shape, at: usize) -> Result<Array<A::Number>, Unvalued> {
         let (one, zero) = (self.double(1.0), self.double(0.0));
         let (rows, cols) = (self.size(shape.rows)?, self.size(shape.cols)?);
@@ -266,7 +266,7 @@ impl<A: Arithmetic> Running<'_, A> {
         out
     }
 
-    /// The quaternion nearest to a 4 x 4 matrix.
+    /// The quaternion closest to a 4 x 4 matrix.
     fn nearest(&self, a: &Array<A::Number>) -> [A::Number; 4] {
         let on = self.arithmetic;
         let quarter = self.double(0.25);
@@ -282,7 +282,7 @@ impl<A: Arithmetic> Running<'_, A> {
         .map(|x| on.mul(x, quarter))
     }
 
-    /// The rotation that the nearest quaternion covers.
+    /// The rotation of the closest quaternion.
     fn rotation(&self, a: &Array<A::Number>) -> Result<Array<A::Number>, Unvalued> {
         let on = self.arithmetic;
         let (zero, two) = (self.double(0.0), self.double(2.0));
@@ -378,7 +378,7 @@ impl<A: Arithmetic> Running<'_, A> {
         }
     }
 
-    /// Columns of the first, weighted, one after the other.
+    /// The weighted columns of the first matrix, summed in order.
     fn product(&self, a: &Array<A::Number>, b: &Array<A::Number>) -> Array<A::Number> {
         let on = self.arithmetic;
         Array::from_fn(a.rows(), b.cols(), |i, j| {
@@ -399,7 +399,7 @@ impl<A: Arithmetic> Running<'_, A> {
         }
     }
 
-    /// Short columns have an order of their own.
+    /// Short columns use a different order of summation.
     fn dot_columns(&self, a: &[A::Number], b: &[A::Number]) -> A::Number {
         let on = self.arithmetic;
         let of = |k: usize| on.mul(a[k], b[k]);
@@ -411,7 +411,7 @@ impl<A: Arithmetic> Running<'_, A> {
         }
     }
 
-    /// Eight sums side by side, then the rest.
+    /// Eight parallel sums, then the rest.
     fn dot_long(&self, mut sum: A::Number, a: &[A::Number], b: &[A::Number]) -> A::Number {
         let on = self.arithmetic;
         let whole = a.len() - a.len() % 8;

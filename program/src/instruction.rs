@@ -20,9 +20,9 @@ pub enum Instruction {
     Neg(Register, Register),
     /// A function of one number.
     Function(Function, Register, Register),
-    /// The second where the first is positive, else zero.
+    /// The second operand if the first is positive, otherwise zero.
     WherePositive(Register, Register, Register),
-    /// The call of this number.
+    /// The call with this index.
     Call(u32),
 }
 
@@ -31,15 +31,15 @@ pub enum Instruction {
 pub struct Called {
     /// The function.
     pub function: Whole,
-    /// How large it is.
+    /// The sizes that the function needs.
     pub sizes: Vec<usize>,
     /// The registers of its inputs.
     pub inputs: Vec<Register>,
-    /// The registers of its outputs; nothing for an output that is not used.
+    /// The registers of its outputs; `None` for an unused output.
     pub outputs: Vec<Option<Register>>,
 }
 
-/// A test on registers, and its answer when the tape was recorded.
+/// A test on registers, and its outcome when the tape was recorded.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Check {
     /// Whether the first is at most the second.
@@ -59,7 +59,7 @@ impl Called {
         r: &mut [[f64; L]],
         [inputs, outputs]: &mut [Vec<f64>; 2],
     ) {
-        // Registers are chosen by number, lanes by place.
+        // Inputs and outputs are indexed by register, then by lane.
         #[allow(clippy::needless_range_loop)]
         for lane in 0..L {
             inputs.clear();

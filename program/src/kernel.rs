@@ -1,15 +1,15 @@
-//! Kernels: straight-line code, every value computed once from earlier ones.
+//! Kernels: straight-line code in which every value is computed once, from earlier ones.
 
 use crate::operation::Operation;
 use crate::shape::Kind;
 use crate::verify::{Misfit, kind_of};
 
-/// A value of a kernel: the number of the line that computes it.
+/// A value of a kernel: the index of the line that computes it.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct Value(pub(crate) usize);
 
 impl Value {
-    /// The number of its line.
+    /// The index of its line.
     #[must_use]
     pub fn line(self) -> usize {
         self.0
@@ -21,7 +21,7 @@ impl Value {
 pub struct Input {
     /// Its name: a local variable in printed code.
     pub name: String,
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
 }
 
@@ -30,9 +30,9 @@ pub struct Input {
 pub struct Line {
     /// The operation.
     pub operation: Operation,
-    /// What it gives.
+    /// The kind of the result.
     pub kind: Kind,
-    /// The name under which printed code keeps it. Printed code writes values without a name where it uses them.
+    /// The name of the variable in printed code. A value without a name is written at its point of use.
     pub name: Option<String>,
 }
 
@@ -58,13 +58,13 @@ impl Kernel {
         &self.inputs
     }
 
-    /// Its lines, each after those that it uses.
+    /// The lines, each after the lines that it uses.
     #[must_use]
     pub fn lines(&self) -> &[Line] {
         &self.lines
     }
 
-    /// The values and their lines, each after those that it uses.
+    /// The values and their lines, each after the lines that it uses.
     pub fn values(&self) -> impl Iterator<Item = (Value, &Line)> {
         self.lines
             .iter()
@@ -81,7 +81,7 @@ impl Kernel {
         &self.lines[value.0]
     }
 
-    /// The input under this name; it is added if it is new.
+    /// The input with this name; added if it is new.
     ///
     /// # Errors
     /// If an input of another kind has this name.
@@ -116,14 +116,14 @@ impl Kernel {
         Ok(Value(self.lines.len() - 1))
     }
 
-    /// Gives a value the name under which printed code keeps it.
+    /// Names the variable of a value in printed code.
     pub fn name(&mut self, value: Value, name: &str) {
         if let Some(line) = self.lines.get_mut(value.0) {
             line.name = Some(name.to_owned());
         }
     }
 
-    /// Checks every line and the outputs once more.
+    /// Checks every line and the outputs.
     ///
     /// # Errors
     /// The first misfit.

@@ -1,23 +1,23 @@
-//! Which register holds each value of a tape.
+//! Assigns a register to each value of a tape.
 
 use crate::compiled::Code;
 use crate::instruction::{Called, Check, Instruction, Register};
 use crate::machine::Machine;
 use crate::tape::{Guard, Scalar, Step, Tape, Test};
 
-/// Where values stand, found by going through the tape once.
+/// The register assignment, found in a single pass through the tape.
 pub(crate) struct Layout {
     inputs: usize,
     reads: Vec<bool>,
     constants: Vec<f64>,
-    /// The register of each step that is used.
+    /// The register of each used step.
     of: Vec<Option<Register>>,
     registers: usize,
 }
 
 impl Layout {
     pub(crate) fn of(tape: &Tape, inputs: usize) -> Self {
-        // The last step that uses each value; what leaves the tape is used to the end.
+        // The last step that uses each value; outputs of the tape stay in use until the end.
         let mut last = vec![None; tape.steps.len()];
         let end = tape.steps.len();
         let guarded = tape.guards.iter().flat_map(|g| g.test.uses());
@@ -60,8 +60,8 @@ impl Layout {
             if !computes || last[at].is_none() {
                 continue;
             }
-            // A register that is read for the last time may take the result, but not one of a call: its inputs are read
-            // once for all its outputs.
+            // A register that is read for the last time can take the result, except in a call, whose inputs are read once for all
+            // outputs.
             let fixed = inputs + layout.constants.len();
             let [a, b] = step.uses();
             let b = b.filter(|b| Some(*b) != a);
@@ -80,7 +80,7 @@ impl Layout {
     }
 
     pub(crate) fn machine(self, tape: &Tape) -> Machine {
-        // Every value that is used has a register.
+        // Every used value has a register.
         let of = |x: Scalar| self.of[x.step()].unwrap_or(0);
         let mut calls: Vec<Called> = Vec::new();
         let mut place = vec![None; tape.calls.len()];

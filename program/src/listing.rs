@@ -1,11 +1,11 @@
-//! A kernel as text: one line a value.
+//! A kernel as text, with one line per value.
 
 use crate::kernel::{Kernel, Value};
 use crate::operation::{Number, Operation, Pair};
 use core::fmt;
 
 impl Kernel {
-    /// The name of a value in the listing: its own, or `%` and its number.
+    /// The name of a value in the listing: its own name, or `%` and its index.
     fn listed(&self, v: Value) -> String {
         let line = self.line(v);
         match (&line.name, &line.operation) {

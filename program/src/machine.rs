@@ -1,12 +1,12 @@
-//! A tape made ready to run: dead steps left out, values in as few registers as they need. One run computes one set of
-//! inputs, or several side by side, one in each lane.
+//! A tape prepared for execution: without dead steps, and with as few registers as possible. One run computes one set of inputs, or
+//! several sets side by side in lanes.
 
 use crate::compiled::Code;
 use crate::instruction::{Called, Check, Instruction, Register};
 use crate::layout::Layout;
 use crate::tape::{Function, Tape};
 
-/// A tape that runs. The first registers hold inputs, the next constants, the others results.
+/// An executable tape. The first registers hold inputs, the next constants, the rest results.
 #[derive(Clone, Debug)]
 pub struct Machine {
     pub(crate) inputs: usize,
@@ -20,60 +20,60 @@ pub struct Machine {
     pub(crate) code: Code,
 }
 
-/// Registers of a machine, `L` runs side by side.
+/// The registers of a machine for `L` runs side by side.
 #[derive(Clone, Debug)]
 pub struct Frame<const L: usize> {
     registers: Vec<[f64; L]>,
-    /// Numbers that enter a call, and that leave it.
+    /// Inputs and outputs of a call.
     called: [Vec<f64>; 2],
-    /// How often the machine has run in it.
+    /// The number of runs of the machine in this frame.
     runs: u32,
 }
 
 impl Machine {
-    /// A machine for a tape of so many inputs.
+    /// A machine for a tape with this number of inputs.
     #[must_use]
     pub fn new(tape: &Tape, inputs: usize) -> Self {
         Layout::of(tape, inputs).machine(tape)
     }
 
-    /// How many numbers it takes.
+    /// The number of inputs.
     #[must_use]
     pub fn inputs(&self) -> usize {
         self.inputs
     }
 
-    /// Whether an input enters what is computed or decided.
+    /// Whether an output or a decision depends on an input.
     #[must_use]
     pub fn reads(&self, input: usize) -> bool {
         self.reads.get(input).copied().unwrap_or(false)
     }
 
-    /// How many numbers it gives.
+    /// The number of outputs.
     #[must_use]
     pub fn outputs(&self) -> usize {
         self.outputs.len()
     }
 
-    /// How many operations a run takes.
+    /// The number of operations per run.
     #[must_use]
     pub fn operations(&self) -> usize {
         self.instructions.len()
     }
 
-    /// How many registers it has.
+    /// The number of registers.
     #[must_use]
     pub fn registers(&self) -> usize {
         self.registers
     }
 
-    /// The constants, in the registers behind the inputs.
+    /// The constants, which are in the registers after the inputs.
     #[must_use]
     pub fn constants(&self) -> &[f64] {
         &self.constants
     }
 
-    /// The operations, in their order.
+    /// The operations, in order.
     #[must_use]
     pub fn instructions(&self) -> &[Instruction] {
         &self.instructions
@@ -97,7 +97,7 @@ impl Machine {
         &self.outputs
     }
 
-    /// Registers with its constants.
+    /// Registers initialised with the constants.
     #[must_use]
     pub fn frame<const L: usize>(&self) -> Frame<L> {
         let mut registers = vec![[0.0; L]; self.registers];
@@ -112,8 +112,8 @@ impl Machine {
         }
     }
 
-    /// Computes on the inputs in `frame`. False if a decision comes out otherwise than recorded: the outputs then mean
-    /// nothing.
+    /// Computes on the inputs in `frame`. Returns false if a decision differs from the recorded one; the outputs are then
+    /// meaningless.
     pub fn run(&self, frame: &mut Frame<1>) -> bool {
         match self.code.at(&mut frame.runs, self) {
             Some(code) => code.run(&mut frame.registers),
@@ -121,8 +121,8 @@ impl Machine {
         }
     }
 
-    /// Computes on `L` sets of inputs side by side. False if a decision comes out otherwise in any of them. The caller
-    /// chooses the registers of the processor for which this function is compiled.
+    /// Computes on `L` sets of inputs side by side. Returns false if a decision differs in any of them. The caller chooses the
+    /// instruction set for which this function is compiled.
     #[inline(always)]
     pub fn computes<const L: usize>(&self, frame: &mut Frame<L>) -> bool {
         let r = frame.registers.as_mut_slice();
@@ -149,7 +149,7 @@ impl Machine {
         })
     }
 
-    /// The output of this number.
+    /// The output with this index.
     #[inline]
     #[must_use]
     pub fn output<'a, const L: usize>(&self, frame: &'a Frame<L>, which: usize) -> &'a [f64; L] {
@@ -168,18 +168,17 @@ impl Machine {
 }
 
 impl<const L: usize> Frame<L> {
-    /// The places of the inputs, in their order, and others behind them.
+    /// The registers of the inputs in order, followed by the other registers.
     #[inline]
     pub fn inputs(&mut self) -> &mut [[f64; L]] {
         &mut self.registers
     }
 }
 
-/// Lanes that are read before any is written, so that loops over them are vectorised.
+/// Number of lanes that are read before any is written, so that the compiler vectorises the loops.
 const CHUNK: usize = 16;
 
-/// How many sets of inputs run side by side: enough to share the cost of finding out what to do, few enough to stay in
-/// the nearest cache.
+/// Number of input sets side by side: enough to share the cost of dispatch, and few enough to stay in the L1 cache.
 pub const WIDTH: usize = 64;
 
 #[inline(always)]

@@ -1,19 +1,19 @@
-//! The operations of kernels, and the words by which they are listed and printed.
+//! The operations of kernels, and their names in listings and printed code.
 
 use crate::kernel::Value;
 
 /// A constant.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Number {
-    /// A number that binary64 holds.
+    /// A number that binary64 represents exactly.
     Double(f64),
-    /// A quotient of whole numbers, rounded once in the precision of the evaluation.
+    /// A quotient of integers, rounded once in the precision of the evaluation.
     Ratio(i64, i64),
-    /// The ratio of a circle's circumference to its diameter.
+    /// Pi.
     Pi,
 }
 
-/// How an operation of one value is written.
+/// The notation of an operation on one value.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Form {
     /// `-a`
@@ -31,7 +31,7 @@ macro_rules! operations {
         pub enum $name { $($(#[$doc])* $case,)* }
 
         impl $name {
-            /// How it is written.
+            /// Its notation.
             #[must_use]
             pub fn form(self) -> Form {
                 match self { $($name::$case => Form::$form,)* }
@@ -79,9 +79,9 @@ operations! {
         Real Method "real",
         /// The imaginary part of a unit quaternion.
         Imaginary Method "imaginary",
-        /// The inverse of a matrix; NaN where no pivot is usable.
+        /// The inverse of a matrix; NaN if no pivot is usable.
         Inverse Function "inverse_or_nan",
-        /// The determinant; zero where no pivot is usable.
+        /// The determinant; zero if no pivot is usable.
         Determinant Function "determinant",
         /// The adjugate of a matrix of two or three rows.
         Adjugate Function "adjugate",
@@ -93,13 +93,13 @@ operations! {
         AxialOfDifference Function "axial_of_difference",
         /// `tr(A) Id - A` of a 3 x 3 matrix.
         TraceComplement Function "trace_complement",
-        /// `A - Id` of a matrix whose columns have length 1, with the digits of small differences.
+        /// `A - Id` for a matrix with columns of length 1, without loss of digits for small differences.
         LessIdentity Function "less_identity",
         /// `(A + Aᵀ)/2`.
         SymmetricPart Function "symmetric_part",
         /// `(A - Aᵀ)/2`.
         SkewPart Function "skew_part",
-        /// The matrix without its entries off the diagonal.
+        /// The matrix without its off-diagonal entries.
         DiagonalPart Function "diagonal_part",
         /// The diagonal matrix with these entries.
         Diagonal Function "diagonal",
@@ -111,13 +111,13 @@ operations! {
         MotionTranslation Function "motion_translation",
         /// The homogeneous matrix `[hat(ω) v; 0 0]` of `(ω, v)`.
         Twist Function "twist",
-        /// The real part of the quaternion that a 4 x 4 matrix multiplies by.
+        /// The real part of the quaternion of a 4 x 4 left-multiplication matrix.
         QuaternionReal Function "quaternion_real",
         /// The imaginary part of that quaternion.
         QuaternionImaginary Function "quaternion_imaginary",
-        /// The rotation that a unit quaternion covers, given its 4 x 4 matrix.
+        /// The rotation of a unit quaternion, given as a 4 x 4 matrix.
         QuaternionRotation Function "quaternion_rotation",
-        /// The 4 x 4 matrix of a quaternion without real part.
+        /// The 4 x 4 matrix of a purely imaginary quaternion.
         PureQuaternion Function "pure_quaternion",
     }
 }
@@ -129,24 +129,23 @@ pub enum Pair {
     Add,
     /// The difference, entry by entry.
     Sub,
-    /// A product: of numbers, of an array and a number, or of matrices (columns of the first, weighted, summed in
-    /// order).
+    /// A product of numbers, of an array and a number, or of matrices (weighted columns of the first, summed in order).
     Mul,
-    /// A number or an array over a number.
+    /// A number or an array divided by a number.
     Div,
     /// `Aᵀ B` without the transpose.
     TransposedMul,
     /// The sum of the products of entries.
     Dot,
-    /// The vector product.
+    /// The cross product.
     Cross,
     /// `hat(v) A`.
     Crossed,
     /// `A hat(v)`.
     Crossing,
-    /// `D A` of a diagonal matrix.
+    /// `D A` for a diagonal matrix `D`.
     DiagonalTimes,
-    /// `A D` of a diagonal matrix.
+    /// `A D` for a diagonal matrix `D`.
     TimesDiagonal,
     /// The unit quaternion from one to another: `conj(a) b`.
     Between,
@@ -176,11 +175,11 @@ impl Pair {
 /// A call of a functional of the model, or of one of its derivatives.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub struct Call {
-    /// The functional by its number in the model.
+    /// The index of the functional in the model.
     pub functional: usize,
-    /// How many of the values are arguments; directions and the seed follow.
+    /// The number of arguments among the values; directions and the seed follow.
     pub arguments: usize,
-    /// The arguments along which it is differentiated, counted from 0, in rising order.
+    /// The arguments along which it is differentiated, counted from 0, in increasing order.
     pub along: Vec<u8>,
     /// The argument along which a seed is pulled back, counted from 0.
     pub back: Option<u8>,
@@ -193,7 +192,7 @@ pub struct Call {
 /// An operation of a kernel.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Operation {
-    /// An input by its number.
+    /// An input by its index.
     Input(usize),
     /// A constant.
     Number(Number),
@@ -203,13 +202,13 @@ pub enum Operation {
     Zero(crate::Shape),
     /// A unit vector.
     Unit(crate::Dim, usize),
-    /// The identity moved down by so many rows.
+    /// The identity shifted down by a number of rows.
     Inclusion(crate::Shape, usize),
     /// An operation on one value.
     One(Single, Value),
     /// An operation on two values.
     Two(Pair, Value, Value),
-    /// A whole power of a number, by repeated squaring.
+    /// An integer power of a number, by repeated squaring.
     Power(Value, i32),
     /// A rational power `num/den` of a number.
     Root(Value, i64, i64),
@@ -217,13 +216,13 @@ pub enum Operation {
     Entry(Value, usize),
     /// An entry of a matrix by row and column.
     EntryAt(Value, usize, usize),
-    /// Rows of a matrix from a first one on, as many as the inclusion has columns.
+    /// Consecutive rows of a matrix, as many as the inclusion has columns.
     RowsFrom(Value, crate::Shape, usize),
-    /// A matrix between zero rows.
+    /// A matrix with zero rows above and below.
     IntoRows(Value, crate::Shape, usize),
-    /// Columns of a matrix from a first one on, as many as the inclusion has columns.
+    /// Consecutive columns of a matrix, as many as the inclusion has columns.
     ColumnsFrom(Value, crate::Shape, usize),
-    /// A matrix between zero columns.
+    /// A matrix with zero columns on both sides.
     IntoColumns(Value, crate::Shape, usize),
     /// A functional.
     Functional(Call),

@@ -1,4 +1,4 @@
-//! Kernels recorded as tapes: an arithmetic whose numbers are the steps that compute them.
+//! Records kernels as tapes: an arithmetic whose numbers are the steps that compute them.
 
 use crate::arithmetic::Arithmetic;
 use crate::array::Array;
@@ -9,10 +9,10 @@ use crate::tape::{Function, Recording, Scalar, Step, Tape};
 use std::cell::RefCell;
 
 impl Tape {
-    /// Records a kernel. `sizes` belong to declared names.
+    /// Records a kernel. `sizes` are those of declared names.
     ///
     /// # Errors
-    /// [`Unvalued`] if the kernel has an operation whose steps depend on values, such as an inverse with pivots.
+    /// [`Unvalued`] if the kernel has an operation whose steps depend on values, such as an inverse with pivoting.
     pub fn of(kernel: &Kernel, sizes: &[usize]) -> Result<Tape, Unvalued> {
         let recorder = Recorder::default();
         let mut count = 0;
@@ -35,7 +35,7 @@ impl Tape {
     }
 }
 
-/// An arithmetic that notes what is done. Powers and roots become the operations that the runtime's numbers take.
+/// An arithmetic that records operations. Powers and roots become the operations of the runtime's numbers.
 #[derive(Debug, Default)]
 pub struct Recorder {
     recording: RefCell<Recording>,
@@ -50,7 +50,7 @@ impl Recorder {
         self.recording.borrow_mut().double(x)
     }
 
-    /// -1, 0 or 1 by the sign, NaN for what is not finite.
+    /// -1, 0 or 1 by the sign; NaN for a non-finite number.
     fn sign(&self, a: Scalar) -> Scalar {
         let (zero, one) = (self.double(0.0), self.double(1.0));
         let up = self.step(Step::WherePositive(a, one));
@@ -102,7 +102,7 @@ impl Arithmetic for Recorder {
             Single::Tanh => Function::Tanh,
             Single::Sign => return self.sign(a),
             Single::Abs => return self.mul(a, self.sign(a)),
-            // Not functions of a number: the evaluation does not ask for them.
+            // Not functions of a number; the evaluation never requests them.
             _ => return self.double(f64::NAN),
         };
         self.step(Step::Function(function, a))
@@ -127,7 +127,7 @@ impl Arithmetic for Recorder {
         }
     }
 
-    /// Whole and half-whole exponents by products and one root, others by logarithm and exponential.
+    /// Integer and half-integer exponents use products and at most one square root; others use logarithm and exponential.
     fn root(&self, a: Scalar, num: i64, den: i64) -> Scalar {
         let (num, den) = lowest_terms(num, den);
         match (i32::try_from(num), den) {
@@ -142,7 +142,7 @@ impl Arithmetic for Recorder {
         }
     }
 
-    /// An inverse looks for pivots, which a kernel's tape cannot.
+    /// An inverse needs pivoting, which a kernel's tape cannot contain.
     fn inverse(&self, _: &Array<Scalar>) -> Option<Array<Scalar>> {
         None
     }

@@ -12,7 +12,7 @@ pub enum Dim {
 }
 
 impl Dim {
-    /// The number of rows or columns, given the sizes of declared names; nothing for a name without a size.
+    /// The number of rows or columns, given the sizes of declared names; `None` for a name without a size.
     #[must_use]
     pub fn size(self, sizes: &[usize]) -> Option<usize> {
         match self {
@@ -112,7 +112,7 @@ impl Kind {
     /// A number.
     pub const SCALAR: Kind = Kind::Array(Shape::SCALAR);
 
-    /// The rows and columns in which an evaluation keeps the value.
+    /// The rows and columns of the value's storage in an evaluation.
     #[must_use]
     pub fn shape(self) -> Shape {
         match self {

@@ -1,22 +1,21 @@
-//! A recorded evaluation: scalar operations in single assignment, equal ones computed once, and the decisions that were
-//! taken on the way.
+//! A recorded evaluation: scalar operations in single assignment without duplicates, and the decisions of the recording.
 
 use std::collections::HashMap;
 
-/// A function of numbers that is taken as a whole, such as an elimination with pivots: of whole numbers that say how large
-/// it is, and the inputs; it fills the outputs.
+/// A function that the tape calls as a unit, such as an elimination with pivoting. Arguments: the sizes it needs, the inputs, and
+/// the outputs to fill.
 pub type Whole = fn(&[usize], &[f64], &mut [f64]);
 
-/// A function taken as a whole, called.
+/// A call of a whole function.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub struct Call {
-    /// Its number among those that the recording has met.
+    /// The index of the function in the recording.
     pub function: usize,
-    /// How large it is.
+    /// The sizes that the function needs.
     pub sizes: Vec<usize>,
     /// Its inputs.
     pub inputs: Vec<Scalar>,
-    /// How many numbers it gives.
+    /// The number of outputs.
     pub outputs: usize,
 }
 
@@ -25,7 +24,7 @@ pub struct Call {
 pub struct Scalar(u32);
 
 impl Scalar {
-    /// The number of its step.
+    /// The index of its step.
     #[must_use]
     pub fn step(self) -> usize {
         self.0 as usize
@@ -51,7 +50,7 @@ pub enum Function {
     Cosh,
     /// The hyperbolic tangent.
     Tanh,
-    /// A power of two near `1 / sqrt(|x|)`; 1 for what is zero, subnormal or not finite.
+    /// A power of two near `1 / sqrt(|x|)`; 1 if `x` is zero, subnormal or not finite.
     Balance,
 }
 
@@ -77,10 +76,10 @@ impl Function {
     }
 }
 
-/// A step of a tape. Constants are kept by their bits: equal steps are one.
+/// A step of a tape. Constants are compared by their bits, and equal steps are merged.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Step {
-    /// An input by its place among all numbers of all inputs.
+    /// An input, by its index among all numbers of all inputs.
     Input(u32),
     /// A constant of binary64, by its bits.
     Double(u64),
@@ -96,14 +95,14 @@ pub enum Step {
     Neg(Scalar),
     /// A function of one number.
     Function(Function, Scalar),
-    /// The second where the first is positive, else zero. NaN is not positive.
+    /// The second operand if the first is positive, otherwise zero. NaN is not positive.
     WherePositive(Scalar, Scalar),
-    /// An output of a call, by the numbers of both.
+    /// An output of a call, by the indices of call and output.
     Output(u32, u32),
 }
 
 impl Step {
-    /// The numbers that it uses. An output uses the inputs of its call.
+    /// The numbers that it uses, except for an output, which uses the inputs of its call.
     #[must_use]
     pub fn uses(self) -> [Option<Scalar>; 2] {
         match self {
@@ -118,7 +117,7 @@ impl Step {
     }
 }
 
-/// A test of numbers that an evaluation decided by.
+/// A test of numbers that determined a decision.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Test {
     /// Whether one number is at most another; false for NaN.
@@ -132,7 +131,7 @@ pub enum Test {
 }
 
 impl Test {
-    /// The numbers that it looks at.
+    /// The numbers that it tests.
     #[must_use]
     pub fn uses(self) -> [Option<Scalar>; 2] {
         match self {
@@ -142,12 +141,12 @@ impl Test {
     }
 }
 
-/// A decision that was taken. A tape computes the recorded function as long as every test comes out as it did.
+/// A recorded decision. The tape computes the recorded function as long as every test has the recorded outcome.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Guard {
     /// The test.
     pub test: Test,
-    /// The answer.
+    /// The outcome.
     pub holds: bool,
 }
 
@@ -162,7 +161,7 @@ pub struct Tape {
     pub calls: Vec<Call>,
     /// The functions that are called.
     pub functions: Vec<Whole>,
-    /// The results, each array column after column.
+    /// The results, with each array column-major.
     pub outputs: Vec<Scalar>,
 }
 
@@ -186,12 +185,12 @@ impl Tape {
 pub struct Part {
     /// The numbers that it computes.
     pub outputs: Vec<Scalar>,
-    /// The decisions on which they rely.
+    /// The decisions that the numbers depend on.
     pub guards: Vec<Guard>,
 }
 
 impl Tape {
-    /// A part as a tape of its own.
+    /// A part as a separate tape.
     #[must_use]
     pub fn part(&self, part: Part) -> Tape {
         Tape {
@@ -201,8 +200,8 @@ impl Tape {
         }
     }
 
-    /// Parts that are computed often with other numbers for the inputs from `late` on. Gives the numbers that they take from
-    /// all other inputs, and a tape for each part: its first inputs are these numbers, the next ones the late inputs.
+    /// Splits off parts that run often with new values for the inputs from `late` on. Returns the numbers that the parts take from
+    /// all other inputs, and a tape for each part. Its first inputs are these numbers, followed by the late inputs.
     #[must_use]
     pub fn behind(&self, late: usize, parts: &[&Part]) -> (Vec<Scalar>, Vec<Tape>) {
         let mut is_late: Vec<bool> = Vec::with_capacity(self.steps.len());
@@ -272,10 +271,10 @@ pub struct Decisions {
     asked: HashMap<Test, bool>,
 }
 
-/// A tape that is being recorded.
+/// A tape under construction.
 ///
-/// Steps are simplified only where every bit stays: a constant operation is computed, a factor or divisor 1 is left
-/// out, sums and products have their operands in one order. `x + 0` and `0 x` are kept.
+/// Steps are simplified only if every bit stays the same. Constant operations are folded, a factor or divisor of 1 is dropped, and
+/// operands of sums and products are put in canonical order. `x + 0` and `0 x` are kept.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
     steps: Vec<Step>,
@@ -300,13 +299,13 @@ impl Recording {
         }
     }
 
-    /// How many steps there are.
+    /// The number of steps.
     #[must_use]
     pub fn len(&self) -> usize {
         self.steps.len()
     }
 
-    /// How many decisions are noted.
+    /// The number of decisions.
     #[must_use]
     pub fn guards(&self) -> usize {
         self.guards.len()
@@ -331,7 +330,7 @@ impl Recording {
         self.kept(Step::Double(x.to_bits()))
     }
 
-    /// The outputs of a function that is taken as a whole.
+    /// The outputs of a whole function.
     pub fn call(
         &mut self,
         function: Whole,
@@ -351,7 +350,7 @@ impl Recording {
             inputs,
             outputs,
         };
-        // As few as steps.
+        // There are no more calls than steps.
         let next = u32::try_from(self.calls.len()).unwrap_or(u32::MAX);
         let at = *self.called.entry(call.clone()).or_insert(next);
         if at == next {
@@ -371,7 +370,7 @@ impl Recording {
         }
     }
 
-    /// Begins a part aside: the decisions so far are taken out, and given back with [`Recording::end_aside`].
+    /// Starts a separate part: sets aside the decisions so far, which [`Recording::end_aside`] restores.
     #[must_use]
     pub fn begin_aside(&mut self) -> Decisions {
         Decisions {
@@ -380,13 +379,13 @@ impl Recording {
         }
     }
 
-    /// Ends a part aside; gives the decisions in it.
+    /// Ends a separate part; returns its decisions.
     pub fn end_aside(&mut self, before: Decisions) -> Vec<Guard> {
         self.asked = before.asked;
         std::mem::replace(&mut self.guards, before.guards)
     }
 
-    /// Notes a decision. A test that was asked before is not noted again.
+    /// Records a decision. A test that was already decided is not recorded again.
     pub fn guard(&mut self, test: Test, holds: bool) {
         if self.asked.insert(test, holds).is_none() {
             self.guards.push(Guard { test, holds });
@@ -397,7 +396,7 @@ impl Recording {
         if let Some(known) = self.known.get(&step) {
             return *known;
         }
-        // A tape of four billion steps would need 64 GiB: recordings are given up long before.
+        // A tape of four billion steps would need 64 GiB; recordings are abandoned long before.
         let scalar = Scalar(u32::try_from(self.steps.len()).unwrap_or(u32::MAX));
         self.steps.push(step);
         self.known.insert(step, scalar);

@@ -1,4 +1,4 @@
-//! The kind of the result of an operation; misfits are errors.
+//! Computes the kind of the result of an operation; misfits are errors.
 
 use crate::kernel::{Input, Line, Value};
 use crate::operation::{Operation, Pair, Single};
@@ -8,11 +8,11 @@ use core::fmt;
 /// Why an operation does not fit its arguments.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Misfit {
-    /// A line uses a value that is not computed before it.
+    /// A line uses a value that is not computed before the line.
     Later(usize),
     /// An input that does not exist.
     Input(usize),
-    /// Two inputs of different kinds have one name.
+    /// Two inputs of different kinds have the same name.
     Renamed(String),
     /// The kinds of the arguments of a line do not fit its operation.
     Kinds(usize),
@@ -116,7 +116,7 @@ pub fn kind_of(operation: &Operation, inputs: &[Input], lines: &[Line]) -> Resul
     }
 }
 
-/// The kind of a matrix whose rows or columns are taken or put by an inclusion.
+/// The kind of a matrix whose rows or columns an inclusion selects or embeds.
 fn part(
     kind: Kind,
     wanted: Dim,
@@ -179,7 +179,7 @@ fn single_of(single: Single, kind: Kind) -> Option<Kind> {
     }
 }
 
-/// The size of a homogeneous matrix of the plane or of space without its last row.
+/// The size of a homogeneous matrix in two or three dimensions without its last row.
 fn less_one(shape: Shape) -> Option<Dim> {
     match (shape.is_square(), shape.rows) {
         (true, Dim::Fixed(n @ (3 | 4))) => Some(Dim::Fixed(n - 1)),

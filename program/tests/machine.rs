@@ -1,11 +1,11 @@
-//! Random tapes, run one by one and side by side, against their steps computed one after the other: the same bits.
+//! Random tapes, run singly and in lanes, against sequential evaluation of their steps: the results agree bit for bit.
 
 mod random_tapes;
 
 use clebsch_program::{Machine, Part, Recording, Step, WIDTH};
 use random_tapes::{INPUTS, Random, computed, random_tape, same};
 
-/// Random tapes.
+/// Number of random tapes.
 const TAPES: u64 = 400;
 
 #[test]
@@ -43,7 +43,7 @@ fn a_machine_gives_the_bits_of_its_tape_alone_and_side_by_side() {
             assert!(agree, "lane {lane} of {tape:?}");
         }
     }
-    // Decisions of both kinds are met.
+    // Decisions with both outcomes occur.
     assert!(held > 1000 && failed > 1000, "{held} held, {failed} failed");
 }
 
@@ -78,7 +78,7 @@ fn a_tape_in_two_parts_gives_the_same_bits() {
         for (slot, x) in behind.inputs().iter_mut().zip(first.gives(&before, 0)) {
             *slot = [x];
         }
-        // The second part runs again and again with what the first one gave.
+        // Runs the second part repeatedly with the results of the first.
         for _ in 0..8 {
             let later: Vec<f64> = (late..INPUTS).map(|_| random.number()).collect();
             for (slot, x) in behind.inputs()[given.len()..].iter_mut().zip(&later) {
@@ -94,7 +94,7 @@ fn a_tape_in_two_parts_gives_the_same_bits() {
             failed += usize::from(!holds);
         }
     }
-    // The first part has work to do, and decisions of both kinds are met.
+    // The first part is not empty, and decisions with both outcomes occur.
     assert!(
         taken > TAPES as usize && held > 500 && failed > 500,
         "{taken} {held} {failed}"

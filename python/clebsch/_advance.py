@@ -1,4 +1,4 @@
-"""Steps of a run in turns, with the progress bar and the functions of `observe` in between."""
+"""Steps a run in short turns, and updates the progress bar and calls the functions of `observe` in between."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from . import _clebsch
     from ._model import Model
 
-# How long the compiled code keeps control before the bar and the functions of `observe` have their turn.
+# Seconds of stepping between two updates of the bar and calls of the functions of `observe`.
 _TURN = 0.1
 
 
@@ -24,7 +24,7 @@ def finished(
     observe: Mapping[str, Callable[[Sample], Any]] | None,
     progress: bool,
 ) -> Run:
-    """Make all steps; gives the run, also if it is interrupted."""
+    """Make all steps. Returns the run even if it is interrupted."""
     observed: dict[str, list[Any]] = {}
     watch: Callable[[], None] | None = None
     if observe:
@@ -61,7 +61,7 @@ def finished(
 def _watched(
     running: _clebsch.Running, observe: Mapping[str, Callable[[Sample], Any]]
 ) -> tuple[dict[str, list[Any]], Callable[[], None]]:
-    """Lists that grow by what functions give at new samples."""
+    """The lists of function values at the samples, and a function that appends the values at new samples."""
     layout = Layout(running)
     for name, function in observe.items():
         if name in layout.arrays:
@@ -78,7 +78,7 @@ def _watched(
         while seen < samples:
             node, time, row = running.sample(seen)
             sample = Sample(layout, node, time, row, parameters)
-            # All of them first: an interrupted sample is looked at again.
+            # Evaluate all functions before appending, because an interrupted sample is evaluated again.
             values = [function(sample) for function in observe.values()]
             for own, value in zip(lists.values(), values):
                 own.append(value)

@@ -166,7 +166,7 @@ class Derivation:
 
 
 def _sections(text: str) -> list[tuple[str, str]]:
-    """Titles, which are underlined, and what stands below them."""
+    """The underlined titles, each with the text of its section."""
     lines = text.splitlines()
     heads = [
         at
@@ -181,12 +181,12 @@ def _sections(text: str) -> list[tuple[str, str]]:
 
 
 def for_notebook(markdown: str) -> str:
-    """Markdown whose formulas stand between dollar signs, as notebooks typeset them."""
+    """Markdown with formulas between dollar signs, which notebooks typeset."""
     out = re.sub(r"```math\n(.*?)\n```", lambda m: f"$$\n{m.group(1)}\n$$", markdown, flags=re.DOTALL)
     return re.sub(r"\$`(.+?)`\$", lambda m: f"${m.group(1)}$", out)
 
 
-# Readers first want the equations and the invariants.
+# The sections that a notebook shows: equations and invariants.
 _BRIEF = re.compile(r"Discrete (Lagrangian|Euler)|Equations of a site|Moser|Solution of a step|Invariants|Limit")
 
 

@@ -142,7 +142,7 @@ def ensembled(
 
 
 def _bodies(key: str, own: Any, model: Model):
-    """The number of bodies by the name of each array that has some, and a function that gives the values of a body."""
+    """The number of bodies in each array that varies by body, by name, and a function that gives the values of one body."""
     if isinstance(own, Mapping):
         shapes = _shapes(model, key)
         counted = {}
@@ -174,10 +174,10 @@ def _shapes(model: Model, key: str) -> dict[str, tuple[tuple[int, ...], str]]:
 
 
 def _depth(name: str, shape: tuple[int, ...], shapes: Mapping[str, tuple[tuple[int, ...], str]]) -> int:
-    """How many indices the value of one body has."""
+    """The number of indices of one body's value."""
     if name in shapes:
         own, kind = shapes[name]
-        # Quaternions have one index, diagonal matrices may be given by their entries.
+        # Quaternions have one index, and a list of entries can give a diagonal matrix.
         if kind in ("Rotation", "UnitQuaternion") and shape[-1] == 4 and own != shape[-2:]:
             return 1
         if kind == "Diagonal" and shape[-2:] != own:
@@ -188,5 +188,5 @@ def _depth(name: str, shape: tuple[int, ...], shapes: Mapping[str, tuple[tuple[i
     momentum = name.replace("velocity", "momentum", 1)
     if momentum in shapes:
         return len(shapes[momentum][0])
-    # The inertia in the place of second moments, and what the reader of the case rejects.
+    # An inertia replaces second moments; the case reader rejects any other name.
     return len(shapes[f"J{name[1:]}"][0]) if f"J{name[1:]}" in shapes else 1

@@ -127,6 +127,6 @@ def _argument(text: str) -> str | None:
 
 
 def _hint(text: str) -> str | None:
-    """The way out, which messages give behind their last semicolon."""
+    """The suggestion in a message, which follows its last semicolon."""
     _, separator, hint = text.rpartition("; ")
     return hint if separator else None

@@ -1,4 +1,4 @@
-"""The models that are shipped."""
+"""The shipped models."""
 
 from __future__ import annotations
 

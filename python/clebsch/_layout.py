@@ -1,4 +1,4 @@
-"""Where the arrays of a run are in its rows, and the state at one sample."""
+"""The columns of each array in the rows of a run, and the state at one sample."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ INVARIANT = "invariant_"
 
 
 class Layout:
-    """Where the arrays of a run are in its rows."""
+    """The columns of each array in the rows of a run."""
 
     def __init__(self, running: _clebsch.Running) -> None:
         self.arrays = {name: (shape, kind, numbers) for name, shape, kind, numbers in running.arrays()}
@@ -28,7 +28,7 @@ class Layout:
         )
 
     def array(self, name: str, rows: NDArray[np.float64]) -> NDArray[Any]:
-        """The array of a name, as a view on the rows where its columns stand at equal distances."""
+        """The array of a name; a view on the rows if its columns are equally spaced."""
         shape, kind, numbers = self.arrays[name]
         whole = (len(rows), *shape)
         if kind == "sites":
@@ -84,7 +84,7 @@ class Sample:
 
 
 def known(arrays: Mapping[str, Any], name: str) -> str:
-    """The name of an array, of an invariant also without its prefix."""
+    """The full name of an array; an invariant may omit its prefix."""
     if name in arrays:
         return name
     if f"{INVARIANT}{name}" in arrays:

@@ -35,7 +35,7 @@ class Model:
     Raises
     ------
     ModelError
-        The text is wrong. The message shows the place under the source and says what to write instead.
+        The text is wrong. The message marks the position in the source and says what to write instead.
 
     See Also
     --------
@@ -43,8 +43,8 @@ class Model:
 
     Notes
     -----
-    Two models with the same text share their derivation, which is made once. A notebook shows a model by its equations,
-    typeset, and by its invariants with the reason why each is conserved.
+    Two models with the same text share one derivation. A notebook shows the typeset equations of a model, and its invariants
+    with the reason why each is conserved.
 
     Examples
     --------
@@ -126,12 +126,12 @@ class Model:
 
     @property
     def initial(self) -> list[str]:
-        """list of str : The names of the initial values. A velocity may stand for a momentum, see `run`."""
+        """list of str : The names of the initial values. A velocity may replace a momentum, see `run`."""
         return [field["name"] for field in self.card["initial"]]
 
     @property
     def cases(self) -> dict[str, str]:
-        """dict : The names of the cases of a shipped model or a model file, the default one first, and what each shows."""
+        """dict : The names of the cases of a shipped model or a model file, the default one first, each with a description."""
         if self._cases is None:
             self._cases = self._inner.cases()
         return dict(self._cases)
@@ -366,13 +366,13 @@ class Model:
 
         return ensembled(self, case, parameters, initial, workers, progress, values)
 
-    # How a case is put together.
+    # Assembly of a case.
 
     def _base(self, case: str | None) -> tuple[str, str] | None:
-        """The name in messages of the case that values are put into, and its text."""
+        """The case that values are added to: its name in messages, and its text."""
         if case is None and not self.cases:
             return None
-        # A file may have changed.
+        # The file may have changed.
         if case is not None and case.endswith(".toml"):
             return self._inner.case_text(case)
         if case not in self._bases:
@@ -410,7 +410,7 @@ class Model:
             return load, (self._inner.name,)
         return Model, (self.source, self._inner.name)
 
-    # How it is shown.
+    # Display.
 
     def __repr__(self) -> str:
         parameters, initial = (", ".join(self._short(which)) for which in ("parameters", "initial"))

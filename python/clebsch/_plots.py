@@ -1,4 +1,4 @@
-"""Pictures of runs, drawn by matplotlib."""
+"""Plots and animations of runs with matplotlib."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from ._run import Run
 
-# More curves in one picture are not told apart.
+# More curves in one plot cannot be distinguished.
 _MOST_CURVES = 9
 
 
@@ -40,7 +40,7 @@ def plot(run: Run, names: tuple[str, ...]):
         _draw_drift(axis, run)
     axes[-1, 0].set_xlabel("time")
     figure.suptitle(f"{run.model.name}, h = {run.h:g}" + (", stopped" if run.stopped else ""), fontsize="medium")
-    # A notebook shows the figure that is returned, and must not show it twice.
+    # A notebook shows the returned figure; closing it here keeps the notebook from showing it twice.
     plt.close(figure)
     return figure
 
@@ -70,14 +70,14 @@ def _draw_drift(axis: Any, run: Run) -> None:
     smallest = np.finfo(float).eps / 4
     for name, drift in run.drift.items():
         size = np.abs(drift) if drift.ndim == 1 else np.abs(drift).max(axis=tuple(range(1, drift.ndim)))
-        # Rounding may be zero, which no logarithm shows.
+        # A logarithmic axis cannot show a drift of zero.
         axis.semilogy(run.t[1:], np.maximum(size[1:], smallest), lw=0.8, label=name.replace("_", " "))
     axis.set_ylabel("drift / scale")
     axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="x-small", frameon=False)
 
 
 def _moving(run: Run) -> str:
-    """The first quantity that a film shows."""
+    """The quantity that an animation shows by default."""
     kinds = {field["name"]: field["kind"] for field in run._running.fields()["observables"]}
     candidates = [
         name for name in run.keys() if name not in ("time", "node") and not name.startswith(("invariant_", "sites_of_"))
@@ -95,7 +95,7 @@ def _moving(run: Run) -> str:
 
 
 def animate(run: Run, name: str | None, seconds: float):
-    """A film of one quantity."""
+    """An animation of one quantity."""
     import matplotlib.pyplot as plt
     from matplotlib.animation import FuncAnimation
 
@@ -136,7 +136,7 @@ def _equal(axis: Any, values: np.ndarray) -> None:
 
 
 def _film(figure: Any, run: Run, name: str, values: np.ndarray, sited: bool):
-    """Draws the first frame; gives the function that shows the sample of a number."""
+    """Draw the first frame. Returns a function that shows the sample with a given index."""
     flat = values.ndim == 1 or (sited and values.ndim == 2)
     if flat and sited:
         axis = figure.add_subplot()

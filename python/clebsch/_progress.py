@@ -31,7 +31,7 @@ class Progress:
         self.bar.update(done - self.bar.n)
 
     def close(self) -> None:
-        """Take the bar away."""
+        """Remove the bar."""
         if self.bar is not None:
             self.bar.close()
             self.bar = None
@@ -42,7 +42,7 @@ def _bar(total: int, unit: str):
         import warnings
 
         with warnings.catch_warnings():
-            # Without ipywidgets tqdm warns and draws a bar of letters.
+            # Without ipywidgets, tqdm warns and draws a text bar.
             warnings.simplefilter("ignore")
             from tqdm.auto import tqdm
 

@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     from ._model import Model
 
 
-# An index of an array, and the sign with which a value stands there.
+# An index of an array, and the sign of the value at that index.
 _Entry = tuple[tuple[int, ...], float]
 
 
 class _Axis:
-    """One direction of the grid: what is varied, and its values."""
+    """One axis of the grid: the varied quantity and its values."""
 
     def __init__(self, name: str, values: Any, model: Model, numbers: Mapping[str, Any], kinds: Mapping[str, str]) -> None:
         self.name = name
@@ -63,7 +63,7 @@ class _Axis:
 
 
 def _entries(name: str, component: str, shape: tuple[int, ...], kind: str) -> list[_Entry]:
-    """The entries that a component names, with their signs: of a symmetric or skew matrix also the mirror image."""
+    """The entries of a component with their signs; a symmetric or skew matrix also has the mirrored entry."""
     wrong = DataError(f"vary: {name!r} names no component of an array of shape {shape}; components count from 1", "vary")
     if len(shape) == 1:
         at = "xyz".find(component) if len(component) == 1 and shape[0] == 3 else -1
@@ -143,14 +143,14 @@ def swept(
 
 
 def _table_of(model: Model, key: str) -> str:
-    """Whether a name is that of a parameter or of an initial value."""
+    """The table of a name: `parameters` or `initial`."""
     known = {*model._short("parameters"), *model.parameters}
     inertia = key[:1] == "I" and f"J{key[1:]}" in known
     return "parameters" if key in known or inertia else "initial"
 
 
 def _started(model: Model, case: str | None, vary: Mapping[str, Any], values: dict[str, Any]) -> _clebsch.Running:
-    """A run at one point of the grid, which tells the columns of the table: at its first point, or at its last one."""
+    """A run at the first point of the grid, or at the last if the first fails. It determines the columns of the table."""
     refused: StepError | None = None
     for at in (0, -1):
         own = dict(values)
@@ -170,7 +170,7 @@ def _started(model: Model, case: str | None, vary: Mapping[str, Any], values: di
 
 
 def _placed(model: Model, name: str) -> tuple[str, str]:
-    """The table of a name, and the name there."""
+    """The table of a name, and the name in that table."""
     table, _, key = name.partition(".")
     if table in ("parameters", "initial") and key:
         return table, key
@@ -183,7 +183,7 @@ def _table(axes: list[_Axis], points: list[tuple[int, ...]], ended: list[Any], n
     columns: dict[str, Any] = {}
     for number, axis in enumerate(axes):
         for name, values in axis.columns().items():
-            # An initial value may have the name of what is observed at the end.
+            # An initial value may have the name of an observable, whose final value is a column.
             name = f"{axis.table}.{name}" if name in observables else name
             columns[name] = np.array([values[point[number]] for point in points])
     count = len(points)

@@ -1,5 +1,5 @@
-//! Python values as a case has them. Takes numbers, arrays, texts and dictionaries; gives TOML in which every number has the shortest
-//! digits that read back to the same bits.
+//! Converts Python values to the text of a case. Numbers, arrays, strings and dictionaries become TOML in which every number has
+//! the shortest digits that reproduce its bits.
 
 use crate::errors::exception;
 use clebsch_cli::session::quoted;
@@ -15,7 +15,7 @@ pub(crate) fn literal(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<Stri
     Ok(out)
 }
 
-/// No array or table of a case is nested deeper.
+/// Maximum nesting of the arrays and tables of a case.
 const DEEPEST: usize = 16;
 
 fn write(value: &Bound<'_, PyAny>, argument: &str, out: &mut String, depth: usize) -> PyResult<()> {
@@ -78,7 +78,7 @@ fn write(value: &Bound<'_, PyAny>, argument: &str, out: &mut String, depth: usiz
     Ok(())
 }
 
-/// Whatever numpy takes for an array of real numbers.
+/// Any value that numpy accepts as an array of real numbers.
 fn array<'py>(value: &Bound<'py, PyAny>) -> Option<PyReadonlyArrayDyn<'py, f64>> {
     let numpy = value.py().import("numpy").ok()?;
     let found = numpy.call_method1("asarray", (value,)).ok()?;
@@ -92,7 +92,7 @@ fn array<'py>(value: &Bound<'py, PyAny>) -> Option<PyReadonlyArrayDyn<'py, f64>>
     if !['f', 'i', 'u', 'b'].contains(&kind) {
         return None;
     }
-    // The arguments `order` and `dtype` ask for a copy only if one is needed.
+    // The arguments `order` and `dtype` request a copy only if one is needed.
     let found = numpy
         .call_method1("require", (found, "float64", "C"))
         .ok()?;

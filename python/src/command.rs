@@ -8,7 +8,7 @@ use clebsch_cli::{Streams, execute, run_arguments};
 use pyo3::prelude::*;
 use std::ffi::OsString;
 
-/// Runs the command with these arguments, on the streams of the process; its exit code.
+/// Runs the command with these arguments on the streams of the process; returns its exit code.
 #[pyfunction]
 pub(crate) fn command(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
     let name = OsString::from("clebsch");

@@ -24,7 +24,8 @@ pub(crate) fn exception(
     make().unwrap_or_else(|_| PyRuntimeError::new_err(text.to_owned()))
 }
 
-/// A failure on a model's text `source`, which messages call `name`, or on a case, which they call `file`.
+/// Converts a failure to an exception. It concerns a model's text `source`, which messages call `name`, or a case, which messages
+/// call `file`.
 pub(crate) fn failed(py: Python<'_>, failure: &Failure, source: &str, file: &str) -> PyErr {
     match failure {
         Failure::Usage(text) => match text.strip_prefix('\n') {
@@ -47,7 +48,7 @@ pub(crate) fn failed(py: Python<'_>, failure: &Failure, source: &str, file: &str
     }
 }
 
-/// A mistake in a model's text, with its place.
+/// A mistake in a model's text, with its position.
 fn of_model(py: Python<'_>, rendered: &str, source: &str) -> PyErr {
     let mut with = Vec::new();
     if let Some(errors) = session::Model::mistakes(source)
@@ -81,7 +82,7 @@ fn of_data(py: Python<'_>, text: &str, file: &str) -> PyErr {
     exception(py, "DataError", without_place(text, file), &[])
 }
 
-/// A message without `FILE:LINE: ` or `FILE: ` before it: the text of a case was put together from arguments.
+/// Removes the prefix `FILE:LINE: ` or `FILE: ` of a message, because the text of the case was assembled from arguments.
 fn without_place<'t>(text: &'t str, file: &str) -> &'t str {
     let Some(rest) = text.strip_prefix(file) else {
         return text;

@@ -1,7 +1,7 @@
-//! The compiled module `clebsch._clebsch`: models, cases and runs of the command as Python objects. The Python sources in `clebsch/`
-//! give them their public form.
+//! The compiled module `clebsch._clebsch`: models, cases and runs of the command as Python objects. The Python sources in
+//! `clebsch/` wrap them in the public interface.
 
-// Functions that Python calls take what Python gives.
+// Functions that Python calls take their arguments by value.
 #![allow(clippy::needless_pass_by_value)]
 
 mod case_text;

@@ -1,4 +1,4 @@
-//! Many cases of one model on all cores. Takes their texts; gives their runs in the same order, whatever the number of threads.
+//! Runs many cases of one model on all cores. Returns the runs in the order of the cases, for any number of threads.
 
 use crate::errors::exception;
 use crate::guarded::guarded;
@@ -15,25 +15,25 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-/// How a case ended.
+/// The end of a case.
 enum Ended {
-    /// All steps are made.
+    /// All steps succeeded.
     Whole(Box<session::Running>),
-    /// A step was not.
+    /// A step failed.
     Stopped(Box<session::Running>, String),
-    /// It did not start.
+    /// The start failed.
     Refused(String),
-    /// It was not begun when the call was interrupted.
+    /// The call was interrupted before the case started.
     Left,
 }
 
-/// Why a run ended that was interrupted.
+/// The reason for an interrupted run.
 const INTERRUPTED: &str = "interrupted";
 
-/// Bytes of the stack of a thread.
+/// Stack size of a thread in bytes.
 const STACK: usize = 8 << 20;
 
-/// A run between two looks at whether to stop.
+/// Time between two checks for an interrupt.
 const AT_A_TIME: Duration = Duration::from_millis(50);
 
 fn one(
@@ -63,13 +63,14 @@ fn one(
             Err(error) => return Ended::Stopped(running, error.to_string()),
         }
     }
-    // The samples so far are kept.
+    // Keeps the samples so far.
     running.end_here();
     Ended::Stopped(running, INTERRUPTED.to_owned())
 }
 
-/// Runs cases, each given by its name in messages and by its text, on `workers` threads, by default one for each core. Gives for each
-/// case its run or None, and why it ended before its end, which is `interrupted` after Ctrl-C. `tell` is called now and then with the number of cases that are done.
+/// Runs cases, each given by its name in messages and its text, on `workers` threads, by default one per core. Returns for each
+/// case its run or None, and the reason if it ended early; after Ctrl-C the reason is `interrupted`. Calls `tell` from time to time
+/// with the number of finished cases.
 #[pyfunction]
 pub(crate) fn run_many<'py>(
     py: Python<'py>,
@@ -100,7 +101,7 @@ pub(crate) fn run_many<'py>(
             let (Some(case), Some(place)) = (cases.get(at), ended.get(at)) else {
                 break;
             };
-            // A defect that one case meets must not end the others.
+            // A panic in one case must not end the others.
             let own = catch_unwind(AssertUnwindSafe(|| one(model, case, &request, &stop)));
             let own = own
                 .unwrap_or_else(|_| Ended::Refused("clebsch met a defect of its own".to_owned()));
@@ -109,7 +110,7 @@ pub(crate) fn run_many<'py>(
         }
     };
     let interrupted = std::thread::scope(|scope| {
-        // As much stack as the main thread of most systems has: a case with other sites is derived here.
+        // The usual stack size of a main thread, because a case with other sites is derived here.
         let start = |_| {
             std::thread::Builder::new()
                 .stack_size(STACK)
@@ -138,7 +139,7 @@ pub(crate) fn run_many<'py>(
             }
         }
     });
-    // Ctrl-C ends the cases, and those that were computed are worth keeping.
+    // Ctrl-C ends the cases but returns the results so far.
     interrupted.or_else(
         |error| match error.is_instance_of::<PyKeyboardInterrupt>(py) {
             true => Ok(()),
@@ -162,7 +163,7 @@ pub(crate) fn run_many<'py>(
     })
 }
 
-/// Waits until the threads are done, a tenth of a second at most.
+/// Waits until the threads finish, at most a tenth of a second.
 fn wait(threads: &[std::thread::ScopedJoinHandle<'_, ()>]) {
     for turn in 0..100 {
         if threads
@@ -171,7 +172,7 @@ fn wait(threads: &[std::thread::ScopedJoinHandle<'_, ()>]) {
         {
             return;
         }
-        // Short cases are noticed soon.
+        // Polls quickly at first, to return early from short cases.
         std::thread::sleep(Duration::from_micros(if turn < 10 { 100 } else { 1100 }));
     }
 }

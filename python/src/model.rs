@@ -1,4 +1,4 @@
-//! A model: the class `Model` of the compiled module, whose cases are texts put together from Python values.
+//! The class `Model` of the compiled module. Texts of its cases are assembled from Python values.
 
 use crate::case_text::literal;
 use crate::errors::failed;
@@ -14,7 +14,7 @@ use clebsch_core::expr::symbol::ascii;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-/// The name in messages of a case made from arguments.
+/// The name in messages of a case assembled from arguments.
 pub(crate) const ARGUMENTS: &str = "arguments";
 
 /// A model.
@@ -81,7 +81,7 @@ impl Model {
         self.inner.has_sites()
     }
 
-    /// Names of cases with what they show.
+    /// The names of the cases, each with a description.
     fn cases(&self) -> PyResult<Vec<(String, String)>> {
         guarded(|| Ok(self.inner.cases()))
     }
@@ -104,14 +104,14 @@ impl Model {
         dictionary(py, &table)
     }
 
-    /// The text of a case from tables of values, each put into `base` if there is one. A value of None takes the key away.
+    /// Assembles the text of a case from tables of values, on top of `base` if given. A value of None removes the key.
     fn compose(&self, base: Option<&str>, tables: &Bound<'_, PyDict>) -> PyResult<String> {
         guarded(|| {
             let mut edits = Vec::new();
             for (table, values) in tables {
                 let table: String = table.extract()?;
                 let Ok(values) = values.cast::<PyDict>() else {
-                    // A key at the top.
+                    // A top-level key.
                     let value = Some(literal(&values, &table)?);
                     edits.push(Edit {
                         table: String::new(),
@@ -156,7 +156,7 @@ impl Model {
         })
     }
 
-    /// The derivation in a form.
+    /// The derivation in the given format.
     fn derivation(
         &self,
         py: Python<'_>,
@@ -170,7 +170,7 @@ impl Model {
         })
     }
 
-    /// The card of the model, with labels that on the default number of sites.
+    /// The card of the model; a model with labels uses the default numbers of sites.
     fn card<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         guarded(|| {
             let card = py.detach(|| self.inner.card());

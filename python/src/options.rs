@@ -1,4 +1,4 @@
-//! The options of a run. Takes the dictionary that the Python side puts together; gives the request.
+//! The options of a run: converts the dictionary of the Python code to a request.
 
 use crate::errors::exception;
 use clebsch_check::Which;
@@ -6,7 +6,7 @@ use clebsch_cli::session::Request;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// An option, if it is given; `what` says what it must be.
+/// An option, if given; `what` describes the expected type.
 fn option<'py, T>(options: &Bound<'py, PyDict>, key: &str, what: &str) -> PyResult<Option<T>>
 where
     T: for<'a> FromPyObject<'a, 'py>,
@@ -23,7 +23,7 @@ where
     })
 }
 
-/// Which steps are judged by the action as stated.
+/// The steps to check against the action as stated.
 fn judged(options: &Bound<'_, PyDict>) -> PyResult<Which> {
     let asked: Option<String> = option(options, "judge", "None, \"sample\" or \"all\"")?;
     match asked.as_deref() {
@@ -37,7 +37,7 @@ fn judged(options: &Bound<'_, PyDict>) -> PyResult<Which> {
     }
 }
 
-/// The request of a dictionary.
+/// The request from a dictionary.
 pub(crate) fn request(options: &Bound<'_, PyDict>) -> PyResult<Request> {
     Ok(Request {
         until: option(options, "until", "a number, the time to run to")?,

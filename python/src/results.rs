@@ -1,4 +1,4 @@
-//! The results of a run: rows as arrays that take over their memory, which columns make which array, and what was conserved.
+//! The results of a run: rows as arrays that take over their memory, the columns of each array, and the outcomes of the invariants.
 
 use clebsch::card::{Conserved, Field};
 use clebsch_cli::session::{Columns, Layout, Outcome, Verdict, layout};
@@ -26,7 +26,7 @@ pub(crate) fn fields<'py>(py: Python<'py>, all: &[Field]) -> PyResult<Bound<'py,
     Ok(out)
 }
 
-/// The arrays of a card: name, shape, and how they are found in the rows.
+/// The arrays of a card: name, shape, and their columns in the rows.
 pub(crate) fn arrays<'py>(
     py: Python<'py>,
     card: &clebsch::card::Card,

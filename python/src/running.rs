@@ -1,4 +1,4 @@
-//! A case on its way: the class `Running`, which makes steps while other Python threads run, and looks for signals in between.
+//! The class `Running`, a running case. It steps while other Python threads run, and checks for signals in between.
 
 use crate::errors::failed;
 use crate::guarded::guarded;
@@ -12,10 +12,10 @@ use pyo3::types::{PyBytes, PyDict, PyList};
 use std::sync::{Mutex, MutexGuard, TryLockError};
 use std::time::{Duration, Instant};
 
-/// Steps are made for so long before signals are looked for.
+/// Time between two checks for signals.
 const AT_A_TIME: Duration = Duration::from_millis(50);
 
-/// A case on its way.
+/// A running case.
 #[pyclass(frozen, module = "clebsch._clebsch")]
 pub(crate) struct Running {
     inner: Mutex<session::Running>,
@@ -23,7 +23,7 @@ pub(crate) struct Running {
     file: String,
 }
 
-/// Why a run ended before its end: node, time, message.
+/// The failure of a run: node, time, message.
 type Failed = (u64, f64, String);
 
 impl Running {
@@ -51,7 +51,7 @@ impl Running {
         }
     }
 
-    /// The run, unless another thread is stepping it.
+    /// The run, or an error if another thread is stepping it.
     fn locked(&self) -> PyResult<MutexGuard<'_, session::Running>> {
         match self.inner.try_lock() {
             Ok(inner) => Ok(inner),
@@ -67,7 +67,7 @@ impl Running {
 
 #[pymethods]
 impl Running {
-    /// Makes steps for about so many seconds. Gives whether the run is over, and why it failed if it did.
+    /// Steps for about this many seconds. Returns whether the run is over, and its failure if there is one.
     fn advance(&self, py: Python<'_>, seconds: f64) -> PyResult<(bool, Option<Failed>)> {
         let begun = Instant::now();
         guarded(|| {
@@ -95,7 +95,7 @@ impl Running {
         })
     }
 
-    /// Ends the run at the node at hand, which becomes its last sample.
+    /// Ends the run at the current node, which becomes its last sample.
     fn end_here(&self) -> PyResult<()> {
         guarded(|| {
             self.locked()?.end_here();
@@ -103,7 +103,7 @@ impl Running {
         })
     }
 
-    /// Makes so many steps without samples. Gives how many were made, and why the next one was not.
+    /// Makes up to `steps` steps without samples. Returns how many succeeded, and the failure of the next one.
     fn step(&self, py: Python<'_>, steps: u64) -> PyResult<(u64, Option<Failed>)> {
         guarded(|| {
             let mut made = 0;
@@ -131,7 +131,7 @@ impl Running {
         Ok((summary.steps, summary.node, summary.time, summary.samples))
     }
 
-    /// Node and time at hand.
+    /// The current node and time.
     fn place(&self) -> PyResult<(u64, f64)> {
         Ok(self.locked()?.place())
     }
@@ -157,7 +157,7 @@ impl Running {
         ))
     }
 
-    /// A copy of the sample with this number: node, time, row.
+    /// A copy of the sample with this index: node, time, row.
     fn sample<'py>(
         &self,
         py: Python<'py>,
@@ -177,12 +177,12 @@ impl Running {
         }
     }
 
-    /// The row of the node at hand.
+    /// The row of the current node.
     fn row<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         guarded(|| Ok(row(py, self.locked()?.row()).into_any()))
     }
 
-    /// Which columns of the rows make which array.
+    /// The columns of the rows for each array.
     fn arrays<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         guarded(|| arrays(py, self.locked()?.card()))
     }
@@ -197,7 +197,7 @@ impl Running {
         guarded(|| outcomes(py, &self.locked()?.outcomes()))
     }
 
-    /// Warnings: on the kinetic energy at the start, and on invariants that were lost.
+    /// Warnings about the initial kinetic energy and about violated invariants.
     fn warnings(&self) -> PyResult<Vec<String>> {
         let inner = self.locked()?;
         Ok(inner
@@ -207,7 +207,8 @@ impl Running {
             .collect())
     }
 
-    /// The verdict of the action as stated on the judged steps: the sentence of the command, the number of steps, and whether they hold.
+    /// The verdict on the checked steps against the action as stated: the sentence of the command, the number of steps, and whether
+    /// they pass.
     fn stated(&self) -> PyResult<Option<(String, u64, Option<bool>)>> {
         let inner = self.locked()?;
         Ok(inner.stated().map(|verdict| {
@@ -216,12 +217,12 @@ impl Running {
         }))
     }
 
-    /// How many steps were made by parts, and of how many parts at most.
+    /// The number of steps made in substeps, and the largest number of substeps.
     fn halvings(&self) -> PyResult<Option<(u64, u64)>> {
         Ok(self.locked()?.halvings().map(|h| (h.steps, h.parts)))
     }
 
-    /// The stability limit of the step size, searched for at most so many seconds.
+    /// The stability limit of the step size, from a search of at most this many seconds.
     fn stability_limit<'py>(&self, py: Python<'py>, seconds: f64) -> PyResult<Bound<'py, PyDict>> {
         guarded(|| {
             let inner = self.locked()?;
@@ -285,12 +286,12 @@ impl Running {
         Ok(out)
     }
 
-    /// The state at hand as bytes; None where it cannot be written down.
+    /// The current state as bytes; None if it cannot be saved.
     fn save<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {
         guarded(|| Ok(self.locked()?.saved().map(|bytes| PyBytes::new(py, &bytes))))
     }
 
-    /// Puts bytes back that `save` gave for the same case.
+    /// Restores bytes from `save` for the same case.
     fn restore(&self, bytes: &[u8]) -> PyResult<()> {
         guarded(|| self.locked()?.restore(bytes).map_err(PyValueError::new_err))
     }

@@ -1,5 +1,5 @@
-//! A thousand bodies at once: how often an asymmetric free body that spins about its middle axis turns over, by the
-//! size of the first disturbance.
+//! A thousand bodies in parallel: how often an asymmetric free body that spins about its middle axis flips, by the size of the
+//! initial perturbation.
 //!
 //! `cargo run --release --example ensemble`
 
@@ -15,7 +15,7 @@ clebsch::model! {
     }
 }
 
-/// Moments of inertia 1, 2 and 2.5: second moments of mass are half their trace less each.
+/// For moments of inertia 1, 2 and 2.5. The second moments of mass are half their trace minus each moment.
 fn bodies() -> impl Iterator<Item = (BodyParameters, BodyInitial)> {
     (0..1000).map(|i| {
         let parameters = BodyParameters {

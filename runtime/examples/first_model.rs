@@ -1,4 +1,4 @@
-//! A first model: the heavy top, stated, stepped, and its energy and Casimir watched.
+//! A first model: states and steps the heavy top, and monitors its energy and Casimir.
 //!
 //! `cargo run --release --example first_model`
 

@@ -1,5 +1,4 @@
-//! A ring of points with exponential springs (Toda): one statement, any number of sites, two threads with the bits of
-//! one.
+//! A ring of points with exponential springs (Toda): one statement for any number of sites; two threads give the same bits as one.
 //!
 //! `cargo run --release --example lattice`
 

@@ -1,5 +1,5 @@
-//! A run that is interrupted, kept on disk and gone on with, to the last bit: by the typed state and its workspace, and
-//! by a trajectory known from its card.
+//! Interrupts a run, saves it to disk and resumes it bit for bit: with the typed state and its workspace, and with a trajectory
+//! opened from its card.
 //!
 //! `cargo run --release --example resume`
 
@@ -26,7 +26,7 @@ fn start() -> Result<(Planet, PlanetState, PlanetWorkspace), Error> {
     Ok((planet, state, work))
 }
 
-/// State and workspace, typed.
+/// With the typed state and workspace.
 fn typed(file: &std::path::Path) -> Result<(), Box<dyn std::error::Error>> {
     let (planet, mut state, mut work) = start()?;
     for _ in 0..500 {
@@ -39,7 +39,7 @@ fn typed(file: &std::path::Path) -> Result<(), Box<dyn std::error::Error>> {
         planet.step(&mut state, &mut work)?;
     }
 
-    // Another process, later.
+    // In another process, later.
     let bytes = std::fs::read(file)?;
     let (planet, mut again, mut work) = start()?;
     Snapshot::from_bytes(&bytes[..length])?.put_into(&mut again)?;
@@ -55,7 +55,7 @@ fn typed(file: &std::path::Path) -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// A trajectory of any model, from its card and lists of numbers.
+/// With a trajectory of any model, from its card and lists of numbers.
 fn from_card(file: &std::path::Path) -> Result<(), Box<dyn std::error::Error>> {
     let settings = Settings::step(0.05).of_order(4);
     let open = || {

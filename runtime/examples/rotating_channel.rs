@@ -1,6 +1,7 @@
-//! Particle-mesh shallow water in a rotating channel, two vortices for 6000 steps: what the energy and the potential vorticity
-//! owe to the start, the rotation, the splines and the step. Prints the errors of the energy after 1500 and 6000 steps, of the
-//! kinetic energy, the means of its quarters, the change of the sum of the potential vorticity over nodes, and that of the mass.
+//! Particle-mesh shallow water in a rotating channel: two vortices for 6000 steps. Compares how initial balance, rotation scheme,
+//! splines and step size affect energy and potential vorticity. Prints the energy error after 1500 and 6000 steps relative to the
+//! kinetic energy, and the means over its quarters. Also prints the changes of the nodal sum of the potential vorticity and of the
+//! mass.
 //!
 //! `cargo run --release -p clebsch --example rotating_channel`, two minutes
 
@@ -36,8 +37,8 @@ fn main() {
     }
 }
 
-/// What the velocities at the start are in balance with: the depth of the particles by a formula; the same formula, of which the depth of
-/// the particles is what the smoother makes it of; the smoothed depth on the grid, whose gradient is the force.
+/// The depth that balances the initial velocities: the particle depth from a formula; the same formula for the smoothed depth,
+/// with the particle depth sharpened accordingly; or the smoothed depth on the grid, whose gradient is the force.
 #[derive(Clone, Copy, Debug)]
 enum Start {
     Depth,
@@ -45,8 +46,8 @@ enum Start {
     Smoothed,
 }
 
-/// How velocities turn: about the mean of both ends of a step, which is the rotation of the discrete Lagrangian; by the flow of a
-/// free particle on a rotating plane; by midpoints of both halves of a step with their kicks.
+/// The rotation of velocities: about the mean of both ends of a step, as in the discrete Lagrangian; by the flow of a free particle
+/// on a rotating plane; or by midpoint rules for both half steps, including their kicks.
 #[derive(Clone, Copy, Debug)]
 enum Rotation {
     Centred,
@@ -54,7 +55,7 @@ enum Rotation {
     Midpoint,
 }
 
-/// A velocity turned by a quarter of a circle, as rotation turns it.
+/// A velocity rotated by a quarter turn, in the sense of the Coriolis force.
 fn turned(v: Place) -> Place {
     Place::new(v[1], -v[0])
 }
@@ -65,7 +66,7 @@ fn solved(v: Place, a: f64) -> Place {
 }
 
 impl Rotation {
-    /// Half a step: the kick of an acceleration, and the turn that goes with it.
+    /// Half a step: the kick of an acceleration, and the corresponding rotation.
     fn half(self, v: Place, acceleration: Place, dt: f64) -> Place {
         let kick = acceleration * (dt / 2.0);
         let a = F * dt / 4.0;
@@ -75,7 +76,7 @@ impl Rotation {
         }
     }
 
-    /// The way of a step, and the velocity after it.
+    /// The displacement of a step, and the velocity after it.
     fn way(self, v: Place, dt: f64) -> (Place, Place) {
         match self {
             Self::Centred => {
@@ -92,7 +93,8 @@ impl Rotation {
     }
 }
 
-/// A high and a low side by side, and the slope of the depth; the depth sharpened over a length, `(1 - α²∂_1²)(1 - α²∂_2²)`.
+/// A high next to a low, and the gradient of the depth. The depth is sharpened over the length `alpha`, by
+/// `(1 - α²∂_1²)(1 - α²∂_2²)`.
 fn depth(x: &Place, alpha: f64) -> (f64, Place) {
     let mut all = (1.0, Place::zeros());
     for (height, at) in [(0.1, -0.8), (-0.1, 0.8)] {
@@ -108,7 +110,7 @@ fn depth(x: &Place, alpha: f64) -> (f64, Place) {
 /// The smoothing length, two cells.
 const ALPHA: f64 = 2.0 * TAU / CELLS[0] as f64;
 
-/// Fields on the grid, and forces.
+/// Grid fields and forces.
 struct Water<D> {
     setting: Setting<2>,
     m: Vec<f64>,
@@ -136,7 +138,7 @@ where
         }
     }
 
-    /// The potential energy, and accelerations.
+    /// The potential energy; writes the accelerations to `out`.
     fn force(&mut self, x: &[Place], out: &mut [Place]) -> f64 {
         let Self {
             depth, smoothed, ..
@@ -153,8 +155,8 @@ where
         energy
     }
 
-    /// The sum over nodes of `(ζ + f)/h`, with the velocity of the mass at nodes and its differences, centred inside; and the mass,
-    /// relative to that of the particles, less 1.
+    /// The sum over nodes of `(ζ + f)/h`, from the mass-weighted velocity at nodes and its centred differences inside; and the
+    /// relative error of the mass.
     fn vorticity(&mut self, x: &[Place], v: &[Place]) -> (f64, f64) {
         self.deposit.value(x, &mut self.depth).expect("inside");
         let at_nodes: Vec<Vec<f64>> = [0, 1]
@@ -213,7 +215,7 @@ where
     let mut water = Water::<D>::new(setting, m);
     let mut pulls = vec![Place::zeros(); count];
     let potential = water.force(&x, &mut pulls);
-    // In balance: the acceleration and f times the turned velocity cancel.
+    // In balance, the acceleration and f times the rotated velocity cancel.
     let accelerations = x.iter().zip(&pulls).map(|(x, pull)| match start {
         Start::Depth | Start::Sharpened => depth(x, 0.0).1 * (-SPEED * SPEED),
         Start::Smoothed => *pull,

@@ -1,6 +1,6 @@
-//! What smoothing direction after direction does to isotropy, beside the smoother of the plane: frequencies of waves of one length
-//! askew and along an axis; a round hill of water released at rest, whose ring of waves should stay round; an elliptical one
-//! askew, whose angular momentum should stay zero. Prints two tables.
+//! The anisotropy of direction-by-direction smoothing, compared with the isotropic smoother. Measures frequencies of waves of equal
+//! length along an axis and at an angle, the wave ring of a round hill of water released at rest, and the angular momentum of a
+//! tilted elliptical hill, which should stay zero. Prints two tables.
 //!
 //! `cargo run --release -p clebsch --example smoothers`, half a minute
 
@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 type Place = Vector2<f64>;
 
-/// The length of the torus on which hills are released: far more than waves run through.
+/// The length of the torus for the released hills: much longer than waves travel.
 const LENGTH: f64 = 2.0 * TAU;
 
 fn main() {
@@ -45,8 +45,8 @@ fn main() {
     }
 }
 
-/// Frequencies of waves of unit depth and speed with five periods in the length of the domain, along an axis and in the ratio 3 to
-/// 4, on 128 cells: in units of that of the plane, `k / sqrt(1 + α²k²)`.
+/// Frequencies of waves with unit depth and speed, with five periods per domain length, along an axis and in the ratio 3 to 4, on
+/// 128 cells. Relative to the frequency on the plane, `k / sqrt(1 + α²k²)`.
 fn frequencies<S>(domain: Domain<2>, ratio: f64) -> [f64; 2]
 where
     S: for<'a> Functional<f64, 2, Argument = f64, Data<'a> = (f64,)>,
@@ -74,7 +74,7 @@ where
     })
 }
 
-/// A hill of water in the middle of a torus, on unit depth: round, or twice as long as wide and turned by 0.4.
+/// A hill of water in the middle of a torus, on unit depth: round, or twice as long as wide and rotated by 0.4 radians.
 fn hill(x: Place, round: bool) -> f64 {
     let r = x - Place::repeat(LENGTH / 2.0);
     let (sin, cos) = 0.4_f64.sin_cos();
@@ -83,8 +83,8 @@ fn hill(x: Place, round: bool) -> f64 {
     1.0 + 0.3 * (-a * long * long - b * short * short).exp()
 }
 
-/// The fourfold part of the ring of waves of a round hill, in units of the wave in it, and the angular momentum of an elliptical one,
-/// in units of the sum of the sizes of those of particles: after 1.5 units of time, with waves of unit speed.
+/// After 1.5 time units with unit wave speed: the fourfold component of the wave ring from a round hill, relative to the wave, and
+/// the angular momentum of an elliptical hill, relative to the sum of the absolute values for all particles.
 fn released<S>(cells: usize, alpha: f64) -> [f64; 2]
 where
     S: for<'a> Functional<f64, 2, Argument = f64, Data<'a> = (f64,)>,
@@ -131,7 +131,7 @@ where
                 let at =
                     Place::new((n / cells) as f64, (n % cells) as f64) * (LENGTH / cells as f64);
                 let r = at - Place::repeat(LENGTH / 2.0);
-                // Within the ring of the front.
+                // Restricted to the ring of the wave front.
                 let wave = (s - 1.0) * (-((r.norm() - 1.6) / 0.4).powi(2)).exp();
                 (wave * (4.0 * r[1].atan2(r[0])).cos(), wave.abs())
             }))

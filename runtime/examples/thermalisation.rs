@@ -1,7 +1,7 @@
-//! How long ordered motion of particles lives: steady shear and the vortices of Taylor and Green from random places, by
-//! the functionals that smooth the depth and keep particles apart. Takes the sides of the squares of particles and the
-//! number of seeds; prints a table of the kinetic energy that is left along the initial profile. What of the loss is the flow's
-//! own, the example `noisy_vortices` of `clebsch-comparisons` shows: nothing to speak of.
+//! How long ordered particle motion persists: steady shear and Taylor-Green vortices from random positions, for functionals that
+//! smooth the depth and keep particles apart. Takes the numbers of particles along a side and the number of seeds; prints a table
+//! of the kinetic energy that remains in the initial profile. The example `noisy_vortices` of `clebsch-comparisons` shows that
+//! hardly any of the loss is physical.
 //!
 //! `cargo run --release -p clebsch --example thermalisation -- 24 32 48 --seeds 5`, some minutes
 
@@ -37,7 +37,7 @@ fn main() {
     }
 }
 
-/// What moves at the start.
+/// The initial flow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Flow {
     /// `0.1 sin(2 pi y)` along x, without rotation, for five units of time.
@@ -70,7 +70,7 @@ impl Flow {
         }
     }
 
-    /// The depth that balances it, each wave multiplied by a factor for the squares of its two wave numbers.
+    /// The depth in balance with the velocity. `factor` multiplies each wave, as a function of its two squared wave numbers.
     fn depth(self, at: &Place, factor: impl Fn(f64, f64) -> f64) -> f64 {
         match self {
             Self::Shear => 1.0,
@@ -84,7 +84,7 @@ impl Flow {
     }
 }
 
-/// What a potential energy is made of: lengths in mean distances of particles, strengths in squares of the speed of waves.
+/// The potential energy. Lengths are in mean particle distances, strengths in squared wave speeds.
 #[derive(Clone, Copy, Debug)]
 enum Depth {
     Area,
@@ -101,14 +101,13 @@ struct Potential {
     core: Core,
 }
 
-/// How particles are kept apart, within 0.7 of their mean distance.
+/// The repulsion of particles, within 0.7 of their mean distance.
 #[derive(Clone, Copy, Debug)]
 enum Core {
     None,
-    /// Of this strength.
+    /// With this strength.
     Fixed(f64),
-    /// As strong as the shear between neighbours asks for: so much times the square of what velocities of the flow differ by over one
-    /// distance.
+    /// Adapted to the shear between neighbours: this multiple of the squared velocity difference over one particle distance.
     Shear(f64),
 }
 
@@ -142,10 +141,10 @@ const fn of(name: &'static str, depth: Depth, core: Core) -> Potential {
     Potential { name, depth, core }
 }
 
-/// Adds the derivative of a potential energy at places; gives the energy and how often an operator was applied.
+/// Adds the derivative of a potential energy at the positions; returns the energy and the number of operator applications.
 type Force = Box<dyn FnMut(&[Place], &mut [Place]) -> Result<(f64, usize), MeshError>>;
 
-/// The masses with which a flow begins, and the force on them.
+/// The initial masses of a flow, and the force on them.
 fn force(setting: &Setting<2>, at: &[Place], flow: Flow, depth: Depth) -> (Vec<f64>, Force) {
     let count = at.len();
     let spacing = (1.0 / count as f64).sqrt();
@@ -224,15 +223,15 @@ fn force(setting: &Setting<2>, at: &[Place], flow: Flow, depth: Depth) -> (Vec<f
     }
 }
 
-/// What is left of one run.
+/// The results of one run.
 struct Left {
-    /// Of the kinetic energy, along the initial profile.
+    /// Fraction of the kinetic energy that remains in the initial profile.
     kept: f64,
-    /// The smallest distance met, in mean ones.
+    /// The smallest particle distance, in mean distances.
     nearest: f64,
-    /// The largest change of the energy, in units of the kinetic one.
+    /// The largest change of the energy, relative to the kinetic energy.
     energy: f64,
-    /// Applications of the operator in a step.
+    /// Operator applications per step.
     products: f64,
 }
 

@@ -1,9 +1,9 @@
-//! A rod at rest whose two ends are given: Kirchhoff's rod, shot from one end and corrected at the other.
+//! The static rod as a boundary-value problem: Kirchhoff's rod by shooting from one end and correcting at the other.
 //!
 //! `cargo run --release -p clebsch --example two_ends`
 //!
-//! What is sought is the moment at the first section and the force along the rod, six numbers; what is asked is the
-//! place and the attitude of the last section. Steps with dual numbers give the exact derivatives for Newton's method.
+//! The six unknowns are the moment at the first section and the force along the rod. The conditions are the position and attitude
+//! of the last section. Steps with dual numbers give the exact derivatives for Newton's method.
 
 use clebsch::Dual;
 use clebsch::nalgebra::{SMatrix, SVector};
@@ -26,16 +26,16 @@ clebsch::model! {
 const SEGMENTS: usize = 100;
 const LENGTH: f64 = 1.0;
 
-/// The six numbers: the moment at the first section, in its frame, and the force, in space.
+/// The six unknowns: the moment at the first section, in its frame, and the force, in space.
 type Sought = SVector<f64, 6>;
 
-/// Where the last section is: its place and its attitude.
+/// The position and attitude of the last section.
 struct End<T = f64> {
     place: Vector3<T>,
     attitude: Matrix3<T>,
 }
 
-/// The rod from the origin upwards with this moment and this force, its sections where `seen` is told.
+/// Integrates the rod from the origin upwards with this moment and force, and passes its sections to `seen`.
 fn shot<T: Real>(
     sought: &SVector<T, 6>,
     mut seen: impl FnMut(&Vector3<T>),
@@ -55,7 +55,7 @@ fn shot<T: Real>(
     let mut place = Vector3::zeros();
     seen(&place);
     for _ in 0..SEGMENTS {
-        // The force acts on the tangents of nodes, of which those at the ends count by half.
+        // The force acts on the tangents of nodes; the end nodes count half.
         let before = tangent(&state);
         rod.step(&mut state, &mut work)?;
         place += (before + tangent(&state)) * (h * T::from_f64(0.5));
@@ -67,7 +67,7 @@ fn shot<T: Real>(
     })
 }
 
-/// By what an end misses another: in place, and about the axes of the wanted section.
+/// The mismatch of an end: in position, and about the axes of the wanted section.
 fn missed<T: Real>(end: &End<T>, wanted: &End) -> SVector<T, 6> {
     let place = end.place - wanted.place.map(T::from_f64);
     let turn = wanted.attitude.map(T::from_f64).transpose() * end.attitude;
@@ -79,7 +79,7 @@ fn missed<T: Real>(end: &End<T>, wanted: &End) -> SVector<T, 6> {
     SVector::from_fn(|i, _| if i < 3 { place[i] } else { turn[i - 3] })
 }
 
-/// Newton's method from a first guess; `None` where ten corrections are not enough.
+/// Newton's method from an initial guess; `None` if ten corrections are not enough.
 fn joined(mut sought: Sought, wanted: &End) -> Option<Sought> {
     for _ in 0..10 {
         let seeds = SVector::<Dual<6>, 6>::from_fn(|i, _| Dual::variable(sought[i], i));
@@ -87,7 +87,7 @@ fn joined(mut sought: Sought, wanted: &End) -> Option<Sought> {
         let size = off.map(|x| x.real).norm();
         let tangent = SMatrix::<f64, 6, 6>::from_fn(|i, j| off[i].dual[j]);
         sought -= tangent.lu().solve(&off.map(|x| x.real))?;
-        // What is left is the square of this: rounding.
+        // The remaining error is the square of this, at rounding level.
         if size < 1e-9 {
             return Some(sought);
         }
@@ -96,8 +96,8 @@ fn joined(mut sought: Sought, wanted: &End) -> Option<Sought> {
 }
 
 fn main() -> Result<(), Error> {
-    // A straight rod resists no change of the force along it, so that the first one is bent; from there its end is
-    // moved and turned in twenty parts.
+    // A straight rod does not respond to a change of its axial force, so the first rod is bent. Its end is then moved and rotated
+    // in twenty steps.
     let mut sought = Sought::from([0.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
     let bent = shot(&sought, |_| ())?;
     for part in 1..=20 {

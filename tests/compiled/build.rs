@@ -1,11 +1,10 @@
-//! Writes the random models that are compiled: their text as macro invocations, and for each the
-//! function that hands its residual plain data. `CLEBSCH_RANDOM_MODELS` says how many; the suite
-//! takes 60.
+//! Writes random models as `model!` invocations, each with a function that evaluates the model's residual on plain arrays.
+//! `CLEBSCH_RANDOM_MODELS` sets their number; the default is 60.
 
 use oracle::wide::model::{Model, Role};
 use std::fmt::Write;
 
-/// The generator, by itself: a build script needs neither runtime nor engine.
+/// Includes only the generator, so that this build script depends on neither the runtime nor the engine.
 #[allow(dead_code, unused_imports)]
 #[path = "../oracle/src/oracle"]
 mod oracle {
@@ -47,7 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// One model in a module of its own.
+/// Writes one model in its own module.
 fn write_model(out: &mut String, model: &Model, seed: u64) -> std::fmt::Result {
     let name = &model.name;
     let fields = |wanted: &dyn Fn(&Role) -> bool, level: &str| -> String {

@@ -1,5 +1,5 @@
-//! A step allocates nothing: the global allocator of this binary counts the calls of the testing thread.
-//! The same count sees an allocation where there is one.
+//! A step does not allocate. The global allocator of this binary counts the allocations of the testing thread, and a test checks
+//! that the counter detects one.
 
 use super::allocations::allocations;
 use super::generated_motion::{GeneratedBody, GeneratedTop};
@@ -9,7 +9,7 @@ use std::hint::black_box;
 #[test]
 fn the_count_sees_allocations() {
     assert_eq!(allocations(|| drop(black_box(vec![1.0_f64; 3]))), 1);
-    // Another thread's do not count.
+    // Allocations of another thread do not count.
     let other = std::thread::spawn(|| drop(black_box(vec![0_u8; 100])));
     assert_eq!(
         allocations(|| while !other.is_finished() {
@@ -23,7 +23,7 @@ fn the_count_sees_allocations() {
 #[test]
 fn steps_allocate_nothing() {
     let mut body = GeneratedBody::start(&asymmetric_body());
-    // More steps than between two projections onto the conserved quantities.
+    // More steps than the interval between two projections onto the conserved quantities.
     let count = allocations(|| {
         for _ in 0..10_000 {
             body.model
@@ -78,7 +78,7 @@ fn body_of_any_dimension<const N: usize>() {
             Λ: Orthogonal::identity(),
             body_momentum: BodyMomentumMatrix(m),
         };
-        // Some are for three dimensions only.
+        // Some methods exist in three dimensions only.
         let Ok((mut state, mut work)) = model.start_with(initial, 0.1, method) else {
             continue;
         };

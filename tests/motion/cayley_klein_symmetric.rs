@@ -1,5 +1,5 @@
-//! The explicit stepper of the body of revolution in unit quaternions against the implicit one, against the emitted
-//! one, and against the equation as it is derived; random states, any axis of revolution, any member of the family.
+//! Compares the explicit stepper of the body of revolution in unit quaternions with the implicit stepper, the emitted stepper and
+//! the derived equation, for random states, any symmetry axis and any member of the family.
 
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, UnitQuaternion};
@@ -12,7 +12,7 @@ use clebsch_oracle::physics::measure::worse;
 
 const H: f64 = 0.1;
 
-/// Moments, two of them equal; c; unit quaternion; momentum.
+/// Moments of inertia (two are equal), `c`, unit quaternion, momentum.
 fn state(source: &mut Source, axis: usize) -> (Vector, f64, Quaternion, Vector) {
     let a = source.between(1.0, 2.0);
     let mut moments = [a; 3];
@@ -38,7 +38,7 @@ fn a_step_is_that_of_the_implicit_stepper_and_of_the_emitted_one() {
         let (x, y) = (explicit.quaternion(), implicit.quaternion());
         assert!(apart(&x.0, &y.0) < 1e-14, "{trial}: {x:?} {y:?}");
         let (m, n) = (explicit.body_momentum(), implicit.body_momentum());
-        // Momenta are stored times h/2: their rounding is that of numbers twenty times smaller.
+        // The stepper stores momenta times h/2, so their rounding error corresponds to numbers twenty times smaller.
         assert!(apart(&m, &n) < 1e-13, "{trial}: {m:?} {n:?}");
         if trial % 10 == 0 {
             let inertia = Matrix3::from_diagonal(&Vector3::from(moments));
@@ -68,7 +68,7 @@ fn invariants_stay_for_a_million_steps() {
             &body.quaternion().normalised().matrix(),
             &body.body_momentum(),
         );
-        // Rounding of sixty-four steps at most, the constant part of the momentum aside.
+        // The rounding error of at most sixty-four steps, without the constant part of the momentum.
         assert!((body.energy() - energy).abs() < 1e-13 * energy, "{c}");
         assert!(apart(&now, &spatial) < 1e-13 * dot(&mu, &mu).sqrt(), "{c}");
     }
@@ -78,7 +78,7 @@ fn invariants_stay_for_a_million_steps() {
 fn other_bodies_and_steps_that_are_too_long_are_refused() {
     let start = Quaternion::IDENTITY;
     assert!(Explicit::start(&[3.5, 2.5, 2.0], 1.0, &start, &[0.1, 0.2, 0.3], H).is_err());
-    // About the axis the equation is b sin(theta) cos(theta) = h mu / 2 for c = 0: no more than b = h mu.
+    // For c = 0 the equation about the axis is b sin(theta) cos(theta) = h mu / 2, so a solution requires h mu <= b.
     let about_axis =
         |h_mu: f64| Explicit::start(&[1.0, 1.0, 0.5], 0.0, &start, &[0.0, 0.0, h_mu / H], H);
     assert!(about_axis(0.499).is_ok());

@@ -1,6 +1,6 @@
-//! How well and in how many iterations the emitted step of coupled bodies is solved: the residual of
-//! the derived equations at three consecutive states, in double-double arithmetic, in which the
-//! states are exact. Takes the cases of the gallery; states moved by a few roundings are noticed.
+//! Measures the emitted step of coupled bodies: its iterations, and the residual of the derived equations at three consecutive
+//! states. Double-double arithmetic represents the states exactly. The test uses the cases of the gallery and detects a
+//! perturbation of a few rounding errors.
 
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, DoubleDouble, Real, Rotation};
@@ -18,7 +18,7 @@ fn wide<const R: usize, const C: usize>(
     a.map(Wide::from_f64)
 }
 
-/// The configuration of a state, its quaternions made unit in double-double and one of them turned by an angle.
+/// The configuration of a state, with quaternions normalised in double-double and one of them rotated by `angle`.
 fn configuration(state: &CoupledBodiesState, angle: f64) -> CoupledBodiesConfiguration<Wide> {
     let lifted = |r: Rotation, angle: f64| {
         let q = Rotation::<Wide>::from_quaternion(r.quaternion().map(Wide::from_f64));
@@ -32,12 +32,12 @@ fn configuration(state: &CoupledBodiesState, angle: f64) -> CoupledBodiesConfigu
 }
 
 struct Measured {
-    /// Most tangents of a step, and most corrections after the first six steps.
+    /// Largest number of Jacobians in a step, and of corrections after the first six steps.
     tangents: usize,
     corrections: usize,
-    /// Largest residual over the size of the terms, at the states as they are.
+    /// Largest residual relative to the size of the terms, at the unperturbed states.
     residual: f64,
-    /// The same with one attitude turned by 1e-14.
+    /// The largest residual with one attitude rotated by 1e-14.
     turned: f64,
 }
 
@@ -117,8 +117,8 @@ fn cases() -> Vec<(String, CoupledBodiesParameters, CoupledBodiesInitial)> {
         .collect()
 }
 
-/// Attitudes and momenta are rounded to 1e-16; the equations magnify that by no more than the
-/// inertia over the step, the unit of the residual.
+/// Attitudes and momenta have a rounding error of 1e-16. The equations amplify it by at most the inertia divided by the step size,
+/// the unit of the residual.
 const ROUNDING: f64 = 1e-15;
 
 #[test]
@@ -132,7 +132,7 @@ fn few_iterations_and_a_residual_of_rounding() {
         } = measure(parameters, initial);
         println!("{name}: {tangents} tangents, {corrections} corrections, residual {residual:.1e}");
         assert!(tangents <= 4, "{name}: {tangents} tangents");
-        // Each equation is judged by its own terms: now and then one of them asks for a third.
+        // Each equation has its own tolerance, so a step occasionally needs a third correction.
         assert!(corrections <= 3, "{name}: {corrections} corrections");
         assert!(residual <= ROUNDING, "{name}: {residual:.1e}");
         assert!(turned > 2.0 * ROUNDING, "{name}: {turned:.1e} would pass");

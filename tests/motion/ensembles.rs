@@ -1,5 +1,5 @@
-//! Ensembles: many bodies side by side against each of them alone, whatever the number of lanes and
-//! threads, the size of tasks and the instruction set; and which body is named when one fails.
+//! Ensembles: compares many bodies in lanes with each body alone, for any number of lanes and threads, task size and instruction
+//! set. Also checks which body the error names if one fails.
 
 use clebsch::integrate::{Ensemble, InstructionSet, Model, Stepper};
 use clebsch::nalgebra::{Matrix3, SMatrix, SVector, Vector3};
@@ -39,10 +39,10 @@ clebsch::model! {
 /// Step size of all runs.
 const H: f64 = 0.1;
 
-/// Bodies: no multiple of any number of lanes used.
+/// Number of bodies, not a multiple of any lane count in use.
 const BODIES: usize = 21;
 
-/// Random numbers between -1 and 1.
+/// Random numbers in [-1, 1].
 struct Draw(Xoshiro256StarStar);
 
 impl Draw {
@@ -62,7 +62,7 @@ impl Draw {
         Rotation::exp(&(self.vector() * 2.0))
     }
 
-    /// Symmetric, its eigenvalues between 1 and 2.
+    /// A random symmetric matrix with eigenvalues in [1, 2].
     fn positive(&mut self) -> Matrix3<f64> {
         let r = self.rotation().matrix();
         let d = self.vector::<3>().map(|x| 1.5 + 0.5 * x);
@@ -136,7 +136,7 @@ fn coupled_bodies(count: usize) -> Vec<(CoupledBodiesParameters, CoupledBodiesIn
     })
 }
 
-/// The numbers a body consists of.
+/// All scalars of a body.
 fn numbers<X: OfScalars<Scalar = f64>>(x: &X) -> Vec<f64> {
     let mut all = Vec::new();
     let _ = x.over(&mut |x: f64| {
@@ -179,7 +179,7 @@ fn states<M: Model<Scalar = f64>, const N: usize>(ensemble: &Ensemble<M, N>) -> 
         .collect()
 }
 
-/// The states after `steps` steps, side by side.
+/// The states after `steps` steps, in lanes.
 fn together<M: Model<Scalar = f64>, const N: usize>(
     bodies: &[(M::Parameters, M::Initial)],
     choice: M::Choice,
@@ -199,12 +199,12 @@ fn gap(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     });
     pairs.fold(0.0, |worst, (x, y)| {
         let d = (x - y).abs();
-        // NaN is worse than anything.
+        // NaN counts as the largest difference.
         if d <= worst { worst } else { d }
     })
 }
 
-/// The gap of `steps` steps side by side to as many alone, in 4 and in 8 lanes.
+/// The difference after `steps` steps between bodies in lanes and bodies alone, for 4 and 8 lanes.
 fn gaps<M: Model<Scalar = f64>>(
     bodies: &[(M::Parameters, M::Initial)],
     choice: M::Choice,
@@ -216,7 +216,7 @@ fn gaps<M: Model<Scalar = f64>>(
     worse(four, eight)
 }
 
-/// The same in 4 lanes only, where the number of lanes is not what is tested: each compiles the model anew.
+/// Like `gaps`, but in 4 lanes only: each lane count compiles the model again. For tests in which the lane count does not matter.
 fn gap_in_four<M: Model<Scalar = f64>>(
     bodies: &[(M::Parameters, M::Initial)],
     choice: M::Choice,
@@ -238,8 +238,8 @@ fn explicit_steps_side_by_side_are_those_alone_bit_for_bit() {
 fn quartics_side_by_side_are_those_alone_bit_for_bit() {
     let slow = heavy_tops(BODIES);
     assert_eq!(gaps::<HeavyTop>(&slow, None, 1000), 0.0);
-    // Up to nearly the largest momentum the step can take, all speeds side by side: the root is
-    // then found by more than one iteration in some lanes, and slowly in others.
+    // Momenta up to nearly the largest that the step admits, so that lanes mix slow and fast bodies. In some lanes the root then
+    // takes more than one iteration, or converges slowly.
     let mut fast = slow;
     for (i, (_, initial)) in fast.iter_mut().enumerate() {
         let length = 10f64.powf(i as f64 / 15.0 - 0.1);
@@ -255,7 +255,7 @@ fn newton_steps_in_ensembles_are_those_alone_bit_for_bit() {
         gap_in_four::<CoupledBodies>(&coupled_bodies(BODIES), (), 100),
         0.0
     );
-    // Their iterations are their own; the two kinds that need none share lanes.
+    // Newton iterations differ from body to body, so these models step one body at a time; models without iteration share lanes.
     let apart = [
         HingedTop::<f64>::SIDE_BY_SIDE,
         CoupledBodies::<f64>::SIDE_BY_SIDE,
@@ -276,7 +276,7 @@ fn bodies_that_step_alone_fail_as_those_in_lanes_do() {
         let stays = (16..20).contains(&i);
         assert_eq!(*state == before[i], stays, "body {i}");
     }
-    // Energies are looked at in lanes.
+    // `observe` evaluates energies in lanes.
     let energies: Vec<f64> = ensemble.observe(|m, s| m.energy(s)).collect();
     for (i, (parameters, state)) in ensemble.bodies().enumerate() {
         let model = HingedTop::new(parameters).expect("admissible");
@@ -338,8 +338,7 @@ fn every_group_is_gathered_and_scattered() {
     }
 }
 
-/// What the tests above would not see if it were wrong, they would not see at all: a body in the
-/// place of its neighbour, or one number of one body wrong by a rounding.
+/// Checks that the comparison detects two exchanged bodies, and one scalar of one body changed by one rounding error.
 #[test]
 fn a_wrong_lane_is_seen() {
     let (bodies, steps) = (free_bodies(BODIES), 200);
@@ -353,7 +352,7 @@ fn a_wrong_lane_is_seen() {
     let found = together::<FreeBody, 8>(&nudged, Order::Two, steps);
     let wrong: Vec<usize> = (0..BODIES).filter(|i| found[*i] != right[*i]).collect();
     assert_eq!(wrong, [13]);
-    // Bodies that step one by one are told apart, too.
+    // The comparison also detects a change in bodies that step one at a time.
     let bodies = hinged_tops(BODIES);
     let right = alone::<HingedTop>(&bodies, (), 100);
     let mut nudged = bodies;
@@ -388,7 +387,7 @@ fn threads_tasks_and_instructions_do_not_matter() {
             other.run(100).expect("solvable");
             assert_eq!(states(&other), wanted, "{set:?}");
         }
-        // In pieces, too.
+        // The same run, split into several calls.
         let mut pieces = start();
         for count in [1, 0, 36, 63] {
             pieces.run(count).expect("solvable");
@@ -408,7 +407,7 @@ fn bodies_can_be_taken_out_and_go_on() {
     first.run(60).expect("solvable");
     assert_eq!((first.len(), first.is_empty()), (BODIES, false));
     assert!(first.body(BODIES).is_none());
-    // One body has gone further than the others.
+    // One body is ahead of the others.
     let mut taken: Vec<_> = first.bodies().collect();
     let model = HeavyTop::new(taken[3].0).expect("admissible");
     let mut workspace = model.workspace(&taken[3].1, H).expect("solvable");
@@ -425,7 +424,7 @@ fn bodies_can_be_taken_out_and_go_on() {
             .expect("admissible")
             .energy(&state);
         assert_eq!(energies[i], energy, "body {i}");
-        // The edge's momentum is found anew: a rounding.
+        // The start recomputes the momentum of the edge, with one rounding error.
         let gap = gap(&[numbers(&state)], &[whole[i].clone()]);
         assert!(i == 3 || gap < 1e-13, "body {i}: {gap:e}");
     }
@@ -436,7 +435,7 @@ fn bodies_can_be_taken_out_and_go_on() {
 
 #[test]
 fn the_body_that_fails_is_named() {
-    // Inadmissible, in a group that is not full.
+    // An inadmissible body in an incomplete group of lanes.
     let mut bodies = heavy_tops(BODIES);
     bodies[18].0.gU.x = f64::NAN;
     let refused = Ensemble::<HeavyTop, 8>::start(bodies, H).expect_err("NaN");
@@ -445,7 +444,7 @@ fn the_body_that_fails_is_named() {
         refused.to_string().starts_with("body at index 18: "),
         "{refused}"
     );
-    // Too fast for the step.
+    // The momentum is too large for the step size.
     let mut bodies = heavy_tops(BODIES);
     bodies[11].1.body_momentum.0 *= 1e3;
     let refused = Ensemble::<HeavyTop, 8>::start(bodies, H).expect_err("too fast");
@@ -454,7 +453,7 @@ fn the_body_that_fails_is_named() {
         refused.cause,
         StartError::Refused(StepCause::MoserVeselov(_))
     ));
-    // Too fast later on: heavy ones, falling.
+    // Heavy bodies fall until the step size is too large for them.
     let mut bodies = heavy_tops(BODIES);
     for heavy in [5, 13] {
         bodies[heavy].0.gU *= 150.0;
@@ -463,7 +462,7 @@ fn the_body_that_fails_is_named() {
     let before: Vec<_> = ensemble.bodies().map(|(_, state)| state).collect();
     let refused = ensemble.run(200).expect_err("too fast");
     assert_eq!((refused.body, refused.among, refused.failed), (5, 1, 2));
-    // Its own error, as it would be alone.
+    // The error equals the error of this body alone.
     let model = HeavyTop::new(bodies[5].0).expect("admissible");
     let (mut state, mut workspace) = model.start(bodies[5].1, H).expect("slow at first");
     let alone = model.advance_many(&mut state, &mut workspace, 200);
@@ -472,7 +471,7 @@ fn the_body_that_fails_is_named() {
         refused.to_string().ends_with("(2 bodies failed)"),
         "{refused}"
     );
-    // Those beside it are where they were, all others have made their steps.
+    // Bodies in the same lanes as the failed ones keep their state; all others complete their steps.
     for (i, (_, state)) in ensemble.bodies().enumerate() {
         let stays = (4..8).contains(&i) || (12..16).contains(&i);
         assert_eq!(state == before[i], stays, "body {i}");

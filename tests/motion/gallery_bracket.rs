@@ -1,8 +1,7 @@
-//! The derived bracket, Lie-Poisson or of the phase space where configurations stand in the action, against the emitted
-//! steps of the whole gallery: every step is a Poisson map, `D B D^T = B` at the image, with exact derivatives. Takes the
-//! data of the cases and random points of that space; a list below says how each model is started, and must name every
-//! model; of a named size, sizes up to five are taken. A step whose length depends on the state, brackets of a wrong sign
-//! and the bracket at the wrong end of the step fail.
+//! Checks that every emitted step of the gallery is a Poisson map of the derived bracket: `D B D^T = B` at the image, with exact
+//! derivatives. The bracket is Lie-Poisson, or includes the configurations that appear in the action. Points are random; data come
+//! from the cases. The list below must name every model and says how to start it; named sizes go up to five. The test rejects a
+//! step size that depends on the state, a bracket of the wrong sign, and the bracket at the wrong end of the step.
 
 mod ellipsoids;
 mod mixed_four;
@@ -22,17 +21,17 @@ use clebsch_models::Case;
 use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::measure::worse;
 
-/// Rounding of a product of three matrices of up to twelve rows with entries of order one to ten,
-/// over the largest entry, with a wide margin.
+/// Tolerance relative to the largest entry, well above the rounding error of a product of three matrices with up to twelve rows and
+/// entries of order one to ten.
 const TOLERANCE: f64 = 1e-10;
 
-/// Random points of each case.
+/// Random points per case.
 const POINTS: u64 = 10;
 
-/// How much longer the step is for each unit of the first momentum component, where that is asked for.
+/// Relative increase of the step size per unit of the first momentum component, for the warped step.
 const WARP: f64 = 0.1;
 
-/// A quantity at a node: its value, and its change along each direction that could be seeded.
+/// A quantity at a node: its value, and its derivative along each seed.
 struct Quantity {
     rows: usize,
     cols: usize,
@@ -52,13 +51,13 @@ fn quantity<const R: usize, const C: usize>(m: &SMatrix<Seeded, R, C>) -> Quanti
     }
 }
 
-/// Momenta, then advected quantities in order of declaration; configurations before these where they stand in the action.
+/// Momenta, then advected quantities in order of declaration. Configurations that appear in the action come first.
 type Node = Vec<Quantity>;
 
 /// A node and the next one.
 type Step = (Node, Node);
 
-/// One step of a case from a random point, with a step length that depends on the state by this share.
+/// One step of a case from a random point. The last argument makes the step size depend on the state.
 type Start = fn(&Case, &mut Draws, f64) -> Step;
 
 fn number(values: &[f64]) -> Seeded {
@@ -73,7 +72,7 @@ fn matrix(values: &[f64]) -> Matrix3<Seeded> {
     Matrix3::from_fn(|r, c| Dual::constant(values[3 * r + c]))
 }
 
-/// Independent changes of all components, from seed `first` on.
+/// Independent variations of all components, with seeds from `first`.
 fn seeded<const R: usize>(value: [f64; R], first: usize) -> SVector<Seeded, R> {
     SVector::from_fn(|i, _| Dual::variable(value[i], first + i))
 }
@@ -87,7 +86,7 @@ fn quaternion(draws: &mut Draws) -> UnitQuaternion<Seeded> {
     UnitQuaternion::from_components(q).expect("a unit quaternion")
 }
 
-/// A tensor of the case as this attitude shows it, with independent changes from seed `first` on.
+/// A tensor of the case in the body frame of this attitude, with independent variations from seed `first`.
 fn tensor(values: &[f64], r: &Rotation<Seeded>, first: usize) -> Matrix3<Seeded> {
     let r = r.matrix().map(|x| x.real);
     let turned = r * Matrix3::from_row_slice(values) * r.transpose();
@@ -100,17 +99,17 @@ fn tensor(values: &[f64], r: &Rotation<Seeded>, first: usize) -> Matrix3<Seeded>
     out
 }
 
-/// A vector of length 0.9 with independent changes.
+/// A vector of length 0.9 with independent variations.
 fn vector(draws: &mut Draws, first: usize) -> Vector3<Seeded> {
     seeded(draws.direction().map(|x| 0.9 * x), first)
 }
 
-/// The step length, longer by the share `warp` of the first momentum component.
+/// The step size, increased by `warp` times the first momentum component.
 fn length(case: &Case, warp: f64, momentum: Seeded) -> Seeded {
     Dual::constant(case.h) * (Dual::constant(1.0) + Dual::constant(warp) * momentum)
 }
 
-/// Starts a model, steps once, and gives both nodes: momenta by their accessors, then advected quantities by theirs.
+/// Starts a model, steps once, and returns both nodes: momenta first, then advected quantities.
 macro_rules! stepped {
     ($model:ident, $parameters:ident { $($p:ident: $value:expr),* $(,)? },
      $initial:ident { $($i:ident: $start:expr),* $(,)? }, $h:expr,
@@ -165,7 +164,7 @@ fn free_body_spatial(case: &Case, draws: &mut Draws, warp: f64) -> Step {
 fn heavy_top(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     use clebsch_models::heavy_top::*;
     let (mu, gamma, r) = (vector(draws, 0), vector(draws, 3), attitude(draws));
-    // The vertical is chosen so that the body sees independent changes of it.
+    // Chooses the spatial vertical so that its body components vary independently.
     stepped!(
         HeavyTop,
         HeavyTopParameters {
@@ -319,7 +318,7 @@ fn kirchhoff_body(case: &Case, draws: &mut Draws, warp: f64) -> Step {
         translation: column(&draws.direction()),
     };
     let [x, y, z] = draws.direction();
-    // The plane is chosen so that the body sees independent changes of it: Z = G^-T P.
+    // Chooses the plane so that its body components vary independently: Z = G^-T P.
     let seen = seeded([x, y, z, 0.3], 6);
     stepped!(
         KirchhoffBody,
@@ -343,8 +342,8 @@ fn kirchhoff_body(case: &Case, draws: &mut Draws, warp: f64) -> Step {
 fn body_of_size<const N: usize>(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     use clebsch_models::body_n::*;
     let planes = skew_entries(N);
-    // Momenta in any direction; the largest of the cases is solvable in its own direction up to 0.95
-    // of the bound, in another one less.
+    // Momenta have any direction. The largest momentum of the cases is solvable up to 0.95 of the bound in its own direction, and
+    // to less in others.
     let largest = case.initial[1]
         .iter()
         .fold(0.0_f64, |m, x| worse(m, x.abs()));
@@ -367,7 +366,7 @@ fn body_of_size<const N: usize>(case: &Case, draws: &mut Draws, warp: f64) -> St
     };
     let h = length(case, warp / size, mu[planes[0]]);
     let (mut state, mut workspace) = model.start(initial, h).expect("solvable");
-    // The bracket of three dimensions has a vector for its momentum.
+    // In three dimensions the bracket uses a vector as the momentum.
     let seen = |m: &SMatrix<Seeded, N, N>| match N {
         3 => quantity(&SVector::<Seeded, 3>::from_fn(|i, _| m[planes[i]])),
         _ => quantity(m),
@@ -386,7 +385,7 @@ fn body_n(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     }
 }
 
-/// The statement of a model with numbers for its named sizes, as this case has them.
+/// The source of the model, with the named sizes replaced by the numbers of this case.
 fn of_size(source: &str, case: &Case) -> String {
     let n = case.parameters[0].len().isqrt();
     let start = source.find("dim n in ").expect("the statement of its size");
@@ -395,7 +394,7 @@ fn of_size(source: &str, case: &Case) -> String {
     sized.replace("<n>", &format!("<{n}>"))
 }
 
-/// How each model is started.
+/// How to start each model.
 const MODELS: [(&str, Start); 16] = [
     ("body-in-quadratic-field", body_in_quadratic_field),
     ("body-in-two-fields", body_in_two_fields),
@@ -423,7 +422,7 @@ fn space(d: &Derivation) -> Space {
     }
 }
 
-/// Names and structures of the coordinates of this space, in the order of the bracket.
+/// Names and structures of the coordinates, in the order of the bracket.
 fn letters(d: &Derivation) -> Vec<(String, Structure)> {
     let momenta = d.letters.node_momentum.iter().copied();
     let phase = space(d) == Space::Phase;
@@ -440,8 +439,8 @@ fn letters(d: &Derivation) -> Vec<(String, Structure)> {
     named.collect()
 }
 
-/// The changes of a node in the coordinates of the bracket: a row for each, a column for each seed. There are as many
-/// seeds as coordinates: nothing changes along any other.
+/// The variations of a node in the coordinates of the bracket: one row per coordinate, one column per seed. The number of seeds
+/// equals the number of coordinates.
 fn changes(letters: &[(String, Structure)], node: &Node) -> DMatrix<f64> {
     let sizes = letters.iter().zip(node);
     let seeds = sizes
@@ -452,7 +451,7 @@ fn changes(letters: &[(String, Structure)], node: &Node) -> DMatrix<f64> {
         let seen = |change: &Vec<f64>| -> DMatrix<f64> {
             let change = DMatrix::from_row_slice(q.rows, q.cols, change);
             match structure {
-                // Elements of groups by X^-1 dX.
+                // Group elements vary by X^-1 dX.
                 Structure::Orthogonal | Structure::UnitQuaternion | Structure::RigidMotion => {
                     let own = DMatrix::from_row_slice(q.rows, q.cols, &q.value);
                     own.try_inverse().expect("an element of a group") * change
@@ -482,18 +481,18 @@ fn bracket(d: &Derivation, letters: &[(String, Structure)], node: &Node) -> DMat
     DMatrix::from_row_slice(b.rows, b.cols, &b.data)
 }
 
-/// What is done to the brackets before they are compared.
+/// The fault that the test introduces before it compares the brackets.
 #[derive(Clone, Copy, PartialEq)]
 enum Spoilt {
     Not,
-    /// Brackets of the first three coordinates among themselves with the other sign; where these are zero, as for the
-    /// momentum of a field, those of the first coordinate with all others.
+    /// Flips the sign of the brackets among the first three coordinates. If these are zero, as for the momentum of a field, flips
+    /// the brackets of the first coordinate with all others.
     Sign,
-    /// The bracket at the start of the step instead of the one at its end.
+    /// Uses the bracket at the start of the step instead of the end.
     End,
 }
 
-/// `D B D^T - B'`, the largest entry over that of `B'`.
+/// The largest entry of `D B D^T - B'` relative to the largest entry of `B'`.
 fn defect(d: &Derivation, (before, after): &Step, spoilt: Spoilt) -> f64 {
     let letters = letters(d);
     assert_eq!(
@@ -521,14 +520,14 @@ fn defect(d: &Derivation, (before, after): &Step, spoilt: Spoilt) -> f64 {
     };
     let image = at(if spoilt == Spoilt::End { before } else { after });
     let off = &jacobian * at(before) * jacobian.transpose() - &image;
-    // NaN must not hide behind max.
+    // `amax` could ignore a NaN.
     match off.iter().all(|x| x.is_finite()) {
         true => off.amax() / image.amax(),
         false => f64::INFINITY,
     }
 }
 
-/// Every case with its derivation, its start, and whether its reduced space has advected quantities.
+/// Visits every case with its derivation and its start.
 fn for_every_case(mut look: impl FnMut(&str, &Case, &Derivation, Start)) {
     for entry in clebsch_models::gallery() {
         let name = entry.card.kebab;
@@ -542,7 +541,7 @@ fn for_every_case(mut look: impl FnMut(&str, &Case, &Derivation, Start)) {
             if !named {
                 look(name, case, &derived, *start);
             } else if case.parameters[0].len() <= 25 {
-                // A bracket of any dimension has no matrix.
+                // A bracket in a dimension left open has no matrix.
                 let d = derive_source(&of_size(entry.card.source, case)).expect("derives");
                 look(name, case, &d, *start);
             }
@@ -567,7 +566,7 @@ fn wrong_brackets_are_noticed() {
     for_every_case(|name, case, d, start| {
         let mut draws = Draws::new(62);
         let step = start(case, &mut draws, 0.0);
-        // That of fields alone is the same everywhere.
+        // The bracket of fields alone is constant.
         let letters = letters(d);
         if bracket(d, &letters, &step.0) != bracket(d, &letters, &step.1) {
             let late = defect(d, &step, Spoilt::End);
@@ -577,7 +576,7 @@ fn wrong_brackets_are_noticed() {
                 case.name
             );
         }
-        // The bracket of one momentum alone is linear: its sign as a whole drops out.
+        // The bracket of a single momentum is linear, so its overall sign cancels.
         if step.0.len() > 1 {
             let sign = defect(d, &step, Spoilt::Sign);
             assert!(

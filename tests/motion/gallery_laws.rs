@@ -1,6 +1,6 @@
-//! Every model of the gallery, known by its card alone: what it conserves over a million steps (large ones a hundred
-//! thousand), energies without drift, and its order. Takes the cases of the gallery; a model added there is tested here
-//! without a word about it. Wrong trajectories and a model of first order fail, which is shown too.
+//! Tests every model of the gallery through its card alone: invariants over a million steps (a hundred thousand for large models),
+//! energies without drift, and the order of accuracy. A new gallery model needs no change here. Separate tests check that wrong
+//! trajectories and a first-order model fail.
 
 use clebsch::card::{Card, Conserved, Field, OpenError, Settings, Trajectory};
 use clebsch_models::Case;
@@ -12,34 +12,34 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 const MILLION: u64 = 1_000_000;
 
-/// What is conserved exactly drifts by rounding only: 1e-16 a step that adds up like a random walk of a million
-/// steps to 1e-13, with a margin of ten.
+/// Tolerance for exactly conserved quantities, which drift by rounding only: a random walk of a million steps of 1e-16 reaches
+/// 1e-13, and the margin is a factor of ten.
 const EXACT: f64 = 1e-12;
 
-/// What an implicit step leaves unsolved, some roundings, may have one sign: 1e-17 of an energy at each of a million
-/// steps is no property of the scheme.
+/// Tolerance for implicit steps. The unsolved residual, a few rounding errors, can have a systematic sign: 1e-17 of an energy in
+/// each of a million steps is not a property of the scheme.
 const LEFT_BY_SOLVERS: f64 = 1e-11;
 
-/// Largest change of a mean, over the amplitude, in a case that is not the first of its model: chaotic motions wander on
-/// their energy surface for a good part of a million steps. The first case keeps to five percent.
+/// Largest change of a mean, relative to the amplitude, in a case that is not the first of its model. Chaotic motions wander on the
+/// energy surface for much of a million steps. The limit for the first case is five percent.
 const WANDER: f64 = 0.25;
 
-/// Motions that gain speed without end, and with it an error of their energy, until the step is too long for them: what
-/// is exact is looked at over the steps of the case.
+/// Motions whose speed, and therefore energy error, grows without bound until the step size is too large. Here the test checks
+/// exact invariants only, over the number of steps of the case.
 const UNBOUNDED: [(&str, &str); 1] = [("kirchhoff-body", "sinking")];
 
-/// Steady motions, for which what oscillates with h^2 is constant along the orbit: h^4 is left.
+/// Steady motions: the h^2 term of the oscillation is constant along the orbit, so the h^4 term remains.
 const STEADY: [(&str, &str); 1] = [("kepler", "circular")];
 
-/// Entries of a configuration above which a case is run for a tenth of the million steps: a free body in five dimensions
-/// and more, whose steps take up to a hundred times as long as in three.
+/// With more configuration entries than this, a case runs a tenth of the million steps. This applies to the free body in five or
+/// more dimensions, whose steps take up to a hundred times as long as in three.
 const LARGE: usize = 16;
 
-/// Something wrong with a trajectory, to show that it is noticed.
+/// A fault in a trajectory, which the tests must detect.
 #[derive(Clone, Copy, PartialEq)]
 enum Fault {
     None,
-    /// Every invariant grows by this share of its scale a step.
+    /// Every invariant grows per step by this fraction of its scale.
     Growth(f64),
 }
 
@@ -54,20 +54,20 @@ fn open(card: &Card, case: &Case, h: f64) -> Box<dyn Trajectory> {
 struct Component {
     name: &'static str,
     conserved: Conserved,
-    /// Largest |I_k - I_0| over the natural scale.
+    /// Largest |I_k - I_0| relative to the natural scale.
     drift: f64,
-    /// (I_k - I_0) over the scale at every node; empty for what is exact.
+    /// (I_k - I_0) relative to the scale at every sampled node; empty for exact invariants.
     series: Vec<f64>,
 }
 
-/// Whether a long run is looked at after this step: after one of eight on average, as looking takes longer than
-/// stepping. Equal gaps would beat against the periods of a regular motion and show a drift that is none, so the steps
-/// are drawn at random, the same ones in every run.
+/// Whether a long run samples this step. Sampling costs more than stepping, so a long run samples one step in eight. Equal gaps
+/// would alias with the periods of a regular motion and show a false drift. The sampled steps are therefore pseudo-random, and the
+/// same in every run.
 fn is_looked_at(step: u64) -> bool {
     Xoshiro256StarStar::seed_from_u64(step).next_u64() >> 61 == 0
 }
 
-/// Runs a case and looks at every invariant at every step, in long runs at one of eight.
+/// Runs a case and samples every invariant at every step; long runs sample one step in eight.
 fn components(card: &Card, case: &Case, h: f64, steps: u64, fault: Fault) -> Vec<Component> {
     let mut motion = open(card, case, h);
     let count = card.invariant_count();
@@ -77,7 +77,7 @@ fn components(card: &Card, case: &Case, h: f64, steps: u64, fault: Fault) -> Vec
     let extent = largest(&now);
     motion.invariants(&mut start);
     motion.scales(&mut scales);
-    // What is zero term by term, as the momentum across a field that is not there, is taken as it is.
+    // If every term of an invariant is zero, such as the momentum transverse to an absent field, use the absolute error.
     for scale in scales.iter_mut().filter(|scale| **scale == 0.0) {
         *scale = 1.0;
     }
@@ -104,9 +104,9 @@ fn components(card: &Card, case: &Case, h: f64, steps: u64, fault: Fault) -> Vec
         for (i, component) in found.iter_mut().enumerate() {
             let mut off = (here[i] - start[i]) / scales[i];
             if component.conserved == Conserved::Exactly && off.abs() > component.drift {
-                // Rounding is that of the terms an invariant is made of, which may grow on the way: a body that
-                // travels has x cross p among them, and a million steps take it ten thousand lengths away; one that
-                // starts nearly at rest and pulses has momenta a hundred times those of its start.
+                // Rounding error scales with the terms of an invariant, and these can grow. For a translating body x cross p grows:
+                // a million steps move it ten thousand lengths. A pulsating body that starts nearly at rest reaches a hundred times
+                // its initial momentum.
                 motion.observe(&mut now);
                 motion.scales(&mut grown);
                 let grown = worse(grown[i], scales[i] * (largest(&now) / extent).max(1.0));
@@ -124,30 +124,30 @@ fn components(card: &Card, case: &Case, h: f64, steps: u64, fault: Fault) -> Vec
     found
 }
 
-/// The largest of some numbers.
+/// The largest absolute value.
 fn largest(numbers: &[f64]) -> f64 {
     numbers.iter().fold(0.0, |m: f64, x| worse(m, x.abs()))
 }
 
-/// Whether a series that should oscillate does so without a drift.
+/// Whether an oscillating series has no drift.
 fn stays(series: &[f64], regular: bool) -> bool {
     let trend = trend(series);
     let wanders = trend.significance <= 3.0 && trend.change.abs() <= WANDER * trend.amplitude;
     trend.is_flat() || (!regular && wanders)
 }
 
-/// The series with a straight line added that ends at this share of the amplitude.
+/// Adds a straight line to the series that ends at this fraction of the amplitude.
 fn leaning(series: &[f64], share: f64) -> Vec<f64> {
     let slope = share * trend(series).amplitude / series.len() as f64;
     let line = (0..series.len()).map(|k| slope * k as f64);
     series.iter().zip(line).map(|(x, y)| x + y).collect()
 }
 
-/// Neighbours of a chaotic motion: one in ten of forty components leaves three standard errors by chance.
+/// Neighbours of a chaotic motion. By chance, about one in ten runs with forty components exceeds three standard errors.
 const NEIGHBOURS: u32 = 8;
 
-/// Whether a component of a chaotic motion shows no drift over neighbours of the case, which a million steps part
-/// entirely: their mean change is within three standard errors of zero, found from their own spread.
+/// Whether a component of a chaotic motion shows no drift over neighbours of the case, which diverge completely in a million steps.
+/// Their mean change must be within three standard errors of zero, estimated from their own spread.
 fn stays_among_neighbours(
     card: &Card,
     case: &Case,
@@ -176,7 +176,7 @@ fn stays_among_neighbours(
     mean.abs() <= 3.0 * (spread / count).sqrt() && mean.abs() <= WANDER * amplitude
 }
 
-/// Components that are not kept as the card says, each with what was measured.
+/// Components that violate the card, each with the measured value.
 fn failures(card: &Card, case: &Case, regular: bool, steps: u64, fault: Fault) -> Vec<String> {
     let mut bad = Vec::new();
     let all = components(card, case, case.h, steps, fault).into_iter();
@@ -204,7 +204,7 @@ fn failures(card: &Card, case: &Case, regular: bool, steps: u64, fault: Fault) -
     bad
 }
 
-/// The cases of all models; whether each is the first of its model.
+/// Visits the cases of all models; the flag marks the first case of a model.
 fn for_every_case(mut look: impl FnMut(&Card, &Case, bool)) {
     for entry in clebsch_models::gallery() {
         for (place, case) in entry.cases.iter().enumerate() {
@@ -213,7 +213,7 @@ fn for_every_case(mut look: impl FnMut(&Card, &Case, bool)) {
     }
 }
 
-/// Long, since every case of the gallery takes a million steps.
+/// Slow: every case of the gallery takes a million steps.
 #[test]
 fn invariants_over_a_million_steps() {
     let mut bad = Vec::new();
@@ -242,8 +242,8 @@ fn invariants_over_a_million_steps() {
 #[test]
 fn growth_is_noticed() {
     for_every_case(|card, case, _| {
-        // 1e-14 a step is seen after a thousand steps in what is exact; an energy must grow by its own oscillation,
-        // which is at most a few percent of its scale.
+        // In an exact invariant, a growth of 1e-14 per step is visible after a thousand steps. A bounded energy must grow by its
+        // own oscillation, at most a few percent of its scale.
         let bad = failures(card, case, false, 2_000, Fault::Growth(1e-4));
         let all = card.invariant_count();
         assert_eq!(bad.len(), all, "{} {}: {bad:?}", card.kebab, case.name);
@@ -272,7 +272,7 @@ fn energies_oscillate_with_the_square_of_the_step() {
                 true => 4,
                 false => 2,
             };
-            // Terms two orders higher and the sampling of the maximum are a few percent of it.
+            // Terms two orders higher and the sampling of the maximum contribute a few percent.
             let expected = f64::from(1 << order);
             assert!(
                 (ratio / expected - 1.0).abs() < 0.1,
@@ -285,7 +285,7 @@ fn energies_oscillate_with_the_square_of_the_step() {
     });
 }
 
-/// Differences of all observables at a fixed time between neighbours in a sequence of halved steps.
+/// Differences of all observables at a fixed time between successive step halvings.
 fn differences(card: &Card, case: &Case) -> Vec<f64> {
     let runs: Vec<Vec<f64>> = (0..5)
         .map(|k| {
@@ -309,7 +309,7 @@ fn differences(card: &Card, case: &Case) -> Vec<f64> {
         .collect()
 }
 
-/// Whether the finest two halvings show the order to 0.05, far above rounding.
+/// Whether the two finest halvings show the order to within 0.05, well above rounding.
 fn has_order(card: &Card, case: &Case, order: f64) -> bool {
     let differences = differences(card, case);
     let measured = orders(&differences);
@@ -325,11 +325,12 @@ fn has_order(card: &Card, case: &Case, order: f64) -> bool {
 #[test]
 fn orders_are_those_of_the_cards() {
     for_every_case(|card, case, _| {
-        // The velocity tends to the rotation in the left factor, not to the identity: no limit of small steps.
+        // As h tends to 0, the velocity tends to the rotation in the left factor instead of the identity, so no small-step limit
+        // exists.
         if (card.kebab, case.name.as_str()) == ("body-n", "turned") {
             return;
         }
-        // A step that has not been shown to be reversible has at least the order of its card.
+        // If a step is not known to be reversible, it has at least the order on its card.
         let last = orders(&differences(card, case)).pop();
         let unexpected = !card.reversible && last.is_some_and(|o| o > f64::from(card.order) - 0.05);
         assert!(
@@ -362,7 +363,7 @@ fn the_order_of_a_one_sided_top_is_seen_to_be_one() {
     let entry = clebsch_models::find("heavy-top").expect("a model of the gallery");
     for case in &entry.cases {
         assert!(!has_order(&OneSidedTop::CARD, case, 2.0));
-        // Errors of second order are still to be seen beside those of the first.
+        // Second-order errors are still visible next to first-order errors.
         let last = orders(&differences(&OneSidedTop::CARD, case)).pop();
         assert!(last.is_some_and(|o| (o - 1.0).abs() < 0.1), "{last:?}");
     }

@@ -1,5 +1,5 @@
-//! Steps that are too long, of every model, case and order of the gallery: what the message offers
-//! is read off and typed in again, and is taken; a step a little longer is refused.
+//! Step sizes that are too large, for every model, case and order of the gallery. The test reads the step size that the error
+//! suggests and checks that it works and that a slightly larger one fails.
 
 use clebsch::card::{Card, OpenError, Settings, Trajectory};
 use clebsch::{StartError, StepCause};
@@ -7,7 +7,7 @@ use clebsch_models::{Case, gallery};
 
 const ORDERS: [u32; 6] = [1, 2, 4, 6, 8, 10];
 
-/// Begins a trajectory and makes one step: what refuses it says so.
+/// Starts a trajectory and steps once; returns the error message.
 fn first_step(card: &Card, case: &Case, h: f64, order: Option<u32>) -> Result<(), String> {
     let settings = Settings {
         order,
@@ -29,7 +29,7 @@ fn told(cause: &StepCause) -> String {
     cause.to_string()
 }
 
-/// The step size that a refusal offers, as a reader types it.
+/// The step size that an error message suggests, as a user would type it.
 fn offered(said: &str) -> f64 {
     let (_, rest) = said
         .split_once("to at most ")
@@ -37,7 +37,7 @@ fn offered(said: &str) -> f64 {
     rest.parse().unwrap_or_else(|_| panic!("no number: {said}"))
 }
 
-/// The step size that a refusal says was tried.
+/// The step size that the error message reports as tried.
 fn tried(said: &str) -> f64 {
     let words = said
         .split_once("; a step of ")
@@ -48,7 +48,7 @@ fn tried(said: &str) -> f64 {
         .unwrap_or_else(|_| panic!("no number: {said}"))
 }
 
-/// Long, since for each of some hundred refusals the largest step is sought.
+/// Slow: each of several hundred failures searches for the largest step size.
 #[test]
 fn the_step_that_a_message_offers_is_taken() {
     let mut refused = 0;
@@ -56,7 +56,7 @@ fn the_step_that_a_message_offers_is_taken() {
         for case in &entry.cases {
             let card = entry.card_of(case);
             for order in ORDERS.into_iter().filter(|o| card.orders.contains(o)) {
-                // Compositions search through all their stages, a tenth of a second each.
+                // Compositions search through all their stages, which takes a tenth of a second each.
                 let composed = order != card.order;
                 for h in [3.0, 30.0, 1e4, 1e100]
                     .into_iter()
@@ -66,13 +66,13 @@ fn the_step_that_a_message_offers_is_taken() {
                     let Err(said) = first_step(&card, case, h, Some(order)) else {
                         continue;
                     };
-                    // Explicit steps are refused where numbers end, and nothing was tried then.
+                    // Explicit steps fail by overflow, and the message then suggests no step size.
                     if said.contains("NaN or infinite") {
                         assert!(h > 1e99, "{at}: {said}");
                         continue;
                     }
-                    // A step that leaves the invertible maps offers one that was tried, from the state it left: of
-                    // a composition that is a state between two nodes.
+                    // If a step leaves the invertible maps, the message suggests a step size that was tried from the state at which
+                    // the step failed. In a composition, that state is between two nodes.
                     if said.contains("det = 0") {
                         if order == 2 {
                             let shorter = tried(&said);
@@ -86,7 +86,7 @@ fn the_step_that_a_message_offers_is_taken() {
                     assert!(0.0 < largest && largest < h, "{at}: {said}");
                     let taken = first_step(&card, case, largest, Some(order));
                     assert_eq!(taken, Ok(()), "{at}: {said}");
-                    // The step offered is not merely a short one.
+                    // The suggested step size is close to the largest.
                     let longer = first_step(&card, case, 1.01 * largest, Some(order));
                     assert!(longer.is_err(), "{at}: {said}");
                     refused += 1;

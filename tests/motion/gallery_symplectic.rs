@@ -1,6 +1,6 @@
-//! One step of every model of the gallery as a map of T*G, attitudes included: its exact Jacobian, from dual numbers,
-//! keeps the canonical two-form to 1e-10. Takes the data of the cases and random phases; a list below says how each
-//! model is started, and must name every model; of a named size, sizes up to five are taken. A step whose length depends on the state fails, which is shown too.
+//! Checks that one step of every gallery model, attitudes included, preserves the canonical two-form on T*G to 1e-10, with the
+//! exact Jacobian from dual numbers. Phases are random; data come from the cases. The list below must name every model and says how
+//! to start it; named sizes go up to five. A test checks that a step size that depends on the state fails.
 
 mod ellipsoids;
 mod mixed_four;
@@ -20,13 +20,13 @@ use clebsch_oracle::physics::symplectic::{
     defect_of_motion, defect_of_product, defect_of_rotations,
 };
 
-/// Rounding of a product of three matrices with entries of order one to ten, with a wide margin.
+/// Tolerance well above the rounding error of a product of three matrices with entries of order one to ten.
 const TOLERANCE: f64 = 1e-10;
 
-/// Random phases of each case.
+/// Random phases per case.
 const PHASES: u64 = 20;
 
-/// Attitude and body momentum with their independent changes: Lambda exp(hat(xi)), mu + delta mu.
+/// Attitude and body momentum with independent variations: Lambda exp(hat(xi)), mu + delta mu.
 struct Phase {
     attitude: Rotation<Seeded>,
     momentum: Vector3<Seeded>,
@@ -44,7 +44,7 @@ fn matrix(values: &[f64]) -> Matrix3<Seeded> {
     Matrix3::from_fn(|r, c| Dual::constant(values[3 * r + c]))
 }
 
-/// A random phase of body `block`: any attitude, a momentum of order one.
+/// A random phase of body `block`: any attitude, and a momentum of order one.
 fn phase(draws: &mut Draws, block: usize) -> Phase {
     let q = draws.attitude().0.map(Dual::constant);
     let attitude = Rotation::from_quaternion(q).expect("a unit quaternion");
@@ -57,24 +57,24 @@ fn phase(draws: &mut Draws, block: usize) -> Phase {
 }
 
 impl Phase {
-    /// A vector of the body in space.
+    /// Rotates a body vector to space.
     fn to_space(&self, v: &Vector3<Seeded>) -> Vector3<Seeded> {
         self.attitude.rotate(v)
     }
 
-    /// A vector of space in the body.
+    /// Rotates a spatial vector to the body.
     fn to_body(&self, v: &Vector3<Seeded>) -> Vector3<Seeded> {
         self.attitude.inverse_rotate(v)
     }
 
-    /// R J R^T, symmetric to the last bit.
+    /// R J R^T, exactly symmetric.
     fn carried(&self, j: &Matrix3<Seeded>) -> Matrix3<Seeded> {
         let r = self.attitude.matrix();
         let seen = r * j * r.transpose();
         (seen + seen.transpose()) * Dual::constant(0.5)
     }
 
-    /// One of the two quaternions of the attitude: momenta on SU(2) are those of the rotations they cover.
+    /// One of the two quaternions of the attitude. Momenta on SU(2) equal those of the rotations that it covers.
     fn quaternion(&self) -> UnitQuaternion<Seeded> {
         UnitQuaternion::from_components(self.attitude.quaternion()).expect("a unit quaternion")
     }
@@ -92,15 +92,15 @@ fn values(v: &Vector3<Seeded>) -> Vector {
     [v[0].real, v[1].real, v[2].real]
 }
 
-/// The step length, longer by the share `warp` of the first momentum component.
+/// The step size, increased by `warp` times the first momentum component.
 fn step(h: f64, warp: f64, phase: &Phase) -> Seeded {
     let one = Dual::constant(1.0);
     Dual::constant(h) * (one + Dual::constant(warp) * phase.momentum[0])
 }
 
-/// Defect of a map between phases, over the size of the form, which holds momenta beside ones.
+/// The symplectic defect of a map between phases, relative to the size of the form, whose entries are ones and momenta.
 fn defect(before: &[&Phase], after: &[(Matrix3<Seeded>, Vector3<Seeded>)]) -> f64 {
-    // Three turns and three momenta of each body.
+    // Three rotations and three momenta for each body.
     let seeds = 6 * before.len();
     let mut jacobian = Vec::new();
     for (attitude, momentum) in after {
@@ -131,7 +131,7 @@ fn defect(before: &[&Phase], after: &[(Matrix3<Seeded>, Vector3<Seeded>)]) -> f6
     defect_of_product(&jacobian, &before, &after) / size
 }
 
-/// The rotation of space that an attitude is.
+/// The spatial rotation of an attitude.
 trait Turn<T> {
     fn turn(&self) -> Matrix3<T>;
 }
@@ -148,7 +148,7 @@ impl<T: Real> Turn<T> for UnitQuaternion<T> {
     }
 }
 
-/// Starts a model at a phase, steps once, and gives the phase after it.
+/// Starts a model at a phase, steps once, and returns the new phase.
 macro_rules! stepped {
     ($model:ident, $parameters:ident { $($p:ident: $value:expr),* $(,)? },
      $initial:ident { $($i:ident: $start:expr),* $(,)? }, $h:expr,
@@ -161,7 +161,7 @@ macro_rules! stepped {
     }};
 }
 
-/// The defect of one step of a case at a random phase, with a warped step length.
+/// The symplectic defect of one step of a case at a random phase, with a warped step size.
 type Defect = fn(&Case, &mut Draws, f64) -> f64;
 
 fn free_body(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
@@ -185,7 +185,7 @@ fn free_body(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
 fn free_body_spatial(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     use clebsch_models::free_body_spatial::*;
     let p = phase(draws, 0);
-    // The body is the same in every phase: what the case gives in space is read in the body.
+    // The body is the same in every phase, so the spatial values of the case are used as body values.
     let after = stepped!(
         FreeBodySpatial,
         FreeBodySpatialParameters {
@@ -246,7 +246,7 @@ fn heavy_top_spatial(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
 fn body_in_quadratic_field(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     use clebsch_models::body_in_quadratic_field::*;
     let p = phase(draws, 0);
-    // The axis rests in space, so that it is seen differently from each attitude.
+    // The axis is fixed in space, so its body components depend on the attitude.
     let after = stepped!(
         BodyInQuadraticField,
         BodyInQuadraticFieldParameters {
@@ -362,7 +362,7 @@ fn kirchhoff_body(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
         rotation: Rotation::from_quaternion(q).expect("a unit quaternion"),
         translation: column(&place),
     };
-    // To first order this is the exponential.
+    // This equals the exponential to first order.
     let motion = own
         * RigidMotion {
             rotation: Rotation::exp(&change(0)),
@@ -415,11 +415,11 @@ fn planes(n: usize) -> Vec<(usize, usize)> {
 fn body_of_size<const N: usize>(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     use clebsch_models::body_n::*;
     let planes = planes(N);
-    // Seeds are the changes of the attitude, then those of the momentum.
+    // The first seeds vary the attitude, the others the momentum.
     let d = planes.len();
     let seeds = 2 * d;
-    // Momenta in any direction; the largest of the cases is solvable in its own direction up to 0.95
-    // of the bound, in another one less.
+    // Momenta have any direction. The largest momentum of the cases is solvable up to 0.95 of the bound in its own direction, and
+    // to less in others.
     let largest = case.initial[1]
         .iter()
         .fold(0.0_f64, |m, x| worse(m, x.abs()));
@@ -429,7 +429,7 @@ fn body_of_size<const N: usize>(case: &Case, draws: &mut Draws, warp: f64) -> f6
         .map(|_| Dual::constant(draws.uniform(-1.0, 1.0)))
         .collect();
     let change: Vec<Seeded> = (0..d).map(|k| Dual::variable(0.0, k)).collect();
-    // To first order a retraction is the exponential.
+    // A retraction equals the exponential to first order.
     let own = Orthogonal::<N, Seeded>::identity().retract(&turn);
     let attitude = own.retract(&change);
     let mut mu = SMatrix::<Seeded, N, N>::repeat(Dual::constant(0.0));
@@ -477,7 +477,7 @@ fn body_n(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     }
 }
 
-/// How each model is started.
+/// How to start each model.
 const MODELS: [(&str, Defect); 16] = [
     ("body-in-quadratic-field", body_in_quadratic_field),
     ("body-in-two-fields", body_in_two_fields),
@@ -506,7 +506,7 @@ fn for_every_case(mut look: impl FnMut(&str, &Case, Defect)) {
             .unwrap_or_else(|| panic!("say above how {name} is started"));
         let named = !entry.card.dimensions.is_empty();
         for case in &entry.cases {
-            // Larger ones would be compiled for this alone.
+            // Larger sizes would be compiled for this test alone.
             if named && case.parameters[0].len() > 25 {
                 continue;
             }

@@ -1,5 +1,5 @@
-//! Generated steppers against hand-written ones: single steps from ten thousand random states, and long integrable
-//! motions. Takes nothing but seeds; a stepper with a fault fails both comparisons, which is shown here too.
+//! Compares generated steppers with hand-written ones: single steps from ten thousand random states, and long integrable motions.
+//! Tests check that a faulty stepper fails both comparisons.
 
 use super::generated_motion::{GeneratedBody, GeneratedTop};
 use clebsch_oracle::handwritten::free_body::FreeBody;
@@ -10,7 +10,7 @@ use clebsch_oracle::physics::faults::{Fault, FaultyTop};
 use clebsch_oracle::physics::measure::{apart, worse};
 use clebsch_oracle::physics::motion::Motion;
 
-/// Some twenty roundings of numbers of order one; momenta are compared relative to |mu|.
+/// About twenty rounding errors of numbers of order one. Momenta are compared relative to |mu|.
 const ONE_STEP: f64 = 1e-14;
 
 fn body(start: &Start) -> FreeBody {
@@ -27,7 +27,7 @@ fn top(start: &Start) -> HeavyTop {
     HeavyTop::start(&start.top, &start.attitude, &start.body_momentum, start.h).expect("solvable")
 }
 
-/// Largest difference after one step from each of the drawn states.
+/// Largest difference after one step from each random state.
 fn single_steps<A: Motion, B: Motion>(
     mut draw: impl FnMut() -> Start,
     count: u32,
@@ -102,10 +102,10 @@ fn integrable_motions_stay_together() {
 
 #[test]
 fn integrable_motions_part_no_faster_than_rounding_makes_them() {
-    // Momentum and attitude are rounded to 1.1e-16 some two times a step in either stepper, which makes 3e-16 a step
-    // between the two; these add up like a random walk, and phases part with them, the more so for the upright top
-    // near its separatrix. The measure is the hand-written stepper itself, started with a momentum larger by the
-    // length of that walk: compared with 32 digits either stepper is off by up to 3e-11 here.
+    // Each stepper rounds momentum and attitude to 1.1e-16 about twice per step, a difference of about 3e-16 per step. These errors
+    // add up like a random walk and separate the phases, most strongly for the upright top near its separatrix. The reference is
+    // the hand-written stepper, started with a momentum larger by the length of that walk. Compared with 32 digits, either stepper
+    // deviates here by up to 3e-11.
     for (name, start) in [("upright", lagrange_top()), ("hanging", hanging_top())] {
         for (h, steps) in [(0.1, 1000_u32), (0.1, 10_000), (0.01, 10_000)] {
             let start = start.with_step(h);
@@ -152,7 +152,7 @@ fn integrable_motions_of_a_faulty_stepper_part() {
 
 #[test]
 fn both_refuse_beyond_the_bound_and_only_there() {
-    // The bound of a draw is found to one part in 10^4.
+    // `draws` computes the bound on the momentum to one part in 10^4.
     let mut draws = Draws::new(13);
     for _ in 0..1000 {
         for (share, solvable) in [(0.999, true), (1.001, false), (3.0, false)] {

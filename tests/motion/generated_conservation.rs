@@ -1,5 +1,5 @@
-//! What the generated steppers conserve over long runs: to rounding where the law is exact, without drift otherwise.
-//! The same measurements reject steppers with a fault: see the tests of the hand-written steppers.
+//! Invariants of the generated steppers over long runs: to rounding for exact laws, and without drift otherwise. The tests of the
+//! hand-written steppers check that the same measurements reject a faulty stepper.
 
 use super::generated_motion::{GeneratedBody, GeneratedTop};
 use clebsch_oracle::handwritten::attitude::{apply, cross, dot};
@@ -40,10 +40,10 @@ fn a_free_body_in_any_axes_conserves_to_rounding() {
     assert!(drift.worst() < 1e-14, "{drift:?}");
 }
 
-/// A million steps: the largest |R mu - m| / |m| with the momentum that the solver keeps, looked at in every place
-/// between two projections; and the largest corrections of momentum and attitude, times the sine of the angle between
-/// momentum and velocity: where that is small the surfaces of constant energy and momentum are nearly parallel, and a
-/// rounding of either is a way along both that is longer by its inverse.
+/// Over a million steps, measures the largest |R mu - m| / |m| with the momentum that the solver stores. It also measures the
+/// largest corrections that projection makes to momentum and attitude, times the sine of the angle between momentum and velocity.
+/// If that sine is small, the surfaces of constant energy and momentum are nearly parallel, and a correction along both grows by
+/// the inverse sine.
 fn rounding(start: &Start, projects: bool) -> (f64, [f64; 2]) {
     let mut body = GeneratedBody::start(start);
     if !projects {
@@ -83,11 +83,11 @@ fn projection_takes_out_rounding_and_nothing_else() {
         let (left, none) = rounding(&start, false);
         println!("{name}: {error:e}, corrections {corrections:?}; without {left:e}");
         assert!(error < 5e-15, "{name}: {error:e}");
-        // Sixty-four roundings in random directions are eight; twice that.
+        // Sixty-four rounding errors in random directions add up to about eight; the limit is twice that.
         for size in corrections {
             assert!(0.0 < size && size < 3.6e-15, "{name}: {size:e}");
         }
-        // A million roundings in random directions are a thousand; with a common sign they would be 2e-10.
+        // A million rounding errors in random directions add up to about a thousand; with a common sign they would reach 2e-10.
         assert_eq!(none, [0.0; 2], "{name}");
         assert!(left < 1e-12, "{name}: {left:e}");
         assert!(left > 4.0 * error, "{name}: {left:e} against {error:e}");
@@ -122,7 +122,7 @@ fn energy_of_tops_oscillates_without_drift() {
         println!("{name}: {coarse:?} {fine:?}");
         assert!(coarse.is_flat(), "{name}: {coarse:?}");
         assert!(fine.is_flat(), "{name}: {fine:?}");
-        // Proportional to h^2 up to terms of order h^4, which are a few percent at h = 0.1.
+        // The amplitude is proportional to h^2, up to h^4 terms of a few percent at h = 0.1.
         let ratio = coarse.amplitude / fine.amplitude;
         assert!((ratio - 4.0).abs() < 0.4, "{name}: {ratio}");
     }

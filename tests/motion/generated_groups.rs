@@ -55,7 +55,7 @@ fn body<T: Real>(
     (model, state, work)
 }
 
-/// The largest deviation from recorded states.
+/// The largest deviation from the recorded states.
 fn deviation(c: f64, quaternions: [[f64; 4]; 4], momenta: [[f64; 3]; 4]) -> f64 {
     let (model, mut state, mut work) = body::<f64>(MOMENTS, c, M0, H);
     let mut worst: f64 = 0.0;
@@ -81,7 +81,7 @@ fn reference_states_of_both_members_of_the_family() {
     println!("c = 0: {moser_veselov:e}, c = 1: {thesis:e}");
     assert!(moser_veselov < TOLERANCE, "{moser_veselov:e}");
     assert!(thesis < TOLERANCE, "{thesis:e}");
-    // The two are told apart.
+    // The comparison distinguishes the two values of c.
     assert!(deviation(0.0, QUATERNION_C1, MOMENTUM_C1) > 1e-3);
 }
 
@@ -134,7 +134,7 @@ fn body_and_space_give_one_motion() {
             for (a, b) in state.q().components().iter().zip(other.q().components()) {
                 worst = worse(worst, (a - b).abs());
             }
-            // The momentum is kept to the last bit.
+            // The step preserves the momentum exactly.
             assert_eq!(other.spatial_momentum().0, Vector3::from(M0));
         }
         println!("c = {c}: {worst:e}");
@@ -155,7 +155,7 @@ fn energies_of_the_family() {
         }
         high - low
     };
-    // Exact for c = 0; for c = 1 an oscillation that shrinks with h^2.
+    // Exact for c = 0; for c = 1 an oscillation proportional to h^2.
     assert!(range(0.0, 0.1) < 1e-13);
     let (coarse, fine) = (range(1.0, 0.1), range(1.0, 0.05));
     println!("{coarse:e} {fine:e}");
@@ -163,7 +163,7 @@ fn energies_of_the_family() {
     assert!((coarse / fine - 4.0).abs() < 0.1, "{}", coarse / fine);
 }
 
-/// A turned and displaced start of Kirchhoff's body, and its data.
+/// A rotated and translated initial state of Kirchhoff's body, with its parameters.
 struct Case {
     b: Vector4<f64>,
     coupling: Matrix3<f64>,
@@ -219,8 +219,8 @@ fn neutral() -> Case {
     }
 }
 
-/// Kirchhoff's equations (Lamb, Hydrodynamics, 124): impulse, attitude and place, by the classical
-/// method of fourth order, typed apart from everything generated.
+/// Kirchhoff's equations (Lamb, Hydrodynamics, 124) for impulse, attitude and position, integrated by the classical fourth-order
+/// Runge-Kutta method and written independently of generated code.
 fn kirchhoff(
     case: &Case,
     time: f64,
@@ -278,7 +278,7 @@ fn kirchhoff(
     phase
 }
 
-/// The method of fourth order leaves some 1e-13 of these at its step of 1e-3.
+/// The error of the fourth-order method at its step size of 1e-3 is about 1e-13.
 const FLOOR: f64 = 1e-12;
 
 #[test]
@@ -302,11 +302,12 @@ fn kirchhoff_body_is_of_second_order() {
     }
 }
 
-/// Translations are solved for, and the tangent is the whole derivative of what is left: from rest each correction squares
-/// what is left, and along a motion one or two corrections a step do. With a term missing each would leave a share of it.
+/// Newton's method on the translations uses the complete Jacobian. From rest, each correction squares the residual; along a motion,
+/// one or two corrections per step suffice. If the Jacobian lacked a term, each correction would leave a fixed fraction of the
+/// residual.
 #[test]
 fn rotations_in_a_fluid_are_found_by_the_whole_derivative() {
-    // A heavy body falls ever faster, until long steps have no solution.
+    // A heavy body accelerates until large steps have no solution.
     for (case, h) in [(neutral(), 0.05), (neutral(), 0.2), (heavy(), 0.05)] {
         let (model, mut state, mut work) = case.start::<f64>(h);
         model.step(&mut state, &mut work).expect("solvable");
@@ -317,14 +318,14 @@ fn rotations_in_a_fluid_are_found_by_the_whole_derivative() {
             model.step(&mut state, &mut work).expect("solvable");
             corrections += work.solved().corrections;
         }
-        // A few are foreseen worse and take a third.
+        // A few steps have a worse initial guess and need a third correction.
         assert!(corrections < 2500, "{corrections}");
     }
 }
 
 #[test]
 fn kirchhoff_body_keeps_its_momenta_and_bounds_its_energy() {
-    // In a fluid of the same density the whole impulse is kept.
+    // In a fluid of the same density the step conserves the whole impulse.
     let (model, mut state, mut work) = neutral().start::<f64>(0.05);
     let (impulse, energy) = (state.spatial_momentum().0, model.energy(&state));
     let (mut worst, mut moments): (f64, f64) = (0.0, 0.0);
@@ -333,8 +334,8 @@ fn kirchhoff_body_keeps_its_momenta_and_bounds_its_energy() {
         let now = state.spatial_momentum().0;
         let [moment, linear] = [0, 3].map(|at| now.fixed_rows::<3>(at).into_owned());
         assert_eq!(linear, impulse.fixed_rows::<3>(3).into_owned());
-        // The state keeps the moment about the body's own origin: that about the origin of space is
-        // made of it and of the lever arm, and known to their rounding.
+        // The state stores the moment about the body's origin. The moment about the spatial origin adds the lever arm term and has
+        // the rounding error of both.
         let lever = state.G().translation.norm() * linear.norm();
         let size = lever + state.body_momentum().0.fixed_rows::<3>(0).norm();
         let off = (moment - impulse.fixed_rows::<3>(0)).norm();
@@ -344,7 +345,7 @@ fn kirchhoff_body_keeps_its_momenta_and_bounds_its_energy() {
     println!("energy {worst:e} of {energy:e}, moment {moments:e} of its terms");
     assert!(moments < 4.0 * f64::EPSILON, "{moments:e}");
     assert!(worst < 2e-3 * energy, "{worst:e}");
-    // Weight leaves the horizontal impulse and the angular momentum about the vertical.
+    // Weight preserves the horizontal impulse and the angular momentum about the vertical.
     let (model, mut state, mut work) = heavy().start::<f64>(0.02);
     let (before, energy) = (state.spatial_momentum().0, model.energy(&state));
     let mut worst: f64 = 0.0;
@@ -355,7 +356,7 @@ fn kirchhoff_body_keeps_its_momenta_and_bounds_its_energy() {
             worst = worse(worst, (now[i] - before[i]).abs());
         }
     }
-    // The step adds a torque about the vertical that vanishes but for rounding of lever and height.
+    // The step adds a vertical torque that vanishes up to the rounding of lever arm and height.
     assert!(worst < 1e-12, "{worst:e}");
     assert!((state.spatial_momentum().0[5] - before[5]).abs() > 1.0);
     let drift = (model.energy(&state) - energy).abs();
@@ -364,7 +365,7 @@ fn kirchhoff_body_keeps_its_momenta_and_bounds_its_energy() {
 
 #[test]
 fn a_step_back_undoes_a_step() {
-    // What comes is the same action read backwards: the motion with reversed momentum returns.
+    // The action is reversible: the motion with reversed momentum returns to the start.
     let case = heavy();
     let (model, start, mut work) = case.start::<f64>(0.05);
     let mut state = start;
@@ -412,7 +413,7 @@ fn every_scalar_runs() {
     let found = long.G().matrix().map(|x| x.value());
     assert!((found - plain.G().matrix()).amax() < 1e-13);
     assert!(Group::<DoubleDouble>::distance_from_group(&long.G().rotation) < 1e-29);
-    // The derivative by the net weight, against a difference of two runs.
+    // The derivative with respect to the net weight, against a finite difference of two runs.
     let case = heavy();
     let mut parameters = case.parameters::<Seeded>();
     parameters.b[3] = Seeded::variable(case.b[3], 0);
@@ -437,7 +438,7 @@ fn every_scalar_runs() {
     let difference = (shifted(1e-5) - shifted(-1e-5)) / 2e-5;
     assert!((exact - difference).amax() < 1e-8);
     assert!(exact.amax() > 1e-2);
-    // The same of quaternions.
+    // The same check for quaternions.
     let (model, mut state, mut work) = body::<DoubleDouble>(MOMENTS, 1.0, M0, H);
     for _ in 0..10 {
         model.step(&mut state, &mut work).expect("solvable");

@@ -1,7 +1,7 @@
-//! The generated steppers of the gallery as motions, so that they meet the measurements made for any stepper.
-//! Takes starting data in plain arrays; gives motions.
+//! Wraps the generated steppers of the gallery as `Motion`, so that the tests apply the same measurements to every stepper.
+//! Starting data are plain arrays.
 
-// Each test binary includes this file and uses a part of it.
+// Each test binary includes this file and uses part of it.
 #![allow(dead_code)]
 
 use clebsch::nalgebra::{Matrix3, Vector3};
@@ -16,7 +16,7 @@ use clebsch_oracle::handwritten::attitude::{Matrix, Quaternion, Vector};
 use clebsch_oracle::physics::cases::Start;
 use clebsch_oracle::physics::motion::Motion;
 
-/// A matrix given by rows.
+/// A matrix from its rows.
 pub fn matrix(rows: &Matrix) -> Matrix3<f64> {
     Matrix3::from_fn(|r, c| rows[r][c])
 }
@@ -26,38 +26,38 @@ pub fn rows(matrix: &Matrix3<f64>) -> Matrix {
     [0, 1, 2].map(|r| [0, 1, 2].map(|c| matrix[(r, c)]))
 }
 
-/// A column.
+/// A column vector.
 pub fn column(v: &Vector) -> Vector3<f64> {
     Vector3::new(v[0], v[1], v[2])
 }
 
-/// The entries of a column.
+/// The entries of a column vector.
 pub fn entries(v: &Vector3<f64>) -> Vector {
     [v[0], v[1], v[2]]
 }
 
-/// A rotation of a unit quaternion.
+/// The rotation of a unit quaternion.
 pub fn rotation(q: &Quaternion) -> Rotation<f64> {
     Rotation::from_quaternion(q.0).expect("a unit quaternion")
 }
 
-/// The generated free body on its way.
+/// The generated free body at its current node.
 pub struct GeneratedBody {
-    /// The model with its parameters.
+    /// The model and its parameters.
     pub model: FreeBody<f64>,
-    /// The present node.
+    /// The state at the current node.
     pub state: FreeBodyState<f64>,
-    /// What the solver keeps between steps.
+    /// The workspace that the solver keeps between steps.
     pub workspace: FreeBodyWorkspace<f64>,
 }
 
 impl GeneratedBody {
-    /// Starts a trajectory that is known to be solvable.
+    /// Starts a trajectory that is solvable.
     pub fn start(start: &Start) -> GeneratedBody {
         GeneratedBody::try_start(start).expect("solvable")
     }
 
-    /// Starts a trajectory; the message of the refusal otherwise.
+    /// Starts a trajectory, or returns the error message.
     pub fn try_start(start: &Start) -> Result<GeneratedBody, String> {
         let model = FreeBody::new(FreeBodyParameters {
             J: matrix(&start.top.poinsot),
@@ -102,23 +102,23 @@ impl Motion for GeneratedBody {
     }
 }
 
-/// The generated heavy top on its way.
+/// The generated heavy top at its current node.
 pub struct GeneratedTop {
-    /// The model with its parameters.
+    /// The model and its parameters.
     pub model: HeavyTop<f64>,
-    /// The present node.
+    /// The state at the current node.
     pub state: HeavyTopState<f64>,
-    /// What the solver keeps between steps.
+    /// The workspace that the solver keeps between steps.
     pub workspace: HeavyTopWorkspace<f64>,
 }
 
 impl GeneratedTop {
-    /// Starts a trajectory that is known to be solvable.
+    /// Starts a trajectory that is solvable.
     pub fn start(start: &Start) -> GeneratedTop {
         GeneratedTop::try_start(start).expect("solvable")
     }
 
-    /// Starts a trajectory; the message of the refusal otherwise.
+    /// Starts a trajectory, or returns the error message.
     pub fn try_start(start: &Start) -> Result<GeneratedTop, String> {
         let model = HeavyTop::new(HeavyTopParameters {
             J: matrix(&start.top.poinsot),

@@ -1,5 +1,5 @@
-//! Orders of the generated steppers by step halving against the continuous motion: 2.00 +- 0.05.
-//! The same measurement finds order one for one-sided readings: see the tests of the hand-written steppers.
+//! Measures the order of the generated steppers by step halving against the continuous motion: 2.00 +- 0.05. The tests of the
+//! hand-written steppers check that the same measurement finds order one for one-sided schemes.
 
 use super::generated_motion::{GeneratedBody, GeneratedTop};
 use clebsch_oracle::physics::cases::{Start, asymmetric_body, generic_top, lagrange_top};
@@ -8,7 +8,7 @@ use clebsch_oracle::physics::order::{confirms, errors, orders};
 use clebsch_oracle::physics::truth::{Phase, flow};
 use clebsch_oracle::reference::asymmetric_body_errors;
 
-/// Rounding of the coarsest numbers that enter an error: a few thousand steps of the motion and the series.
+/// Rounding error of the least accurate numbers in an error: a few thousand steps of the motion and the series.
 const FLOOR: f64 = 1e-13;
 
 fn second_order<M: Motion>(

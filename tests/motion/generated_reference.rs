@@ -1,5 +1,5 @@
-//! Generated steppers against reference states of tests/reference/generate.py, 32 digits, to 1e-12 up to node 1000.
-//! The same comparisons reject steppers with a fault: see the tests of the hand-written steppers.
+//! Compares generated steppers with the 32-digit reference states of tests/reference/generate.py, to 1e-12 up to node 1000. The
+//! tests of the hand-written steppers check that the same comparisons reject a faulty stepper.
 
 use super::generated_motion::{
     GeneratedBody, GeneratedTop, column, entries, matrix, rotation, rows,
@@ -136,7 +136,7 @@ fn one_sided_lagrange_top() {
         "one-sided",
         against_reference::one_sided(GeneratedOneSided::start),
     );
-    // The two forms are told apart: each fails the other's numbers.
+    // The comparison distinguishes the two forms: each fails against the other's numbers.
     let crossed = against_reference::one_sided(GeneratedTop::start).expect("solvable");
     assert!(crossed > 1e6 * TOLERANCE, "{crossed:e}");
     let crossed = against_reference::lagrange(GeneratedOneSided::start).expect("solvable");

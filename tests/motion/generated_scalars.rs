@@ -1,6 +1,6 @@
-//! One emitted stepper, many scalars: lanes step like single runs, double-double solves its own
-//! equation to its own precision, dual numbers carry the derivative of a trajectory. For both
-//! models of the gallery and for one that needs Newton.
+//! One emitted stepper with several scalar types. Lanes step like single runs, double-double solves its own equation to its own
+//! precision, and dual numbers give the derivative of a trajectory. Tests cover both gallery models and a model that needs Newton's
+//! method.
 
 use super::seeded::Seeded;
 use clebsch::nalgebra::{Matrix3, SMatrix, SVector, Vector3};
@@ -44,7 +44,7 @@ fn attitude<T: Real>() -> Rotation<T> {
     Rotation::exp(&lift(Vector3::new(0.3, -0.7, 0.2)))
 }
 
-/// The body momentum after a number of steps, from this momentum at the start.
+/// The body momentum after a number of steps from this initial momentum.
 trait Run {
     fn run<T: Real>(momentum: SVector<T, 3>, h: T) -> SVector<T, 3>;
 }
@@ -120,8 +120,8 @@ fn lanes_step_like_single_runs<M: Run>() {
     for (lane, start) in starts.into_iter().enumerate() {
         let alone = M::run(start, H);
         for i in 0..3 {
-            // Lanes iterate until the slowest is done: a few roundings a step, amplified little
-            // in 50 steps.
+            // All lanes iterate until the slowest converges. The difference is a few rounding errors per step, with little
+            // amplification in 50 steps.
             let gap = (ended[i].lane(lane) - alone[i]).abs();
             assert!(gap < 1e-13, "lane {lane}: {gap:e}");
         }
@@ -129,8 +129,8 @@ fn lanes_step_like_single_runs<M: Run>() {
 }
 
 fn duals_differentiate<M: Run>() {
-    // Forward differences in double-double: their error, the step times the curvature, is far
-    // below the rounding of the dual run.
+    // Forward differences in double-double: the truncation error, step times curvature, is far below the rounding error of the dual
+    // run.
     let step = 1e-14;
     let base = M::run(
         momentum(0).map(DoubleDouble::from_f64),
@@ -201,14 +201,14 @@ fn double_double_solves_its_own_equation() {
         nodes.push(here(&state));
     }
     let residual = model.balance(h, &nodes[0], &nodes[1], &nodes[2]);
-    // 32 digits, lost to the factor 1/h and a few dozen operations.
+    // 32 digits, less the factor 1/h and a few dozen operations.
     assert!(
         residual.iter().all(|r| r.magnitude() < 1e-28),
         "{residual:?}"
     );
 }
 
-/// The refusal of the first step of `h`, of the heavy top with these body momenta.
+/// The error of the first step of size `h` of the heavy top with these body momenta.
 fn refusal<T: Real>(momentum: SVector<T, 3>, h: f64) -> MoserVeselovError {
     let model = heavy::<T>();
     let initial = HeavyTopInitial {

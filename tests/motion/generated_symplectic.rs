@@ -1,5 +1,5 @@
-//! One generated step as a map of T*SO(3), attitude included: its exact Jacobian, from dual numbers, keeps the
-//! canonical two-form. A step whose length depends on the state fails, which is shown too.
+//! Checks that one generated step, attitude included, preserves the canonical two-form on T*SO(3), with the exact Jacobian from
+//! dual numbers. A test checks that a step size that depends on the state fails.
 
 use super::generated_motion::{column, matrix, rotation};
 use super::seeded::Seeded;
@@ -13,7 +13,7 @@ use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::measure::worse;
 use clebsch_oracle::physics::symplectic::{Jacobian, defect};
 
-/// Rounding of a product of three six by six matrices with entries of order one to ten, with a wide margin.
+/// Tolerance well above the rounding error of a product of three 6 x 6 matrices with entries of order one to ten.
 const TOLERANCE: f64 = 1e-10;
 
 fn constants<const R: usize, const C: usize>(
@@ -22,7 +22,7 @@ fn constants<const R: usize, const C: usize>(
     m.map(Seeded::constant)
 }
 
-/// Attitude and body momentum with their six independent changes: Lambda exp(hat(xi)), mu + delta mu.
+/// Attitude and body momentum with six independent variations: Lambda exp(hat(xi)), mu + delta mu.
 fn varied(start: &Start) -> (Rotation<Seeded>, Vector3<Seeded>) {
     let q = rotation(&start.attitude).quaternion().map(Seeded::constant);
     let attitude = Rotation::from_quaternion(q).expect("a unit quaternion");
@@ -31,7 +31,7 @@ fn varied(start: &Start) -> (Rotation<Seeded>, Vector3<Seeded>) {
     (attitude * Rotation::exp(&xi), momentum)
 }
 
-/// Jacobian in left-trivialised coordinates, and the momentum after the step.
+/// The Jacobian in left-trivialised coordinates, and the momentum after the step.
 fn jacobian(attitude: &Matrix3<Seeded>, momentum: &Vector3<Seeded>) -> (Jacobian, Vector) {
     let value = attitude.map(|x| x.real);
     let column = |seed: usize| {
@@ -53,7 +53,7 @@ fn jacobian(attitude: &Matrix3<Seeded>, momentum: &Vector3<Seeded>) -> (Jacobian
     (d, [0, 1, 2].map(|i| momentum[i].real))
 }
 
-/// Defect of one step of the heavy top; `warp` lengthens the step in proportion to the first momentum component.
+/// The defect of one step of the heavy top. `warp` increases the step size in proportion to the first momentum component.
 fn top_defect(start: &Start, warp: f64) -> f64 {
     let (attitude, momentum) = varied(start);
     let model = HeavyTop::new(HeavyTopParameters {
@@ -92,7 +92,7 @@ fn body_defect(start: &Start, warp: f64) -> f64 {
     scaled_defect(&d, &start.body_momentum, &after)
 }
 
-/// The defect over the size of the form, which holds the momentum beside ones.
+/// The defect relative to the size of the form, whose entries are ones and momenta.
 fn scaled_defect(d: &Jacobian, before: &Vector, after: &Vector) -> f64 {
     let size = before
         .iter()
@@ -125,7 +125,7 @@ fn the_free_body_is_symplectic() {
 fn a_step_that_depends_on_the_state_is_not() {
     let mut draws = Draws::new(23);
     for _ in 0..20 {
-        // A momentum of order one, so that the step is lengthened by a definite share.
+        // A momentum of order one, so that the warp changes the step size by a definite fraction.
         let start = Start {
             body_momentum: [0.3, -0.4, 0.5],
             h: 0.1,

@@ -1,5 +1,5 @@
-//! Generated steppers on SU(2) and SE(3) against hand-written ones: one step from five hundred random states each, the
-//! generated ones through their cards. Takes nothing but seeds; every datum changed by a millionth is noticed, shown too.
+//! Compares generated steppers on SU(2) and SE(3), run through their cards, with hand-written ones: one step from each of five
+//! hundred random states. A test checks that the comparison detects a relative change of 1e-6 in every datum.
 
 use clebsch::card::{Card, Field, Settings};
 use clebsch_models::{Entry, gallery};
@@ -12,16 +12,15 @@ use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 use std::sync::LazyLock;
 
-/// Some thirty roundings of numbers of order one, for data that are not magnified.
+/// About thirty rounding errors of numbers of order one, for data without amplification.
 const ONE_STEP: f64 = 1e-14;
 
-/// Of each system; conditioning takes a step for every datum, so that more are asked for by `GROUP_STATES=2000`.
+/// Random states of each system. Measuring the conditioning costs one step per datum; `GROUP_STATES=2000` requests more states.
 fn states() -> u32 {
     u32::try_from(asked_for("GROUP_STATES", 500)).unwrap_or(u32::MAX)
 }
 
-/// Relative change of a datum by which conditioning is measured, and by which it is mistaken: far above rounding, far
-/// below one.
+/// Relative change of a datum, both to measure conditioning and to plant a mistake: far above rounding, far below one.
 const NUDGE: f64 = 1e-6;
 
 fn apart(a: &[f64], b: &[f64]) -> f64 {
@@ -37,7 +36,7 @@ pub(super) fn stretched(v: Vector, factor: f64) -> Vector {
     v.map(|x| x * factor)
 }
 
-/// One step of a model of the gallery: these observables after it.
+/// One step of a gallery model; returns these observables.
 pub(super) fn generated(
     model: &str,
     shown: &[&str],
@@ -45,7 +44,7 @@ pub(super) fn generated(
     initial: &[Vec<f64>],
     h: f64,
 ) -> Option<Vec<f64>> {
-    // Once: reading the cases of all models takes a thousand times longer than a step.
+    // Loaded once: reading the cases of all models takes a thousand times longer than a step.
     static GALLERY: LazyLock<Vec<Entry>> = LazyLock::new(gallery);
     let entry = GALLERY.iter().find(|entry| entry.card.kebab == model);
     let entry = entry.expect("a model of the gallery");
@@ -69,23 +68,23 @@ pub(super) fn generated(
 
 /// A state with its data.
 pub(super) trait System: Sized {
-    /// Kinds of data: 0 is momentum, the others are parameters and quantities that the body carries.
+    /// Kinds of data: 0 is the momentum, the others are parameters and advected quantities.
     const KINDS: usize;
     fn draw(source: &mut Source) -> Self;
-    /// The same with one kind of datum larger by this share.
+    /// The same state with one kind of datum increased by this fraction.
     fn nudged(&self, kind: usize, share: f64) -> Self;
     fn by_hand(&self) -> Option<Vec<f64>>;
     fn generated(&self) -> Option<Vec<f64>>;
 }
 
-/// How much one step magnifies relative changes of its data, at least one.
+/// The factor, at least one, by which one step amplifies relative changes of its data.
 fn conditioning<S: System>(state: &S, result: &[f64]) -> f64 {
     (0..S::KINDS)
         .filter_map(|kind| Some(apart(&state.nudged(kind, NUDGE).by_hand()?, result) / NUDGE))
         .fold(1.0, worse)
 }
 
-/// Largest difference over conditioning. With `mistaken`, the generated stepper gets that kind of datum wrong.
+/// Largest difference divided by the conditioning. With `mistaken`, the generated stepper gets a wrong datum of that kind.
 fn single_steps<S: System>(name: &str, count: u32, mistaken: Option<usize>) -> f64 {
     let mut source = Source::seeded(43);
     let (mut worst, mut bare, mut hardest, mut refused) = (0.0_f64, 0.0_f64, 1.0_f64, 0);
@@ -181,7 +180,7 @@ impl System for OnUnitQuaternions {
     }
 }
 
-/// The same body as the spatial form states it. By hand it is the body seen from space.
+/// The same body in the spatial form, compared with the hand-written body step seen from space.
 struct SeenFromSpace(OnUnitQuaternions);
 
 impl SeenFromSpace {

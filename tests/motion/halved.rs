@@ -1,5 +1,5 @@
-//! Steps that are too long, made by parts: nodes are those of the shorter steps, what can be made whole is, the count is told,
-//! and a run that is written down between goes on as it would have.
+//! Tests steps that are too large and are split into substeps. Nodes equal those of the shorter steps, steps that can be made whole
+//! are made whole, the run reports the count, and a saved run continues bit for bit.
 
 use clebsch::card::{Card, Settings, Trajectory};
 use clebsch::integrate::{Halved, Halvings};
@@ -25,7 +25,7 @@ fn halved(card: &Card, case: &Case, h: f64) -> Halved {
     Halved::open(card, &case.parameters, &case.initial, Settings::step(h)).expect("opens")
 }
 
-/// The longest step that can be made from the start, to a part in a thousand.
+/// The largest solvable step size from the start, to one part in a thousand.
 fn longest(card: &Card, case: &Case) -> f64 {
     let can = |h: f64| (card.open)(&case.parameters, &case.initial, Settings::step(h)).is_ok();
     let (mut least, mut most) = (case.h, case.h);
@@ -46,7 +46,7 @@ fn longest(card: &Card, case: &Case) -> f64 {
 fn refused_steps_are_made_by_parts_of_their_length() {
     for kebab in ["free-body", "heavy-top", "kirchhoff-body", "coupled-bodies"] {
         let (card, case) = model(kebab);
-        // Of two and a half times the longest step a quarter can be made from the start.
+        // At 2.5 times the largest step size, four substeps of a quarter are solvable.
         let h = 2.5 * longest(&card, &case);
         let plain = (card.open)(&case.parameters, &case.initial, Settings::step(h));
         assert!(plain.is_err(), "{kebab}: {h} can be made");
@@ -57,7 +57,7 @@ fn refused_steps_are_made_by_parts_of_their_length() {
         for _ in 0..4 {
             parts.step().expect("is made");
         }
-        // States go by what is observed: each number is rounded once or twice.
+        // `Halved` passes the state through its observables, which rounds each number once or twice.
         for (a, b) in seen(&whole).iter().zip(seen(parts.as_ref())) {
             assert!(
                 (a - b).abs() <= 1e-13 * b.abs().max(1.0),
@@ -73,7 +73,7 @@ fn refused_steps_are_made_by_parts_of_their_length() {
     }
 }
 
-/// What can be made whole is, to the last bit, and nothing is said to be lost.
+/// Steps that are solvable whole are bitwise identical to plain steps, and the run reports no substeps.
 #[test]
 fn steps_that_can_be_made_are_made_whole() {
     for kebab in ["free-body", "heavy-top", "mixed-four"] {
@@ -93,7 +93,7 @@ fn steps_that_can_be_made_are_made_whole() {
 #[test]
 fn a_run_by_parts_is_written_down_and_goes_on_to_the_last_bit() {
     let (card, case) = model("heavy-top");
-    // Some steps of this length are refused, some are not.
+    // Steps of this size sometimes fail.
     let mixed = |h: &f64| {
         let mut run = halved(&card, &case, *h);
         (0..40).for_each(|_| run.step().expect("is made"));
@@ -126,7 +126,7 @@ fn a_run_by_parts_is_written_down_and_goes_on_to_the_last_bit() {
     }
 }
 
-/// A step of which no part can be made ends the run with the reason of the whole one, the state unchanged.
+/// If no substep is solvable, the run does not open.
 #[test]
 fn what_no_part_can_make_is_refused() {
     let (card, case) = model("free-body");

@@ -1,5 +1,5 @@
-//! The hand-written steppers against reference numbers, the continuous motion and their conservation laws; and every
-//! measurement shown to reject a stepper that is wrong on purpose. Takes nothing of the library under test.
+//! Tests the hand-written steppers against reference numbers, the continuous motion and their conservation laws. Tests also check
+//! that every measurement rejects a deliberately wrong stepper. This file uses nothing of the library under test.
 
 use clebsch_oracle::handwritten::attitude::{Quaternion, add_scaled, apply};
 use clebsch_oracle::handwritten::free_body::FreeBody;
@@ -122,11 +122,11 @@ fn reference_numbers_reject_faults() {
 
 #[test]
 fn the_continuous_motion_is_right() {
-    // Recorded with 32 digits: the momentum of the symmetric body at t = 100.
+    // The recorded momentum of the symmetric body at t = 100, to 32 digits.
     let start = symmetric_body();
     let end = flow(&start.top, &phase(&start), 100.0);
     assert!(measure::vectors(&end.body_momentum, &body_sym::CONTINUOUS_MOMENTUM_AT_100) < 1e-12);
-    // Without symmetry: energy and momentum about the vertical, and there and back in other steps.
+    // Without symmetry: energy and vertical momentum, and a run forward and back with different step sizes.
     let start = generic_top();
     let energy = |phase: &Phase| {
         FaultyTop::start(
@@ -198,7 +198,7 @@ fn orders_reject_faults() {
             "{fault:?} passes"
         );
     }
-    // The one-sided reading is of first order, and is seen to be.
+    // The one-sided scheme is of first order, and the measurement shows it.
     let measured =
         errors(|h| one_sided(&start.with_step(h)), 2.0, 20, 4, &truth).expect("solvable");
     assert!(
@@ -228,7 +228,7 @@ fn free_bodies_conserve_to_rounding_over_a_million_steps() {
 
 #[test]
 fn conservation_rejects_rounding_that_accumulates() {
-    // The bare iteration of momentum and attitude is right in exact arithmetic.
+    // The iteration of momentum and attitude without projection is correct in exact arithmetic.
     let start = symmetric_body();
     let inverse = inverse_inertia(&start.top.poinsot);
     let drift =
@@ -271,7 +271,7 @@ fn casimirs_reject_faults() {
     }
 }
 
-/// Energies over the same time with step h and h/2.
+/// Energies over the same time span with step sizes h and h/2.
 fn two_series<M: Motion>(start: &Start, make: impl Fn(&Start) -> M, steps: u64) -> [Vec<f64>; 2] {
     [1, 2].map(|n| {
         let start = start.with_step(start.h / n as f64);
@@ -299,7 +299,7 @@ fn energy_of_tops_oscillates_without_drift() {
 fn the_energy_check_rejects_faults() {
     let start = lagrange_top();
     for fault in [Fault::KickAtOldNode, Fault::Friction] {
-        // A fault may also drive the energy up until a step is refused.
+        // A fault may also raise the energy until a step fails.
         if let Ok(series) = energies(&mut faulty(fault)(&start), 20_000) {
             let trend = trend(&series);
             println!("{fault:?}: {trend:?}");
@@ -344,8 +344,8 @@ fn integrable_motions_agree_with_a_plain_stepper() {
         apart(&mut body(&start), &mut faulty(Fault::None)(&start), 10_000).expect("solvable");
     println!("free {free:.2e}");
     assert!(free < 1e-12, "{free:e}");
-    // Rounding of 1e-16 a step makes frequencies wander, so that phases part like h n^(3/2); near the separatrix of the
-    // upright top they do so ten times faster, and the plain stepper, which adds up kicks in body axes, the more so.
+    // A rounding error of 1e-16 per step makes frequencies wander, so that phases separate like h n^(3/2). Near the separatrix of
+    // the upright top they separate ten times faster, and even faster with the plain stepper, which accumulates kicks in body axes.
     for (name, start, h, steps) in [
         ("upright", lagrange_top(), 0.1, 1000),
         ("hanging", hanging_top(), 0.01, 10_000),
@@ -383,7 +383,7 @@ fn principal_axes_diagonalise() {
 
 #[test]
 fn user_axes_do_not_matter() {
-    // The same body described in turned axes: attitude q r, J -> r^T J r, momentum r^T mu.
+    // The same body in rotated axes: attitude q r, J -> r^T J r, momentum r^T mu.
     let mut draws = Draws::new(3);
     let start = asymmetric_body();
     let turn = draws.attitude();

@@ -1,5 +1,5 @@
-//! Hand-written steppers of spatial forms, coupled bodies, SU(2), fields and n dimensions: what they conserve over 1e5
-//! steps, and their order. Takes nothing of the library under test.
+//! Hand-written steppers of spatial forms, coupled bodies, SU(2), fields and n dimensions: conservation over 1e5 steps, and order
+//! of accuracy. This file uses nothing of the library under test.
 
 use clebsch_oracle::handwritten::attitude::{Quaternion, add_scaled, apply, cross, dot};
 use clebsch_oracle::handwritten::body_n::{BodyN, Square};
@@ -16,7 +16,7 @@ use clebsch_oracle::reference::H;
 
 const LONG: u64 = 100_000;
 
-/// Largest drift of components over `steps`, each relative to its scale.
+/// Largest drift of each component over `steps`, relative to its scale.
 fn drift<S>(
     motion: &mut S,
     steps: u64,
@@ -118,13 +118,13 @@ fn conserved_over_a_hundred_thousand_steps() {
         },
         1.0,
     );
-    // A heavy body keeps the horizontal momentum and the angular momentum about the vertical.
+    // A heavy body conserves the horizontal momentum and the angular momentum about the vertical.
     let fluid = drift(
         &mut submerged_body(0.01, H),
         LONG / 10,
         |b| b.step().expect("solvable"),
         |b| {
-            // Read from the body, as the stepper stores what it compares with.
+            // Computed from body quantities, because the stepper stores the spatial values that the test checks.
             let (r, mu) = (b.attitude().matrix(), b.body_momentum());
             let (p, l) = (apply(&r, &mu.linear), apply(&r, &mu.angular));
             vec![
@@ -152,11 +152,11 @@ fn conserved_over_a_hundred_thousand_steps() {
         ("spatial body", spatial, 1e-14),
         ("spatial top", top, 1e-13),
         ("pair", pair, 1e-13),
-        // Kept by symmetry, not by the form of the stepper: rounding adds up like a random walk.
+        // Conserved by symmetry and not by the form of the stepper: rounding adds up like a random walk.
         ("third components of a symmetric pair", axes, 1e-12),
         ("SU(2)", family, 1e-14),
         ("quadratic field", field, 1e-13),
-        // The body swims away: x grows to thousands, and with it the rounding of x times the linear momentum.
+        // The body travels: x reaches thousands, and the rounding error of x times the linear momentum grows with it.
         ("heavy body in a fluid", fluid, 1e-11),
         ("floating body", floating, 1e-11),
     ] {
@@ -164,8 +164,8 @@ fn conserved_over_a_hundred_thousand_steps() {
     }
 }
 
-/// det(M + lambda J^2), Manakov's integrals, at some lambda, over the product of the lengths that the rows have on
-/// average (|M| is kept, too); a step with the wrong J^2 loses them.
+/// Manakov's integrals det(M + lambda J^2) at some lambda, divided by the product of the mean row lengths (|M| is also conserved).
+/// A step with the wrong J^2 does not conserve them.
 fn manakov<const N: usize>(m: &Square<N>, j: &[f64; N], lambda: f64) -> f64 {
     let mut a = *m;
     for (i, row) in a.iter_mut().enumerate() {
@@ -217,13 +217,13 @@ fn n_dimensions_keep_energy_and_manakov_integrals() {
     let four = manakov_drift::<4>(LONG, 0.0);
     let eight = manakov_drift::<8>(LONG / 10, 0.0);
     println!("SO(4) {four:.1e}, SO(8) {eight:.1e}");
-    // Momenta come from an orthonormal attitude, whose rounding wanders like the root of the number of steps.
+    // Momenta come from an orthonormal attitude, whose rounding error grows like the square root of the number of steps.
     assert!(four < 1e-12 && eight < 1e-12, "{four:e} {eight:e}");
     let wrong = manakov_drift::<4>(1000, 0.01);
     assert!(wrong > 1e-6, "{wrong:e}");
 }
 
-/// States at a fixed time for halved steps; orders from the differences of neighbours, with no need of a solution.
+/// Checks order two from states at a fixed time under step halving, by differences of neighbours and without an exact solution.
 fn confirms_order_two(name: &str, state: impl Fn(f64, u64) -> Vec<f64>) {
     let time = 2.0;
     let states: Vec<Vec<f64>> = (0..6)

@@ -1,8 +1,8 @@
-//! Hand-written steppers against the variation of the unreduced action: two steps from random states make the action
-//! stationary at the node between them, and its derivatives at both ends are the momenta that the stepper gives.
-//! Takes seeds; a stepper of another body fails, which is shown too.
+//! Checks hand-written steppers against the variation of the unreduced action. Two steps from random states make the action
+//! stationary at the middle node, and its derivatives at both ends equal the momenta of the stepper. A test checks that a stepper
+//! of another body fails.
 
-// Loops over the indices of small arrays read as the formulas they were typed from.
+// Index loops over small arrays keep the shape of the formulas.
 #![allow(clippy::needless_range_loop)]
 
 use clebsch_oracle::handwritten::attitude::{Quaternion, Vector, apply_transposed};
@@ -25,16 +25,17 @@ use std::array::from_fn;
 /// Random states of every system.
 const STATES: usize = 500;
 
-/// A hundred roundings of the largest summand of the action: quaternions, matrices of them, their products.
+/// A hundred rounding errors of the largest summand of the action, which contains quaternions, their matrices and products of
+/// these.
 const ROUNDING: f64 = 1e-14;
 
-/// Three nodes and the momenta at the first two, in the axes in which the action is varied.
+/// Three nodes, and the momenta at the first two in the axes along which the action is varied.
 struct Steps<const N: usize, const G: usize> {
     nodes: [[Square<f64, N>; G]; 3],
     momenta: [Vec<f64>; 2],
 }
 
-/// Largest violation of stationarity and of both momenta, over the scale of the action.
+/// Largest violation of stationarity and of both momenta, relative to the scale of the action.
 fn violation<const N: usize, const G: usize>(
     action: &impl DiscreteAction<N, G>,
     basis: &[Square<f64, N>],
@@ -67,7 +68,7 @@ fn worse(a: f64, b: f64) -> f64 {
     }
 }
 
-/// Worst violation over random states; at most one in ten may be refused.
+/// Largest violation over random states; at most one in ten may fail to step.
 fn worst(name: &str, mut state: impl FnMut(&mut Source) -> Option<f64>) -> f64 {
     let mut source = Source::seeded(77);
     let (mut largest, mut refused) = (0.0, 0);
@@ -198,7 +199,7 @@ fn coupled_bodies() {
     assert!(off < ROUNDING, "{off:e}");
 }
 
-/// A body in a field: state, two steps, comparison.
+/// A body in a field: draws a state, makes two steps, and compares.
 fn in_field<F: Field>(
     source: &mut Source,
     h: f64,
@@ -239,7 +240,7 @@ fn body_in_quadratic_field() {
     assert!(off < ROUNDING, "{off:e}");
 }
 
-/// Energy gU . Lambda^T z - p . Lambda^T b, written in space.
+/// Energy gU . Lambda^T z - p . Lambda^T b, in spatial form.
 struct TwoUniformFields {
     h: f64,
     second_moment: Square<f64, 3>,
@@ -290,7 +291,7 @@ fn body_in_two_fields() {
     assert!(off < ROUNDING, "{off:e}");
 }
 
-/// The family on SU(2), quaternions as the matrices of multiplication from the left.
+/// The family on SU(2), with quaternions as left-multiplication matrices.
 struct Family {
     h: f64,
     c: f64,
@@ -400,7 +401,7 @@ fn in_dimensions<const N: usize>(momentum: f64) -> f64 {
 
 #[test]
 fn bodies_in_four_and_eight_dimensions() {
-    // The larger momenta are beyond the fast iteration and need Newton on the group.
+    // The larger momenta exceed the range of the fast iteration and need Newton's method on the group.
     for off in [
         in_dimensions::<4>(0.5),
         in_dimensions::<8>(0.5),
@@ -411,7 +412,7 @@ fn bodies_in_four_and_eight_dimensions() {
     }
 }
 
-/// A body in a fluid, homogeneous matrices: everything is written with attitudes and positions at both ends.
+/// A body in a fluid with homogeneous matrices; every term uses the attitudes and positions at both ends.
 struct InFluid {
     h: f64,
     body: Submerged,
@@ -446,7 +447,7 @@ impl DiscreteAction<4, 1> for InFluid {
 
 #[test]
 fn kirchhoff_body() {
-    // Rotations about the axes of the body, then translations along them.
+    // Rotations about the body axes, then translations along them.
     let basis: Vec<Square<f64, 4>> = (0..6)
         .map(|n| {
             let turn = rotations();

@@ -1,5 +1,6 @@
-//! Hand-written steppers of spatial forms, coupled bodies, SU(2), fields and n dimensions: against reference numbers,
-//! against each other where two describe one motion, and Newton against the fixed point of the thesis. Takes nothing of the library under test.
+//! Hand-written steppers of spatial forms, coupled bodies, SU(2), fields and n dimensions: against reference numbers, against each
+//! other if two describe one motion, and Newton's method against the fixed-point iteration of the thesis. This file uses nothing of
+//! the library under test.
 
 use clebsch_oracle::handwritten::attitude::{
     Matrix, Quaternion, Vector, add_scaled, apply, cross, dot,
@@ -131,8 +132,8 @@ fn coupled_newton_needs_few_iterations() {
     }
 }
 
-/// The contraction that theory gives for the sweep over both bodies: the largest eigenvalue of
-/// I1^-1 B I2^-1 B^T with B = -eps hat(d1)^T Lambda hat(d2), by the power method.
+/// The theoretical contraction rate of a sweep over both bodies: the largest eigenvalue of I1^-1 B I2^-1 B^T with B = -eps
+/// hat(d1)^T Lambda hat(d2), by power iteration.
 fn theoretical_rate(data: &Pair, r: &Matrix) -> f64 {
     let inertia = |j: &Matrix| {
         let trace = j[0][0] + j[1][1] + j[2][2];
@@ -145,7 +146,7 @@ fn theoretical_rate(data: &Pair, r: &Matrix) -> f64 {
             cross(&m[0], &m[1]),
         ];
         let det = dot(&m[0], &rows[0]);
-        // The inverse of a symmetric matrix has the cofactors as rows.
+        // The rows of the inverse of a symmetric matrix are its cofactors over the determinant.
         apply(&rows, v).map(|x| x / det)
     };
     let [one, two] = data.poinsots.map(|j| inertia(&j));
@@ -176,7 +177,7 @@ fn the_fixed_point_contracts_at_a_rate_without_h() {
                 found.rate(),
                 found.changes.len()
             );
-            // Rotations of a few percent change the rate by as much.
+            // Rotations of a few percent change the rate by a few percent.
             assert!((found.rate() / theory - 1.0).abs() < 2.0 * h + 0.02);
             // Both solvers find the same step.
             let mut pair = CoupledBodies::start(&data, &q, &mu, h).expect("solvable");
@@ -239,7 +240,7 @@ fn su2_without_c_is_so3() {
     }
     println!("{worst:.1e}");
     assert!(worst < 1e-12, "{worst:e}");
-    // Another c is another integrator.
+    // A different c gives a different integrator.
     let off = matrices(&other.quaternion().matrix(), &body.attitude().matrix());
     assert!(off > 1e-6, "{off:e}");
 }

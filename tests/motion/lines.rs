@@ -1,5 +1,5 @@
-//! Lines compiled for every number of sites: steps from random states make the action stationary, whose
-//! sums over sites are typed here by hand; ends, rings, threads, errors.
+//! Chains compiled for any number of sites. Steps from random states make the action stationary; the tests write its sums over
+//! sites by hand. Tests also cover ends, rings, threads and errors.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(
@@ -43,11 +43,11 @@ use clebsch_models::lattices::geometrically_exact_rod::GeometricallyExactRodStat
 use clebsch_models::lattices::{STATEMENTS, toda_chain::*};
 use models::{Line, Linked, LinkedChainState, Rod, Toda};
 
-/// Sizes that are tried: shorter than any stencil, and longer.
+/// Tested numbers of sites: smaller than any stencil, and larger.
 const SIZES: [usize; 6] = [1, 2, 3, 5, 12, 50];
 
-/// Derivatives of the action are sums of terms of the size of momenta and forces, each rounded to a few
-/// units of 2e-16; a hundred of them leave 1e-13 of the largest.
+/// Tolerance: derivatives of the action sum terms of the size of momenta and forces, each with a few rounding errors of 2e-16. A
+/// hundred terms give 1e-13 of the largest.
 const STATIONARY: f64 = 2e-13;
 
 fn holds(line: &dyn Line, seed: u64) {
@@ -60,7 +60,7 @@ fn holds(line: &dyn Line, seed: u64) {
     );
 }
 
-/// Long, since every line is stepped at six sizes.
+/// Slow: steps every chain at six sizes.
 #[test]
 fn steps_from_random_states_make_the_action_stationary() {
     for n in SIZES {
@@ -87,7 +87,7 @@ fn a_wrong_sign_in_any_term_is_seen() {
     }
 }
 
-/// Long, since every line is derived and emitted twice.
+/// Slow: derives and emits every chain twice.
 #[test]
 fn the_compiled_statements_are_those_of_the_files() {
     let emitted = |text: &str| {
@@ -189,7 +189,7 @@ fn a_workspace_of_another_model_is_made_anew() {
     let mut own = hard.workspace(&two, 0.05).expect("a workspace");
     hard.step(&mut two, &mut own).expect("steps");
     assert!(one == two);
-    // A state of another number of sites is none of this model.
+    // The stepper rejects a state with another number of sites.
     let longer = Toda::ring(8).stepper();
     assert!(matches!(
         longer.step(&mut one, &mut own),
@@ -197,8 +197,8 @@ fn a_workspace_of_another_model_is_made_anew() {
     ));
 }
 
-/// A state that is kept is put back to the last bit, and goes on to rounding, with a workspace made for it; one of another
-/// number of sites is refused and left as it was.
+/// A snapshot restores the state bit for bit, and the run continues with a new workspace to rounding. A state with another number
+/// of sites rejects the snapshot and stays unchanged.
 #[test]
 fn a_state_is_kept_and_goes_on() {
     macro_rules! kept {
@@ -221,7 +221,7 @@ fn a_state_is_kept_and_goes_on() {
             for _ in 0..5 {
                 stepper.step(&mut again, &mut work).expect("steps");
             }
-            // A workspace that is made anew has the rounding of its own solution, once.
+            // A new workspace adds the rounding error of its own solution once.
             let apart: f64 = $apart(&again, &state);
             assert!(again.node() == state.node() && apart < 1e-13, "{apart:e}");
             let (mut other, _) = $other.start($other_initial, 0.03).expect("starts");

@@ -1,9 +1,9 @@
-//! Steppers, emitted and written by hand, in motion: reference states, orders, what is conserved, symplecticity,
-//! solvers and their refusals, ensembles. One binary, since linking is most of what a test costs.
+//! Tests of emitted and hand-written steppers in motion: reference states, orders, conservation, symplecticity, solvers and their
+//! errors, ensembles. All tests share one binary, because linking dominates the build time of a test.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables, confusable_idents)]
-// Some models are of first order or without a limit on purpose, of which the macro warns by this lint.
+// Some models are deliberately of first order or lack a small-step limit; the macro warns about these with this lint.
 #![allow(deprecated)]
 
 mod allocation;

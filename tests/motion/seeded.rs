@@ -1,10 +1,10 @@
-//! Dual numbers of these tests, all of one size: every size compiles all models and solvers anew, which is half of
-//! what the binary takes to build. A test seeds as many variables as it needs and reads no other derivatives.
+//! Dual numbers of a single size for these tests. Every further size would compile all models and solvers again, which is half the
+//! build time of the binary. A test seeds as many variables as it needs and ignores the other derivatives.
 
 use clebsch::Dual;
 
-/// Derivatives a number has room for: as many as the largest phase has, an ellipsoid on GL(4) with its momentum.
+/// Number of derivatives: enough for the largest phase, an ellipsoid on GL(4) with its momentum.
 pub const SEEDS: usize = 32;
 
-/// A number with derivatives with respect to as many variables as a test seeds; all others are zero.
+/// A number with derivatives with respect to the variables that a test seeds; all other derivatives are zero.
 pub type Seeded = Dual<SEEDS>;

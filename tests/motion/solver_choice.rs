@@ -1,5 +1,5 @@
-//! Solvers chosen by name for every model of the gallery that offers a choice: the same motion by each of them, and
-//! refusals that say what there is and which step would do.
+//! Solvers selected by name, for every gallery model with a choice. Each solver must give the same motion, and each error must list
+//! the available solvers and the admissible step size.
 
 use clebsch::card::{Card, OpenError, Settings, Trajectory};
 use clebsch::solvers::Method;
@@ -7,7 +7,7 @@ use clebsch::{StartError, StepCause};
 use clebsch_models::gallery;
 use clebsch_oracle::physics::measure::worse;
 
-/// Nodes that are compared: long enough for a wrong solution to show, too short for the motion to amplify rounding.
+/// Number of nodes to compare: enough for a wrong solution to show, and few enough that the motion does not amplify rounding.
 const STEPS: usize = 50;
 
 fn observed(trajectory: &dyn Trajectory, card: &Card) -> Vec<f64> {
@@ -24,7 +24,7 @@ fn by(method: Option<Method>, order: Option<u32>, h: f64) -> Settings {
     }
 }
 
-/// The largest difference of the observables over the largest of them, on the way of both.
+/// The largest difference of the observables relative to the largest observable, along both trajectories.
 fn difference(card: &Card, a: &mut dyn Trajectory, b: &mut dyn Trajectory) -> f64 {
     let mut worst: f64 = 0.0;
     for _ in 0..STEPS {
@@ -50,7 +50,7 @@ fn every_solver_gives_the_same_motion() {
                 let mut own = open(by(None, None, case.h)).expect("a good case");
                 let mut other = match open(by(Some(method), None, case.h)) {
                     Ok(other) => other,
-                    // Of a flat body the Hamiltonian matrix has the eigenvalue zero, which has no sign.
+                    // For a flat body the Hamiltonian matrix has a zero eigenvalue, which has no sign.
                     Err(OpenError::Start(StartError::Refused(StepCause::MoserVeselov(e))))
                         if e.ratio < 1.0 =>
                     {
@@ -63,8 +63,8 @@ fn every_solver_gives_the_same_motion() {
                     Err(e) => panic!("{} {} {name}: {e}", card.kebab, case.name),
                 };
                 let worst = difference(&card, own.as_mut(), other.as_mut());
-                // A solve is good to a few hundred roundings, those of a root of the Hamiltonian matrix among them,
-                // and fifty steps add them up.
+                // A solution is accurate to a few hundred rounding errors, including those of a root of the Hamiltonian matrix.
+                // Fifty steps add them up.
                 assert!(
                     worst < 2e-12,
                     "{} {} {name}: {worst:e}",
@@ -81,7 +81,7 @@ fn every_solver_gives_the_same_motion() {
     );
 }
 
-/// Between the orders the motions differ by far more than between the solvers: the comparison above can fail.
+/// Different orders differ by far more than different solvers, so the comparison above can fail.
 #[test]
 fn preprocessed_orders_take_every_solver() {
     let entry = clebsch_models::find("free-body").expect("in the gallery");
@@ -101,7 +101,7 @@ fn preprocessed_orders_take_every_solver() {
     }
 }
 
-/// The step that a refusal offers is taken, and a little more is not.
+/// The step size that the error suggests works, and a slightly larger one fails.
 #[test]
 fn refusals_offer_the_largest_step_whatever_the_solver() {
     for model in [
@@ -121,7 +121,7 @@ fn refusals_offer_the_largest_step_whatever_the_solver() {
             };
             assert!(e.ratio > 1.0, "{model} {method}: {e}");
             let largest = e.largest_step.expect("a step that would do");
-            // Iterations may stop a little before the bound, where the solution is a double root.
+            // Iterations may fail slightly below the bound, where the solution is a double root.
             let inside = (1.0 - 1e-5) * largest;
             assert!(
                 open(by(Some(method), None, inside)).is_ok(),
@@ -156,8 +156,8 @@ fn an_unknown_solver_is_answered_with_those_there_are() {
     );
 }
 
-/// Compositions pass through other states when their step is shorter, and modified moments depend on it: what is
-/// offered is taken all the same.
+/// With a smaller step size, a composition passes through different states, and modified moments depend on the step size. The
+/// suggested step size must work nevertheless.
 #[test]
 fn higher_orders_offer_the_largest_step_too() {
     for model in [
@@ -185,7 +185,7 @@ fn higher_orders_offer_the_largest_step_too() {
             assert!(largest > 0.1 * case.h, "{model} {order}: {cause}");
             let mut made = open(by(None, Some(order), largest)).expect("the step offered");
             assert!(made.step().is_ok(), "{model} {order}: {cause}");
-            // Not only the first of several: at a longer one the start or the step is refused.
+            // The suggestion is the largest solvable step size: with a larger one, the start or the step fails.
             let longer = open(by(None, Some(order), 1.001 * largest));
             assert!(
                 longer.is_err() || longer.is_ok_and(|mut t| t.step().is_err()),

@@ -1,5 +1,5 @@
-//! Generated steppers of spatial forms, coupled bodies and bodies in fields against hand-written ones: one step from
-//! ten thousand random states each, a thousand of coupled bodies. Takes nothing but seeds; a stepper of a slightly other system fails, shown here too.
+//! Compares generated steppers of spatial forms, coupled bodies and bodies in fields with hand-written ones: one step from ten
+//! thousand random states each, a thousand for coupled bodies. Tests check that a stepper of a slightly different system fails.
 
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Rotation, SpatialMomentum};
@@ -30,21 +30,21 @@ use clebsch_oracle::physics::cases::Start;
 use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::measure::worse;
 
-/// Some thirty roundings of numbers of order one, for data that are not magnified.
+/// About thirty rounding errors of numbers of order one, for data without amplification.
 const ONE_STEP: f64 = 1e-14;
 
-/// Relative change of the data by which conditioning is measured: far above rounding, far below one.
+/// Relative change of the data to measure conditioning: far above rounding, far below one.
 const NUDGE: f64 = 1e-6;
 
-/// A state with its data, one step of it in two ways, and the same with one kind of datum changed a little.
+/// A state with its data, one step of it in two ways, and a copy with one kind of datum slightly changed.
 trait System: Sized {
-    /// How many random states are tried.
+    /// Number of random states.
     const STATES: u32 = 10_000;
 
     fn draw(draws: &mut Draws) -> Self;
-    /// Momenta for 0, attitude for 1, anything else a parameter: larger by a share `by`, or turned by that angle.
+    /// Increases momenta (kind 0) or a parameter (any other kind) by the fraction `by`; kind 1 rotates the attitude by that angle.
     fn nudged(&self, kind: u32, by: f64) -> Self;
-    /// Attitude entries, momenta over the largest one, other quantities over their size.
+    /// Attitude entries, momenta relative to the largest, other quantities relative to their size.
     fn by_hand(&self) -> Option<Vec<f64>>;
     fn generated(&self) -> Option<Vec<f64>>;
 }
@@ -54,15 +54,15 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| (x - y).abs()).fold(0.0, worse)
 }
 
-/// How much one step magnifies small changes of its data, at least one: changes of the hand-written result over the
-/// relative change of momenta, attitudes or parameters that makes them.
+/// The factor, at least one, by which one step amplifies small changes: the change of the hand-written result over the relative
+/// change of momenta, attitudes or parameters.
 fn conditioning<S: System>(state: &S, result: &[f64]) -> f64 {
     (0..3)
         .filter_map(|kind| Some(apart(&state.nudged(kind, NUDGE).by_hand()?, result) / NUDGE))
         .fold(1.0, worse)
 }
 
-/// Largest difference over the conditioning of each state; both steppers must refuse the same states.
+/// Largest difference divided by the conditioning of each state. Both steppers must fail for the same states.
 fn single_steps<S: System>(name: &str, mistaken: f64) -> f64 {
     let mut draws = Draws::new(31);
     let (mut worst, mut bare, mut hardest, mut refused) = (0.0, 0.0, 0.0_f64, 0);
@@ -122,7 +122,7 @@ fn rotation(q: &Quaternion) -> Rotation<f64> {
     Rotation::from_quaternion(q.0).expect("a unit quaternion")
 }
 
-/// Entries of attitudes as they are, and momenta over the length `size`.
+/// Attitude entries unchanged, and momenta divided by `size`.
 fn listed(attitudes: &[Matrix3<f64>], momenta: &[Vector3<f64>], size: f64) -> Vec<f64> {
     let entries = attitudes
         .iter()
@@ -144,7 +144,7 @@ fn length(v: &Vector) -> f64 {
     dot(v, v).sqrt()
 }
 
-/// The free body seen from space; the momentum of the start is taken to space.
+/// The free body in the spatial form; the initial momentum is rotated to space.
 struct SpatialBody(Start);
 
 impl SpatialBody {
@@ -215,7 +215,7 @@ fn nudged_start(start: &Start, kind: u32, by: f64) -> Start {
     moved
 }
 
-/// The heavy top seen from space.
+/// The heavy top in the spatial form.
 struct SeenTop(Start);
 
 impl SeenTop {
@@ -299,7 +299,7 @@ impl Joined {
 }
 
 impl System for Joined {
-    /// Fewer: where a step is refused, the one to offer instead is searched for, a tenth of a second.
+    /// Fewer states: each failed step searches for an admissible step size, which takes a tenth of a second.
     const STATES: u32 = 1_000;
 
     fn draw(draws: &mut Draws) -> Self {
@@ -318,8 +318,8 @@ impl System for Joined {
                 }
             }
         }
-        // Momenta of the free bodies, each for its own step, are brought to one step and well within the reach of
-        // the pair, whose coupling makes it lighter.
+        // Rescales the momenta of the free bodies, each drawn for its own step size, to one step size and well within the limit of
+        // the pair, whose coupling lowers the inertia.
         let h = draws.uniform(0.01, 0.2);
         let momenta = [one, two].map(|s| s.body_momentum.map(|c| 0.4 * c * s.h / h));
         Joined {
@@ -390,7 +390,7 @@ impl System for Joined {
     }
 }
 
-/// A body with a quadratic field; the torque has the size of that of the drawn top.
+/// A body in a quadratic field; the torque has the size of the torque on the random top.
 struct InQuadraticField(Start, Matrix);
 
 impl System for InQuadraticField {
@@ -447,7 +447,7 @@ impl System for InQuadraticField {
     }
 }
 
-/// A body in two uniform fields: the drawn top with a dipole.
+/// A body in two uniform fields: the random top with a dipole.
 struct InTwoFields(Start, TwoFields);
 
 impl System for InTwoFields {
@@ -506,7 +506,7 @@ impl System for InTwoFields {
 fn agree<S: System>(name: &str) {
     let worst = single_steps::<S>(name, 0.0);
     assert!(worst < ONE_STEP, "{name}: {worst:e}");
-    // Inertia larger by one part in a million is another system, and is seen to be.
+    // An inertia larger by one part in a million is a different system, and the comparison detects it.
     let worst = single_steps::<S>(name, 1e-6);
     assert!(worst > 1e4 * ONE_STEP, "{name}, other inertia: {worst:e}");
 }

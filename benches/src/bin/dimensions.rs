@@ -1,5 +1,5 @@
-//! Time per step of the generated body of four to eight dimensions, beside the one written by hand, at some parts of the
-//! bound of solvability. Takes no arguments; prints a table.
+//! Time per step of the generated and the hand-written free body in four to eight dimensions, at several fractions of the
+//! solvability bound. Takes no arguments; prints a table.
 //! `cargo run --release --manifest-path benches/Cargo.toml --bin dimensions`, a minute.
 
 // The fields of the models are Greek letters, as in the papers.
@@ -13,7 +13,7 @@ use clebsch_comparisons::handwritten::body_n::BodyN as Written;
 use clebsch_models::body_n::{BodyN, BodyNInitial, BodyNParameters, entry};
 use std::hint::black_box;
 
-/// Steps of one block.
+/// Steps per block.
 const STEPS: u32 = 500;
 
 /// Groups of four blocks, in the order generated, hand, hand, generated.

@@ -1,6 +1,5 @@
-//! Ensembles: time per body and step, alone and side by side, for each instruction set, in cache and out of it.
-//! Takes no arguments; prints tables.
-//! `cargo run --release --manifest-path benches/Cargo.toml --bin ensembles`, about a minute.
+//! Ensembles: time per body and step, one by one and in lanes, for each instruction set, in and out of the cache. Takes no
+//! arguments; prints tables. `cargo run --release --manifest-path benches/Cargo.toml --bin ensembles`, about a minute.
 
 use clebsch::integrate::{Ensemble, InstructionSet, Model, Work};
 use clebsch::nalgebra::{Matrix3, Vector3};
@@ -31,7 +30,7 @@ clebsch::model! {
 
 const H: f64 = 0.1;
 
-/// Interleaved rounds.
+/// Number of interleaved rounds.
 const ROUNDS: usize = 25;
 
 const SETS: [(&str, InstructionSet); 3] = [
@@ -40,7 +39,7 @@ const SETS: [(&str, InstructionSet); 3] = [
     ("best", InstructionSet::Best),
 ];
 
-/// Differs from body to body: a number between 0 and 1.
+/// A number between 0 and 1 that differs from body to body.
 fn spread(body: usize, which: usize) -> f64 {
     ((body * 7919 + which * 104_729) % 10_007) as f64 / 10_007.0
 }
@@ -106,7 +105,7 @@ fn coupled(body: usize) -> (CoupledBodiesParameters, CoupledBodiesInitial) {
     (parameters, initial)
 }
 
-/// A way to do the steps, and its times per body and step in nanoseconds.
+/// An implementation, and its times per body and step in nanoseconds.
 struct Way<'a> {
     name: String,
     run: Box<dyn FnMut() + 'a>,
@@ -123,7 +122,7 @@ impl<'a> Way<'a> {
     }
 }
 
-/// Times all ways in turn, several rounds; `body_steps` are done in one call.
+/// Times all implementations in turn, in several rounds; one call does `body_steps` steps.
 fn race(title: &str, body_steps: f64, mut ways: Vec<Way<'_>>) {
     for round in 0..ROUNDS + 2 {
         for way in &mut ways {
@@ -175,7 +174,7 @@ fn sets<'a, M: Model<Scalar = f64> + 'a, const N: usize>(
     }
 }
 
-/// Bodies alone and side by side.
+/// Bodies one by one and in lanes.
 fn table<M: Model<Scalar = f64>>(
     title: &str,
     body: impl Fn(usize) -> (M::Parameters, M::Initial),
@@ -210,7 +209,7 @@ fn table<M: Model<Scalar = f64>>(
     );
 }
 
-/// The Moser-Veselov equation for one momentum a body.
+/// The Moser-Veselov equation for one momentum per body.
 struct Solve<'a, const N: usize>(&'a [(Poinsot<Lanes<N>>, Vector3<Lanes<N>>)]);
 
 impl<const N: usize> Work for Solve<'_, N> {
@@ -240,7 +239,7 @@ fn equations<const N: usize>(count: usize) -> Vec<(Poinsot<Lanes<N>>, Vector3<La
 /// A group of free bodies: the body, its momentum in the body frame and its attitude.
 type Turning<const N: usize> = (Poinsot<Lanes<N>>, Vector3<Lanes<N>>, Rotation<Lanes<N>>);
 
-/// Free bodies whose root is found anew at every step.
+/// Free bodies whose root is computed again in every step.
 struct Anew<'a, const N: usize>(&'a mut [Turning<N>], usize);
 impl<const N: usize> Work for Anew<'_, N> {
     type Output = ();

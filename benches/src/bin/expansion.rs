@@ -1,11 +1,11 @@
-//! How long the macro takes for each model of the gallery, in an engine built as rustc builds it: unoptimised.
-//! Takes nothing; prints the least, median and largest of 25 processes in milliseconds, each the first expansion of its
-//! process. `cargo run --release --manifest-path benches/Cargo.toml --bin expansion`
+//! Time of the macro for each gallery model, in an unoptimised engine, as rustc builds it. Prints the minimum, median and maximum
+//! over 25 processes in milliseconds, each the first expansion of its process.
+//! `cargo run --release --manifest-path benches/Cargo.toml --bin expansion`
 
 use std::io::Write as _;
 use std::process::{Command, Stdio};
 
-/// Processes a model.
+/// Processes per model.
 const RUNS: usize = 25;
 
 fn once(source: &str) -> Option<u32> {

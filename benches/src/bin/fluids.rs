@@ -1,5 +1,5 @@
-//! Emitted steppers of fluids beside steps written by hand over the same operators: what stands between the
-//! functionals is compared, and what a particle and a step take. In computed time of one thread.
+//! Emitted steppers of fluids against hand-written steps with the same functionals. Compares the code between the functionals, and
+//! the time per particle and step, as CPU time of one thread.
 //!
 //! `cargo run --release --manifest-path benches/Cargo.toml --bin fluids`
 
@@ -157,7 +157,7 @@ fn emitted_grid(n: usize) -> impl FnMut() {
     move || model.step(&mut state, &mut work).expect("steps")
 }
 
-/// The drift on a rotating plane: the momentum that leaves a node is `m (V + f/2 perp(X)) + ...`, centred.
+/// The drift on a rotating plane: the momentum at the start of the edge is `m (V + f/2 perp(X)) + ...`, centred.
 struct Drift {
     turn: f64,
     dt: f64,
@@ -169,7 +169,7 @@ impl Drift {
         Self { turn, dt }
     }
 
-    /// Moves a particle and gives the momentum with which it arrives.
+    /// Moves a particle and returns its momentum at the end of the edge.
     fn go(&self, x: &mut Place, p: &Place, m: f64) -> Place {
         let known = (p / m - Place::new(-x[1], x[0]) * (F / 2.0)) * self.dt;
         // (1 + turn perp) d = known.
@@ -180,7 +180,7 @@ impl Drift {
     }
 }
 
-/// By hand: every particle drifts, functionals and their transposed derivatives, every particle is pushed.
+/// Hand-written step: drift of all particles, functionals and their transposed derivatives, kick of all particles.
 fn cells(n: usize, smoothed: bool) -> impl FnMut() {
     let (mut x, m, mut p) = start(n);
     let dx = 1.0 / n as f64;
@@ -229,7 +229,7 @@ fn cells(n: usize, smoothed: bool) -> impl FnMut() {
     }
 }
 
-/// The same on a grid, the smoother its own adjoint.
+/// The same on a grid with a self-adjoint smoother.
 fn grid(n: usize) -> impl FnMut() {
     let (mut x, m, mut p) = start(n);
     let cells = n / 2;

@@ -1,7 +1,7 @@
-//! Time per site and step of lines that are compiled for every number of sites: Toda's chain, the sine-Gordon equation, coupled
-//! tops, elastic rods, inextensible rods, shallow water and bodies joined by their velocities beside the same by hand, tops and rod
-//! beside the lone heavy top, the rod in quaternions beside the one in rotations, lines with held constraints beside the elastic
-//! rod. Takes part of the name of a row, for those rows alone; prints a table.
+//! Time per site and step of chains compiled for any number of sites. Compares Toda's chain, the sine-Gordon equation, coupled
+//! tops, elastic and inextensible rods, shallow water and velocity-coupled bodies with hand-written steppers. Also compares tops
+//! and rod with single heavy tops, the rod in quaternions with the rod in rotations, and constrained chains with the elastic rod.
+//! Takes part of a row's name to select rows; prints a table.
 //! `cargo run --release --manifest-path benches/Cargo.toml --bin lines [-- ROW]`, two minutes.
 
 // The fields of the models are Greek letters, as in the papers.
@@ -26,15 +26,15 @@ use explicit::{
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Sites times steps of one block.
+/// Sites times steps per block.
 const WORK: usize = 1_000_000;
 
-/// Blocks each way, interleaved.
+/// Interleaved blocks for each implementation.
 const BLOCKS: usize = 11;
 
 const SIZES: [usize; 4] = [100, 1_000, 10_000, 100_000];
 
-/// The block of so many sites.
+/// The block for a number of sites.
 type Block = fn(usize) -> Box<dyn FnMut()>;
 
 fn main() {
@@ -233,7 +233,7 @@ fn diagonal(a: f64, b: f64, c: f64) -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::new(a, b, c))
 }
 
-/// The same rod in unit quaternions: stiffnesses and moments of inertia are those of the second moments there.
+/// The same rod in unit quaternions, with the stiffnesses and inertias that correspond to the second moments.
 fn in_quaternions(n: usize) -> impl FnMut() {
     let s = 0.1;
     let mass = |i: usize| s * if i == 0 || i == n { 0.5 } else { 1.0 };
@@ -267,7 +267,7 @@ fn in_quaternions(n: usize) -> impl FnMut() {
     }
 }
 
-/// A rod that cannot be stretched, free, its sections turning in waves.
+/// A free inextensible rod with waves in the rotation of its sections.
 struct Waves {
     masses: Vec<f64>,
     places: Vec<Vector>,
@@ -327,7 +327,8 @@ fn inextensible(n: usize) -> impl FnMut() {
         rod.step(&mut state, &mut work).expect("steps");
         own.step().expect("steps");
     }
-    // Twenty steps in each of which forces are found to some roundings of places, up to sites/10, by masses over the step.
+    // In each of twenty steps, forces are solved to a few rounding errors of positions, which reach sites/10, times mass over step
+    // size.
     let bound = 20.0 * 32.0 * f64::EPSILON * (SPACING * n as f64) * SPACING / 0.001;
     let far = state.momentum_φ().iter().zip(own.momenta());
     let far = clebsch::scalar::largest(far.map(|(x, y)| (x - Vector3::from(*y)).amax()));
@@ -370,7 +371,7 @@ fn inextensible_by_hand(n: usize) -> impl FnMut() {
     }
 }
 
-/// A chain of rigid links, free, in waves.
+/// A free chain of rigid links with waves.
 fn links(n: usize) -> impl FnMut() {
     let a = 0.1;
     let parameters = HangingChainParameters {
@@ -398,7 +399,7 @@ fn links(n: usize) -> impl FnMut() {
     }
 }
 
-/// Attitudes and momenta of a row of bodies.
+/// Attitudes and momenta of a chain of bodies.
 fn of_bodies(n: usize) -> (Vec<Rotation>, Vec<Vector3<f64>>) {
     let turns =
         (0..n).map(|i| Rotation::exp(&Vector3::new(0.2 * (0.1 * i as f64).sin(), 0.6, 0.0)));
@@ -432,7 +433,7 @@ fn bodies(n: usize) -> impl FnMut() {
         row.step(&mut state, &mut work).expect("steps");
         own.step().expect("steps");
     }
-    // Twenty steps of a few roundings each.
+    // Twenty steps with a few rounding errors each.
     let far = state.spatial_momentum_Λ().zip(own.spatial_momenta());
     let far = clebsch::scalar::largest(far.map(|(x, y)| (x.0 - Vector3::from(y)).amax()));
     assert!(far < 1e-12, "both are the same motion: {far:e}");

@@ -1,6 +1,6 @@
-//! A hundred million steps of the generated free body from every start of the gallery, with and without the projection
-//! of every 64th step: how far energy, Casimir, spatial momentum and phase go, and how much the projection corrects.
-//! Takes no arguments; prints tables. `cargo run --release --manifest-path benches/Cargo.toml --bin long_run`, two minutes.
+//! A hundred million steps of the generated free body from every start of the gallery, with and without the projection every 64
+//! steps. Measures the errors of energy, Casimir, spatial momentum and phase, and the corrections of the projection. Takes no
+//! arguments; prints tables. `cargo run --release --manifest-path benches/Cargo.toml --bin long_run`, two minutes.
 
 #[path = "long_run/course.rs"]
 mod course;
@@ -52,7 +52,7 @@ fn sizes(tally: &course::Tally) -> String {
     format!("{:.1e}, {:.1e}", tally.mean(), tally.largest)
 }
 
-/// The table of what ought to stay.
+/// The table of the conserved quantities.
 fn drifts(courses: &[(&str, Course)]) {
     println!(
         "| body | energy | square of M | spatial momentum, first million | whole run | its growth (standard errors) |"
@@ -71,7 +71,7 @@ fn drifts(courses: &[(&str, Course)]) {
     }
 }
 
-/// The starts of the gallery's cases, each once; and the same numbers read as the Poinsot matrix J, where they make a body.
+/// The distinct starts of the gallery's cases, and the same numbers as the Poinsot matrix J if they are admissible.
 fn starts() -> Vec<(String, Start)> {
     let mut found: Vec<(String, Start)> = Vec::new();
     let mut add = |name: String, start: Start| {
@@ -98,7 +98,7 @@ fn starts() -> Vec<(String, Start)> {
             )
         };
         add(say("I", moments), start_of(moments, body_momentum, case.h));
-        // The thesis says of some of its triples neither.
+        // For some of its triples, the thesis says neither.
         let [a, b, c] = moments;
         let read = start_of([b + c, c + a, a + b], body_momentum, case.h);
         if case.h == 0.1 && case.name.starts_with("figure") {

@@ -1,7 +1,6 @@
-//! Time per particle and step of moving Voronoi meshes: following the particles by flips or making the mesh anew, areas
-//! with their derivatives, smoothed depths, cores. The particles move as a layer of fluid does, in vortices of a tenth
-//! of the wave speed. Takes the numbers of particles, or none for 1e4, 1e5 and 1e6; prints a table.
-//! `cargo run --release --manifest-path benches/Cargo.toml --bin meshes`, two minutes.
+//! Time per particle and step of moving Voronoi meshes: update by flips or reconstruction, areas with derivatives, smoothed depths,
+//! cores. The particles move like a fluid layer, in vortices with a tenth of the wave speed. Takes the numbers of particles, or
+//! none for 1e4, 1e5 and 1e6; prints a table. `cargo run --release --manifest-path benches/Cargo.toml --bin meshes`, two minutes.
 
 use clebsch::mesh::placement::{Jitter, lattice, relax};
 use clebsch::mesh::{
@@ -12,7 +11,7 @@ use clebsch_benches::blocks::computed;
 
 type Plane = SVector<f64, 2>;
 
-/// Steps before the clock starts, and under it.
+/// Steps before the measurement, and measured steps.
 const BEFORE: usize = 10;
 const STEPS: usize = 20;
 
@@ -40,7 +39,7 @@ fn main() {
     }
 }
 
-/// Times each of the works of a step.
+/// Times of each part of a step.
 #[derive(Default)]
 struct Times([f64; 7]);
 

@@ -1,5 +1,5 @@
-//! Time per particle and step of particle-mesh shallow water in a channel, four particles a cell: depth, smoothing and
-//! forces by the runtime's functionals beside a plain loop over particles. Takes no arguments; prints a table.
+//! Time per particle and step of particle-mesh shallow water in a channel with four particles per cell: depth, smoothing and forces
+//! by the runtime's functionals, against a plain loop over particles. Takes no arguments; prints a table.
 //! `cargo run --release --manifest-path benches/Cargo.toml --bin particle_mesh`, a minute.
 
 use clebsch::mesh::{Domain, Functional, Nodes, Setting, deposit, smooth};
@@ -11,10 +11,10 @@ use std::time::Instant;
 
 type Place = SVector<f64, 2>;
 
-/// Particles times steps of one block.
+/// Particles times steps per block.
 const WORK: usize = 2_000_000;
 
-/// Blocks each way, interleaved.
+/// Interleaved blocks for each implementation.
 const BLOCKS: usize = 7;
 
 fn main() {
@@ -53,8 +53,8 @@ fn main() {
     two_threads();
 }
 
-/// The emitted stepper of a channel with 512 x 512 cells on one thread and on two, step by step in turn: the same bits, in
-/// shares of the wall time, which takes two cores that nothing else uses.
+/// The emitted stepper of a channel with 512 x 512 cells on one and on two threads, in alternating steps. Checks for equal bits,
+/// and prints the ratio of wall times, which needs two idle cores.
 fn two_threads() {
     let n = 512;
     let setting = setting(n);
@@ -106,7 +106,7 @@ fn two_threads() {
     );
 }
 
-/// Particles near the nodes of a lattice, in its order or not.
+/// Particles near the nodes of a grid, in grid order or in random order.
 fn places(n: usize, sorted: bool) -> Vec<Place> {
     let side = 2 * n;
     let mut seed = 1_u64;
@@ -130,7 +130,7 @@ fn places(n: usize, sorted: bool) -> Vec<Place> {
     all
 }
 
-/// By functionals.
+/// The implementation with functionals.
 struct Water {
     deposit: deposit<f64, 2>,
     smooth: smooth<f64, 2>,
@@ -204,7 +204,7 @@ fn push(x: &mut [Place], u: &mut [Place], forces: &[Place]) {
     }
 }
 
-/// By a loop over particles in the order of their numbers, as one writes it.
+/// The implementation with a plain loop over particles in the order of their numbers.
 struct Plain {
     n: usize,
     smooth: smooth<f64, 2>,
@@ -270,7 +270,7 @@ impl Plain {
         time / (steps * self.x.len()) as f64
     }
 
-    /// Cell, and position within it.
+    /// The cell, and the position within it.
     #[inline(always)]
     fn locate(&self, x: &Place) -> ([usize; 2], [f64; 2]) {
         let (along, across) = (x[0].abs(), x[1]);

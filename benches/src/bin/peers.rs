@@ -1,6 +1,6 @@
-//! The generated free body beside other methods: time per step, and time to an error, from one run.
-//! `cargo run --release --manifest-path benches/Cargo.toml --bin peers`, about four minutes; a folder behind `--` gets the
-//! picture. heyoka, SciPy and PyElastica are installed and measured where Python is present, unless `--without-python`.
+//! The generated free body against other methods: time per step, and time to reach an error, from one run.
+//! `cargo run --release --manifest-path benches/Cargo.toml --bin peers`, about four minutes; an argument after `--` names a folder
+//! for the figure. If Python is available, heyoka, SciPy and PyElastica are installed and measured, unless `--without-python`.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables)]

@@ -1,5 +1,5 @@
-//! A free elastic rod that bends, beside the same one by PyElastica: the path of its first end, and the time of a step. Takes no
-//! arguments; prints a table. PyElastica is installed and measured where Python is present; without it that column is left out.
+//! A free bending elastic rod, against PyElastica: the path of its first end, and the time of a step. Takes no arguments; prints a
+//! table. If Python is available, PyElastica is installed and measured; otherwise the table omits that column.
 //! `cargo run --release --manifest-path benches/Cargo.toml --bin rods`
 
 // The fields of the models are Greek letters, as in the papers.
@@ -14,7 +14,7 @@ use clebsch_models::lattices::geometrically_exact_rod::*;
 use serde_json::Value;
 use std::f64::consts::PI;
 
-// The data of python/rod.py.
+// The parameters of python/rod.py.
 const LENGTH: f64 = 1.0;
 const RADIUS: f64 = 0.05;
 const DENSITY: f64 = 1000.0;
@@ -26,7 +26,7 @@ const STEPS: usize = 10_000;
 const EVERY: usize = 100;
 const ROUNDS: usize = 5;
 
-/// The path of the first end across, and the seconds of a step.
+/// The transverse path of the first end, and the seconds per step.
 struct Run {
     path: Vec<f64>,
     seconds: f64,
@@ -37,7 +37,7 @@ fn generated(n: usize, h: f64) -> Run {
     let area = PI * RADIUS * RADIUS;
     let moment = area * RADIUS * RADIUS / 4.0;
     let mass = |i: usize| DENSITY * area * s * if i == 0 || i == n { 0.5 } else { 1.0 };
-    // The factor of a circular section.
+    // The shear factor of a circular section.
     let across = 27.0 / 28.0 * SHEAR * area;
     let [bending, twist] = [YOUNG * moment, SHEAR * 2.0 * moment];
     let parameters = GeometricallyExactRodParameters {
@@ -87,7 +87,7 @@ fn generated(n: usize, h: f64) -> Run {
     }
 }
 
-/// The same by PyElastica, or why not.
+/// The run with PyElastica, or an error message.
 fn elastica(segments: usize) -> Result<Run, String> {
     let (result, count) = (format!("rod-{segments}.json"), segments.to_string());
     let read = python::told("rod.py", &result, &["--segments", &count])?;

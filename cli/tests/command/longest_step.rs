@@ -112,10 +112,9 @@ fn a_wrong_sign_between_neighbours_is_warned_of() {
     }
 }
 
-/// Long, since rows are derived in four groups.
-/// Fields, rotations of the plane, rigid motions and linear maps in rows of springs have the frequency of a row
-/// of n + 1 free beads, ω = 2 sqrt(k/m) sin(π n/(2n + 2)). It depends neither on the unit of mass nor on the
-/// step size of the case.
+/// Slow: derives chains on four groups.
+/// Chains of springs on fields, planar rotations, rigid motions and linear maps have the same frequency as n + 1 free
+/// beads: ω = 2 sqrt(k/m) sin(π n/(2n + 2)). It depends neither on the unit of mass nor on the step size of the case.
 #[test]
 fn rows_of_springs_have_one_limit_in_all_groups() {
     let folder = Folder::new("rows-of-springs");
@@ -417,10 +416,10 @@ fn where_nothing_is_known_of_a_held_line_the_reason_is_said() {
     );
 }
 
-/// Long, since the limit of chains of links is searched for with every force.
+/// Slow: searches for the limit of chains of links with every force.
 /// Links that hang in a rotating plane oscillate along their constraints, where the Coriolis force vanishes.
-/// Neither this force nor the origin of its potential changes the limit. At rest the momenta are those of this
-/// potential.
+/// Neither this force nor the origin of its potential changes the limit. At rest, the momenta are the ones of
+/// this potential.
 #[test]
 fn terms_linear_in_velocities_leave_the_limit_along_constraints() {
     let folder = Folder::new("coriolis");

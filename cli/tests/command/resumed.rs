@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::process::{Child, Stdio};
 
-/// The runs: a free body whose solver keeps its own constants, a forced body, a body solved by Newton's method,
+/// The runs: a free body whose solver stores its own constants, a forced body, and a body with Newton's method. Also
 /// composed steps, a body with a factor in its own frame, and a chain read from its file.
 const RUNS: [&str; 6] = [
     "free-body --steps 300000 --every 100 --order 6",

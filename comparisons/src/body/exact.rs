@@ -1,8 +1,7 @@
-//! The continuous motion of a free rigid body in closed form: Jacobi's elliptic functions for the body
-//! momentum, an elliptic integral of the third kind for the angle about the spatial momentum
-//! (Whittaker, Analytical Dynamics, section 69; Landau and Lifshitz, Mechanics, section 37). Takes a
-//! start and a time; gives attitude and momentum, wrong by rounding only: some units of 1e-16 times
-//! the number of radians turned.
+//! The continuous motion of a free rigid body in closed form: Jacobi's elliptic functions for the body momentum, and an elliptic
+//! integral of the third kind for the angle about the spatial momentum (Whittaker, Analytical Dynamics, section 69; Landau and
+//! Lifshitz, Mechanics, section 37). Gives attitude and momentum at any time. The only error is rounding: a few 1e-16 times the
+//! number of radians of rotation.
 
 use super::{BodyMotion, Start};
 use crate::elliptic::{complete, incomplete, jacobi, third_kind};
@@ -14,8 +13,8 @@ use crate::handwritten::principal_axes::PrincipalAxes;
 #[derive(Clone, Copy, Debug)]
 pub struct Exact {
     axes: PrincipalAxes,
-    /// Rotation from the frame of the formulas to principal axes: the third axis of the formulas is
-    /// the one that the momentum goes round.
+    /// Rotation from the frame of the formulas to principal axes. In the frame of the formulas, the momentum circles about the
+    /// third axis.
     order: Quaternion,
     course: Course,
     start: Frame,
@@ -24,14 +23,14 @@ pub struct Exact {
     here: (Quaternion, Vector),
 }
 
-/// How the momentum moves in the frame of the formulas.
+/// The motion of the momentum in the frame of the formulas.
 #[derive(Clone, Copy, Debug)]
 enum Course {
-    /// Rotation about a principal axis, or a body with three equal moments: angular velocity, body frame.
+    /// Rotation about a principal axis, or a body with three equal moments; the value is the body angular velocity.
     Steady(Vector),
     /// mu = (A1 cn, A2 sn, A3 dn)(rate t + phase), with k < 1.
     Periodic(Periodic),
-    /// The limit k = 1: mu = (A1 sech, A2 tanh, A3 sech). The motion between the two unstable rotations.
+    /// The limit k = 1: mu = (A1 sech, A2 tanh, A3 sech), the motion between the two unstable rotations.
     Separatrix(Periodic),
 }
 
@@ -49,33 +48,33 @@ struct Periodic {
     spread: f64,
     /// 1 - n of the integral of the third kind: (A2/A1)^2.
     rest: f64,
-    /// The integral at the phase, and over a quarter period.
+    /// The integral at `phase`, and over a quarter period.
     integral: f64,
     quarter_integral: f64,
     norm: f64,
 }
 
-/// Orthonormal frame carried by the momentum, and the attitude at time 0 seen from it.
+/// Orthonormal frame attached to the momentum, and the attitude at time 0 relative to it.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
-    /// Attitude of the formulas' frame at time 0.
+    /// Attitude of the frame of the formulas at time 0.
     attitude: Quaternion,
-    /// Body momentum at time 0, in the formulas' frame.
+    /// Body momentum at time 0, in the frame of the formulas.
     mu: Vector,
 }
 
 impl Exact {
-    /// The motion from `start`; its h is the distance of the nodes that [`BodyMotion::step`] visits.
+    /// The motion from `start`; its `h` is the node distance of [`BodyMotion::step`].
     ///
     /// # Errors
-    /// [`Unsolvable`] for a matrix that belongs to no body.
+    /// [`Unsolvable`] if the matrix is not admissible for a rigid body.
     pub fn start(start: &Start) -> Result<Self, Unsolvable> {
         let axes = PrincipalAxes::new(&start.poinsot)?;
         let mut moments = axes.moments;
         let mut order = Quaternion::IDENTITY;
         let mut mu = axes.enter(&start.body_momentum);
-        // The momentum goes round axis 3 when |mu|^2 - 2 E I_2 has the sign of I_3 - I_2. Written with
-        // the components that decide, so that nothing cancels.
+        // The momentum circles about axis 3 if |mu|^2 - 2 E I_2 has the sign of I_3 - I_2. Written in the deciding components, so
+        // that nothing cancels.
         let about = |axis: usize| mu[axis] * mu[axis] * (1.0 - moments[1] / moments[axis]).abs();
         if about(0) > about(2) {
             // A quarter turn about the middle axis: (x, y, z) -> (-z, y, x).
@@ -123,29 +122,29 @@ impl Exact {
 }
 
 impl Course {
-    /// For moments with I_2 between the others and a momentum that goes round axis 3.
+    /// For moments with I_2 between the others, and a momentum that circles about axis 3.
     fn new(moments: &Vector, mu: &Vector) -> Self {
         let r = moments.map(|i| 1.0 / i);
         let steady = Self::Steady([r[0] * mu[0], r[1] * mu[1], r[2] * mu[2]]);
-        // Slopes of Euler's equations: mu_1' = a_1 mu_2 mu_3 and so on. Beside a_3 = 0 they sum to zero.
+        // Coefficients of Euler's equations mu_1' = a_1 mu_2 mu_3 and cyclic; they sum to zero.
         let a = [r[2] - r[1], r[0] - r[2], r[1] - r[0]];
         let squares = mu.map(|c| c * c);
         let first = squares[0] + squares[1] * (a[0] / -a[1]);
-        // Three equal moments, or nothing but momentum about axis 3.
+        // Steady for three equal moments, or if only the third component is nonzero.
         let turning = first > 0.0 && a[0] != 0.0;
         if !turning || !first.is_finite() {
             return steady;
         }
         let rest = -a[1] / a[0];
         let third = squares[2] + squares[1] * (a[2] / -a[1]);
-        // Signs such that the argument starts within a quarter period of 0.
+        // Signs for which the argument starts within a quarter period of 0.
         let amplitude_1 = first.sqrt().copysign(mu[0]);
         let amplitude_3 = third.sqrt().copysign(mu[2]);
         let amplitude_2 = (rest * first)
             .sqrt()
             .copysign(a[1] * amplitude_1 * amplitude_3);
         let rate = third.sqrt() * (-a[0] * a[1]).sqrt();
-        // 1 - k^2 without the cancellation of k^2 = a_3 A_1^2 / (a_1 A_3^2).
+        // 1 - k^2 without the cancellation in k^2 = a_3 A_1^2 / (a_1 A_3^2).
         let m1 = (squares[2] - squares[0] * (a[2] / a[0])) / third;
         let (sine, cosine) = (mu[1] / amplitude_2, mu[0] / amplitude_1);
         // Rotation about the middle axis: unstable, but steady.
@@ -194,7 +193,7 @@ impl Periodic {
         2.0 * turns * self.quarter_integral + third_kind(self.rest, sn, cn.max(0.0), self.m1)
     }
 
-    /// Body momentum, and the angle gone about the spatial momentum.
+    /// Body momentum, and the rotation angle about the spatial momentum since time 0.
     fn at(&self, time: f64) -> (Vector, f64) {
         let u = self.rate * time + self.phase;
         let (turns, r) = self.reduced(u);
@@ -238,9 +237,9 @@ impl Periodic {
 }
 
 impl Frame {
-    /// The attitude for which the momentum `mu` is where the one at time 0 was in space, after a turn
-    /// by `angle` about it. Both momenta are seen in frames whose third axis is the momentum and whose
-    /// first one is horizontal, normal to axis 3 of the body: Euler's angles without angles.
+    /// The attitude for which the momentum `mu` has the same spatial direction as at time 0, after a rotation by `angle` about it.
+    /// Both momenta use frames whose third axis is the momentum and whose first axis is horizontal, normal to axis 3 of the body.
+    /// This replaces Euler angles.
     fn carried(&self, mu: &Vector, angle: f64, norm: f64) -> Quaternion {
         let (s, c) = (0.5 * angle).sin_cos();
         let turn = Quaternion([c, 0.0, 0.0, s]);
@@ -254,7 +253,7 @@ impl Frame {
     }
 }
 
-/// Rotation R_x(theta) R_z(psi) that takes the body's components of the momentum to (0, 0, |mu|).
+/// The rotation R_x(theta) R_z(psi) that maps the body components of the momentum to (0, 0, |mu|).
 fn nodal(mu: &Vector, norm: f64) -> Quaternion {
     let [x, y, z] = *mu;
     let plane = x.hypot(y);

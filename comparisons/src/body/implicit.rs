@@ -1,18 +1,17 @@
-//! The Moser-Veselov step of the free body as published for other solvers: iterations for the Rodrigues
-//! vector c of the rotation of the step, I c + c x I c = (1 + |c|^2) h mu / 2. Takes a start; gives the
-//! same map as the explicit step, by Hairer and Vilmart's fixed point (J. Phys. A 39, 2006, section 3)
-//! or by Newton's method. Refuses a step whose iteration does not converge.
+//! The Moser-Veselov step of the free body with published solvers: iterations for the Rodrigues vector c of the step's rotation, I
+//! c + c x I c = (1 + |c|^2) h mu / 2. Gives the same map as the explicit step, by Hairer and Vilmart's fixed-point iteration (J.
+//! Phys. A 39, 2006, section 3) or by Newton's method. A step fails if its iteration does not converge.
 
 use super::{BodyMotion, Start};
 use crate::handwritten::Unsolvable;
 use crate::handwritten::attitude::{Quaternion, Vector, cross, dot};
 use crate::handwritten::principal_axes::PrincipalAxes;
 
-/// Passes before a step is given up. Near the bound of solvability the fixed point needs hundreds;
-/// at steps anybody would take it needs five to ten, Newton's method two or three.
+/// Iteration limit. Near the solvability bound, the fixed-point iteration needs hundreds of iterations. At practical step sizes it
+/// needs five to ten, and Newton's method two or three.
 const PASSES: usize = 60;
 
-/// A body in principal axes, and what an iteration needs of it.
+/// A body in principal axes, with the data of an iteration.
 #[derive(Clone, Copy, Debug)]
 struct Body {
     moments: Vector,
@@ -48,7 +47,7 @@ impl Body {
         [i[0] * c[0], i[1] * c[1], i[2] * c[2]]
     }
 
-    /// Turns the body by the rotation of c.
+    /// Rotates the body by the rotation of c.
     #[inline(always)]
     fn advance(&mut self, c: &Vector) {
         let alpha = 1.0 + dot(c, c);
@@ -76,7 +75,7 @@ fn largest(v: &Vector) -> f64 {
     v[0].abs().max(v[1].abs()).max(v[2].abs())
 }
 
-/// Hairer and Vilmart's fixed point: c <- I^-1 ((1 + |c|^2) u - c x I c).
+/// Hairer and Vilmart's fixed-point iteration: c <- I^-1 ((1 + |c|^2) u - c x I c).
 #[derive(Clone, Copy, Debug)]
 pub struct FixedPoint {
     body: Body,
@@ -86,7 +85,7 @@ impl FixedPoint {
     /// Starts a motion.
     ///
     /// # Errors
-    /// [`Unsolvable`] for a matrix that belongs to no body.
+    /// [`Unsolvable`] if the matrix is not admissible for a rigid body.
     pub fn start(start: &Start) -> Result<Self, Unsolvable> {
         Ok(Self {
             body: Body::start(start)?,
@@ -107,7 +106,7 @@ impl FixedPoint {
             ];
             let change = [next[0] - c[0], next[1] - c[1], next[2] - c[2]];
             c = next;
-            // Two units in the last place of the largest component: rounding may dither by one.
+            // Two units in the last place of the largest component, because rounding can alternate by one.
             if largest(&change) <= 2.0 * f64::EPSILON * largest(&c) {
                 return Ok(c);
             }
@@ -133,7 +132,7 @@ impl BodyMotion for FixedPoint {
     }
 }
 
-/// Newton's method, started from the last two solutions extrapolated.
+/// Newton's method, with the extrapolation of the last two solutions as its initial guess.
 #[derive(Clone, Copy, Debug)]
 pub struct Newton {
     body: Body,
@@ -144,7 +143,7 @@ impl Newton {
     /// Starts a motion.
     ///
     /// # Errors
-    /// [`Unsolvable`] for a matrix that belongs to no body.
+    /// [`Unsolvable`] if the matrix is not admissible for a rigid body.
     pub fn start(start: &Start) -> Result<Self, Unsolvable> {
         let body = Body::start(start)?;
         let (i, u) = (body.inverse, body.u);
@@ -169,7 +168,7 @@ impl Newton {
             let turned = cross(&c, &b);
             let alpha = 1.0 + dot(&c, &c);
             let rest: Vector = std::array::from_fn(|k| b[k] + turned[k] - alpha * u[k]);
-            // Columns of the derivative: I e_k + c x I e_k + e_k x I c - 2 c_k u.
+            // Columns of the Jacobian: I e_k + c x I e_k + e_k x I c - 2 c_k u.
             let column = |k: usize| {
                 let (l, n) = ((k + 1) % 3, (k + 2) % 3);
                 let mut column = [0.0; 3];
@@ -187,7 +186,7 @@ impl Newton {
                 inverse * dot(&rest, &xy),
             ];
             c = [c[0] - change[0], c[1] - change[1], c[2] - change[2]];
-            // The change to come is about the square of this one: below a unit in the last place.
+            // The next change is about the square of this one: below a unit in the last place.
             if largest(&change) <= 1e-8 * largest(&c) {
                 return Ok(c);
             }

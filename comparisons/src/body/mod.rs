@@ -1,6 +1,5 @@
-//! Other ways to move a rigid body: what they start from, and what all of them can do. Takes a Poinsot
-//! matrix, attitude, body momentum and h; gives attitude and body momentum node by node, in the
-//! user's axes.
+//! Other methods for a rigid body: their common initial data and interface. They take a Poinsot matrix, attitude, body momentum and
+//! h, and give attitude and body momentum at each node, in the user's axes.
 
 pub mod exact;
 pub mod implicit;
@@ -14,7 +13,7 @@ use crate::handwritten::free_body::FreeBody;
 use crate::handwritten::heavy_top::HeavyTop;
 use crate::runge_kutta::{RungeKutta, Scheme};
 
-/// What a free body starts from.
+/// Initial data of a free body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
     /// Poinsot (second-moment) matrix J in body axes.
@@ -23,22 +22,22 @@ pub struct Start {
     pub attitude: Quaternion,
     /// Angular momentum in body axes at node 0.
     pub body_momentum: Vector,
-    /// Step length.
+    /// Step size.
     pub h: f64,
 }
 
-/// A rigid body on its way, free or in a field.
+/// The motion of a rigid body, free or in a field.
 pub trait BodyMotion {
-    /// One step.
+    /// Steps once.
     ///
     /// # Errors
-    /// [`Unsolvable`] when an implicit step has no solution, or does not find it.
+    /// [`Unsolvable`] if an implicit step has no solution or does not converge.
     fn step(&mut self) -> Result<(), Unsolvable>;
 
-    /// Attitude body -> space at the present node.
+    /// Attitude body -> space at the current node.
     fn attitude(&self) -> Quaternion;
 
-    /// Angular momentum in body axes at the present node.
+    /// Angular momentum in body axes at the current node.
     fn body_momentum(&self) -> Vector;
 }
 

@@ -1,7 +1,6 @@
-//! Splitting of the free body's Hamiltonian into three rotations about principal axes (McLachlan,
-//! Phys. Rev. Lett. 71, 1993; Reich 1994): second order plain and optimised, fourth order by Suzuki's
-//! composition. Takes a start; gives motions that keep |momentum| and spatial momentum to rounding,
-//! and the energy within O(h^2) or O(h^4). Explicit: no step is refused.
+//! Splitting of the free body's Hamiltonian into three rotations about principal axes (McLachlan, Phys. Rev. Lett. 71, 1993; Reich
+//! 1994): plain and optimised second order, and fourth order by Suzuki's composition. The motions conserve |momentum| and the
+//! spatial momentum to rounding, and the energy within O(h^2) or O(h^4). The steps are explicit and never fail.
 
 use super::{BodyMotion, Start};
 use crate::handwritten::Unsolvable;
@@ -19,7 +18,7 @@ struct Phase {
 type Half = (f64, f64);
 
 impl Phase {
-    /// The rotation of the body about its axis `AXIS`, which leaves the spatial momentum alone.
+    /// The rotation of the body about axis `AXIS`, which preserves the spatial momentum.
     #[inline(always)]
     fn turn<const AXIS: usize>(&mut self, (s, c): Half) {
         let (j, k) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
@@ -36,14 +35,14 @@ impl Phase {
     }
 }
 
-/// The exact half angle: one call of the mathematical library.
+/// The exact half angle, with one call of the math library.
 #[inline(always)]
 fn trigonometric(angle: f64) -> Half {
     (0.5 * angle).sin_cos()
 }
 
-/// A rational half angle with the same tangent of the quarter to first order: one division. Any odd
-/// function of the angle keeps the step a composition of exact Poisson flows; the order stays two.
+/// A rational approximation with one division. The tangent of a quarter of the angle is correct to first order. Any odd function of
+/// the angle keeps the step a composition of exact Poisson flows, so the order remains two.
 #[inline(always)]
 fn rational(angle: f64) -> Half {
     let quarter = 0.25 * angle;
@@ -52,13 +51,13 @@ fn rational(angle: f64) -> Half {
     ((quarter + quarter) * inverse, (1.0 - square) * inverse)
 }
 
-/// Two halves one after the other.
+/// Two half rotations in sequence.
 #[inline(always)]
 fn doubled((s, c): Half) -> Half {
     (2.0 * (s * c), 1.0 - 2.0 * (s * s))
 }
 
-/// Start data in principal axes, and the rate h / I_i of each angle.
+/// Initial data in principal axes, and the rate h / I_i of each angle.
 fn enter(start: &Start) -> Result<(Phase, Vector, PrincipalAxes), Unsolvable> {
     let axes = PrincipalAxes::new(&start.poinsot)?;
     let phase = Phase {
@@ -68,7 +67,7 @@ fn enter(start: &Start) -> Result<(Phase, Vector, PrincipalAxes), Unsolvable> {
     Ok((phase, axes.moments.map(|i| start.h / i), axes))
 }
 
-/// Rotations by h/2, h/2, h, h/2, h/2 about axes 1, 2, 3, 2, 1, each with its sine and cosine.
+/// Rotations by h/2, h/2, h, h/2, h/2 about axes 1, 2, 3, 2, 1, each with its own sine and cosine.
 #[inline(always)]
 fn strang(phase: &mut Phase, rates: &Vector) {
     phase.turn::<0>(trigonometric(0.5 * (rates[0] * phase.mu[0])));
@@ -78,7 +77,7 @@ fn strang(phase: &mut Phase, rates: &Vector) {
     phase.turn::<0>(trigonometric(0.5 * (rates[0] * phase.mu[0])));
 }
 
-/// Second order: five rotations a step.
+/// Second order: five rotations per step.
 #[derive(Clone, Copy, Debug)]
 pub struct Splitting {
     phase: Phase,
@@ -90,7 +89,7 @@ impl Splitting {
     /// Starts a motion.
     ///
     /// # Errors
-    /// [`Unsolvable`] for a matrix that belongs to no body.
+    /// [`Unsolvable`] if the matrix is not admissible for a rigid body.
     pub fn start(start: &Start) -> Result<Self, Unsolvable> {
         let (phase, rates, axes) = enter(start)?;
         Ok(Self { phase, rates, axes })
@@ -113,11 +112,11 @@ impl BodyMotion for Splitting {
     }
 }
 
-/// Second order, optimised: rational angles, and the last rotation of a step done together with the
-/// first of the next, which leaves four a step.
+/// Second order, optimised: rational angles, and the last rotation of a step merged with the first of the next step, which leaves
+/// four per step.
 #[derive(Clone, Copy, Debug)]
 pub struct MergedSplitting {
-    /// The state after the first half rotation of the step to come.
+    /// The state after the first half rotation of the next step.
     ahead: Phase,
     rates: Vector,
     axes: PrincipalAxes,
@@ -127,15 +126,15 @@ impl MergedSplitting {
     /// Starts a motion.
     ///
     /// # Errors
-    /// [`Unsolvable`] for a matrix that belongs to no body.
+    /// [`Unsolvable`] if the matrix is not admissible for a rigid body.
     pub fn start(start: &Start) -> Result<Self, Unsolvable> {
         let (mut ahead, rates, axes) = enter(start)?;
         ahead.turn::<0>(rational(0.5 * (rates[0] * ahead.mu[0])));
         Ok(Self { ahead, rates, axes })
     }
 
-    /// The state at the node: the half rotation taken back. The momentum about its axis is the same
-    /// before and after, so that nothing but rounding is lost.
+    /// The state at the node, with the half rotation undone. The momentum component about its axis is the same before and after, so
+    /// that only rounding is lost.
     fn node(&self) -> Phase {
         let mut phase = self.ahead;
         phase.turn::<0>(rational(-0.5 * (self.rates[0] * phase.mu[0])));
@@ -163,8 +162,8 @@ impl BodyMotion for MergedSplitting {
     }
 }
 
-/// Fourth order: five second-order steps of lengths p h, p h, (1 - 4p) h, p h, p h with
-/// p = 1/(4 - 4^(1/3)) (Suzuki, Phys. Lett. A 146, 1990).
+/// Fourth order: five second-order steps of sizes p h, p h, (1 - 4p) h, p h, p h with p = 1/(4 - 4^(1/3)) (Suzuki, Phys. Lett. A
+/// 146, 1990).
 #[derive(Clone, Copy, Debug)]
 pub struct FourthOrderSplitting {
     phase: Phase,
@@ -177,7 +176,7 @@ impl FourthOrderSplitting {
     /// Starts a motion.
     ///
     /// # Errors
-    /// [`Unsolvable`] for a matrix that belongs to no body.
+    /// [`Unsolvable`] if the matrix is not admissible for a rigid body.
     pub fn start(start: &Start) -> Result<Self, Unsolvable> {
         let (phase, rates, axes) = enter(start)?;
         let part = 1.0 / (4.0 - 4.0_f64.cbrt());

@@ -1,11 +1,11 @@
-//! The free rigid body in N dimensions (Arnold 1966, Manakov 1976): with second moments C = U diag(j) U^T and body
-//! velocity W, M = W C + C W and M' = M W - W M, Lambda' = Lambda W. Takes the principal moments j; gives a system of
-//! 2 N^2 equations in principal axes, y = (attitude by rows, body momentum by rows).
+//! The free rigid body in N dimensions (Arnold 1966, Manakov 1976): with second moments C = U diag(j) U^T and body velocity W, M =
+//! W C + C W and M' = M W - W M, Lambda' = Lambda W. Takes the principal moments j; gives 2 N^2 equations in principal axes, y =
+//! (attitude, body momentum), both row-major.
 
 use super::Motion;
 use crate::handwritten::body_n::{Square, identity, product, transposed, transposed_product};
 
-/// The body in its principal axes.
+/// The body in principal axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyN<const N: usize> {
     /// 1 / (j_a + j_b).
@@ -13,7 +13,7 @@ pub struct BodyN<const N: usize> {
 }
 
 impl<const N: usize> BodyN<N> {
-    /// A body with these principal second moments, no sum of two of them zero.
+    /// A body with these principal second moments, in which no two sum to zero.
     pub fn new(moments: &[f64; N]) -> Self {
         Self {
             reciprocal: moments.map(|a| moments.map(|b| 1.0 / (a + b))),
@@ -64,8 +64,8 @@ impl<const N: usize, const SIZE: usize> Motion<SIZE> for BodyN<N> {
     }
 }
 
-/// Principal moments and axes of a symmetric matrix, the axes as columns; nothing when it is not symmetric or not
-/// finite. Cyclic Jacobi.
+/// Principal moments and axes of a symmetric matrix, with the axes as columns, by cyclic Jacobi rotations. `None` if the matrix is
+/// not symmetric or not finite.
 pub fn principal<const N: usize>(c: &Square<N>) -> Option<([f64; N], Square<N>)> {
     let scale = c.as_flattened().iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let entry = |a: &Square<N>, i: usize, k: usize| a.get(i).and_then(|r| r.get(k)).copied();
@@ -79,7 +79,7 @@ pub fn principal<const N: usize>(c: &Square<N>) -> Option<([f64; N], Square<N>)>
         return None;
     }
     let (mut axes, mut here) = (identity::<N>(), *c);
-    // Convergence is quadratic: ten sweeps are twice what eight dimensions need.
+    // Convergence is quadratic; ten sweeps are twice the number that eight dimensions need.
     for _ in 0..10 {
         for i in 0..N {
             for k in i + 1..N {
@@ -87,7 +87,7 @@ pub fn principal<const N: usize>(c: &Square<N>) -> Option<([f64; N], Square<N>)>
                 if off.abs() <= 1e-17 * scale {
                     continue;
                 }
-                // The smaller angle that makes the entry zero.
+                // The smaller of the two angles that annihilate the entry.
                 let ratio = (entry(&here, k, k)? - entry(&here, i, i)?) / (2.0 * off);
                 let tan = 1.0_f64.copysign(ratio) / (ratio.abs() + ratio.hypot(1.0));
                 let cos = 1.0 / tan.hypot(1.0);
@@ -97,7 +97,7 @@ pub fn principal<const N: usize>(c: &Square<N>) -> Option<([f64; N], Square<N>)>
                     *turn.get_mut(row)?.get_mut(column)? = x;
                 }
                 axes = product(&axes, &turn);
-                // Recomputed from the given matrix, so that sweeps do not add up rounding.
+                // Recomputed from the given matrix, so that sweeps do not accumulate rounding.
                 here = transposed_product(&axes, &product(c, &axes));
             }
         }

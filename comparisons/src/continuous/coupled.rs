@@ -15,7 +15,7 @@ pub struct CoupledBodies {
 }
 
 impl CoupledBodies {
-    /// Bodies with Poinsot matrices J_i + eps d_i d_i^T, arms d_i from the joint, reduced mass eps.
+    /// Bodies with Poinsot matrices J_i + eps d_i d_i^T, arms d_i from the joint, and reduced mass eps.
     pub fn new(poinsot: [Matrix; 2], arms: [Vector; 2], reduced_mass: f64) -> Self {
         Self {
             inertia: [inertia(&poinsot[0]), inertia(&poinsot[1])],
@@ -24,7 +24,7 @@ impl CoupledBodies {
         }
     }
 
-    /// The 6 x 6 matrix that takes both angular velocities to both momenta.
+    /// The 6 x 6 matrix from both angular velocities to both momenta.
     fn mass(&self, r: &Matrix) -> [[f64; 6]; 6] {
         let [d, e] = self.arms;
         let mut mass = [[0.0; 6]; 6];
@@ -45,7 +45,8 @@ impl CoupledBodies {
     }
 }
 
-/// Solves a symmetric positive system by Cholesky's factors; entries are not finite when it is not positive.
+/// Solves a symmetric positive definite system by Cholesky factorisation; entries are not finite if the matrix is not positive
+/// definite.
 fn solve(mut a: [[f64; 6]; 6], mut b: [f64; 6]) -> [f64; 6] {
     for k in 0..6 {
         let pivot = a[k][k].sqrt();
@@ -77,8 +78,8 @@ impl Motion<14> for CoupledBodies {
         let v = solve(self.mass(&r), [a1, b1, c1, a2, b2, c2]);
         let (xi1, xi2) = ([v[0], v[1], v[2]], [v[3], v[4], v[5]]);
         let (p, s) = (cross(&xi1, &self.arms[0]), cross(&xi2, &self.arms[1]));
-        // Turning body 1 by eta changes R by -hat(eta) R: the Lagrangian by eps eta . (R s x p);
-        // turning body 2 changes it by the opposite, seen from body 2.
+        // Rotating body 1 by eta changes R by -hat(eta) R, and the Lagrangian by eps eta . (R s x p). Rotating body 2 changes the
+        // Lagrangian by the opposite amount, in the frame of body 2.
         let torque1 = cross(&apply(&r, &s), &p).map(|c| self.reduced_mass * c);
         let torque2 = apply_transposed(&r, &torque1).map(|c| -c);
         let (t1, t2) = (cross(&[a1, b1, c1], &xi1), cross(&[a2, b2, c2], &xi2));

@@ -1,5 +1,4 @@
-//! Elastic ellipsoids by their placement: C0 Q'' I0 = -grad V(Q). Takes the ellipsoid; gives a system of 2 N^2 equations,
-//! y = (placement by rows, velocity by rows).
+//! The placement of an elastic ellipsoid: C0 Q'' I0 = -grad V(Q), as 2 N^2 equations, y = (placement, velocity), both row-major.
 
 use super::Motion;
 use super::any_dimension::{matrices, state};

@@ -1,19 +1,19 @@
-//! Two bodies, a rigid motion and a point mass joined by springs: Newton's and Euler's equations.
-//! Takes what they are made of; gives 33 equations, y = (three attitudes, three angular momenta about the own points, place
-//! and momentum of the rigid motion, place and momentum of the point), all but attitudes in space axes.
+//! Two bodies, a rigid motion and a point mass coupled by springs: the equations of Newton and Euler. The 33 components are y =
+//! (three attitudes, three angular momenta about each centre, position and momentum of the rigid motion, position and momentum of
+//! the point). All but the attitudes are in spatial axes.
 
 use super::{Motion, inertia, inverse, spun};
 use crate::handwritten::attitude::{Matrix, Quaternion, Vector, apply, apply_transposed, scaled};
 use crate::handwritten::mixed_four::{Four, Momenta, Places};
 
-/// The four with the inverses of their inertias.
+/// The four bodies, with their inverse inertias.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joined {
     given: Four,
     inverses: [Matrix; 3],
 }
 
-/// The state as numbers.
+/// The state as a vector.
 pub fn state(places: &Places, momenta: &Momenta) -> [f64; 33] {
     let attitudes = places.attitudes.iter().flat_map(|q| q.0);
     let parts = [places.motion, momenta.motion, places.point, momenta.point];
@@ -27,7 +27,7 @@ pub fn state(places: &Places, momenta: &Momenta) -> [f64; 33] {
     y
 }
 
-/// And back.
+/// The state from a vector.
 pub fn read(y: &[f64; 33]) -> (Places, Momenta) {
     let vector = |at: usize| -> Vector { std::array::from_fn(|i| y[at + i]) };
     let quaternion = |at: usize| Quaternion(std::array::from_fn(|i| y[at + i]));
@@ -45,7 +45,7 @@ pub fn read(y: &[f64; 33]) -> (Places, Momenta) {
 }
 
 impl Joined {
-    /// The equations of these four.
+    /// The equations of these bodies.
     pub fn new(given: &Four) -> Self {
         Self {
             given: *given,

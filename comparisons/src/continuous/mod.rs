@@ -1,6 +1,5 @@
-//! The equations of motion in continuous time, written by hand from Lagrange's and Euler's, for the
-//! references. Takes parameters; gives right-hand sides of ordinary differential equations in plain
-//! arrays, with attitudes as quaternions, whose norm the equations keep.
+//! The continuous-time equations of motion for the references, written by hand from Lagrange's and Euler's equations. Each system
+//! is a right-hand side on plain arrays, with attitudes as quaternions whose norm the equations conserve.
 
 pub mod any_dimension;
 pub mod coupled;
@@ -25,7 +24,7 @@ pub fn spun(q: &Quaternion, omega: &Vector) -> [f64; 4] {
     q.times(&Quaternion([0.0, 0.5 * x, 0.5 * y, 0.5 * z])).0
 }
 
-/// The moment of inertia tr(J) Id - J.
+/// The inertia matrix tr(J) Id - J.
 pub fn inertia(poinsot: &Matrix) -> Matrix {
     let trace = poinsot[0][0] + poinsot[1][1] + poinsot[2][2];
     std::array::from_fn(|r| {
@@ -36,7 +35,7 @@ pub fn inertia(poinsot: &Matrix) -> Matrix {
     })
 }
 
-/// The inverse of a 3 x 3 matrix by cofactors; entries that are not finite when there is none.
+/// The inverse of a 3 x 3 matrix by cofactors; entries are not finite if the matrix is singular.
 pub fn inverse(a: &Matrix) -> Matrix {
     let cofactor = |r: usize, c: usize| {
         let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);

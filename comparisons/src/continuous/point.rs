@@ -1,11 +1,11 @@
-//! Points in space, a planet about a fixed sun and a charge in uniform fields: Hamilton's equations. Takes parameters;
-//! gives systems of six equations, y = (place, momentum).
+//! Points in space: Hamilton's equations of a planet about a fixed sun and of a charge in uniform fields. Six equations each, y =
+//! (position, momentum).
 
 use super::Motion;
 use crate::handwritten::attitude::{Vector, add_scaled, cross, dot, scaled};
 use crate::handwritten::charged_particle::Charge;
 
-/// A planet of this mass about a sun of this gravitational parameter.
+/// A planet of this mass about a sun with this gravitational parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Planet {
     /// Mass.
@@ -31,7 +31,7 @@ impl Motion<6> for Charge {
     fn rate(&self, y: &[f64; 6], out: &mut [f64; 6]) {
         let [a, b, c, d, e, f] = *y;
         let (x, p): (Vector, Vector) = ([a, b, c], [d, e, f]);
-        // p = m v + (q/2) B x X, and half of the force q v x B is that of the potential.
+        // p = m v + (q/2) B x X; half of the force q v x B comes from the vector potential.
         let kinetic = add_scaled(&p, -0.5 * self.charge, &cross(&self.magnetic, &x));
         let velocity = scaled(1.0 / self.mass, &kinetic);
         let [u, v, w] = velocity;

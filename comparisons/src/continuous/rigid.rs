@@ -1,14 +1,13 @@
-//! A rigid body about a fixed point, free or in fields that are constant in space: Euler's equations
-//! mu' = mu x omega + torque, omega = I^-1 mu, with the attitude as quaternion. Takes J and the field;
-//! gives a system of seven equations, y = (w, x, y, z, mu).
+//! A rigid body about a fixed point, free or in fields that are constant in space: Euler's equations mu' = mu x omega + torque,
+//! omega = I^-1 mu, with the attitude as a quaternion. Seven equations, y = (w, x, y, z, mu).
 
 use super::{Motion, inertia, inverse, spun};
 use crate::handwritten::attitude::{Matrix, Quaternion, Vector, apply, apply_transposed, cross};
 
-/// What acts on the body. Vectors of the field are in space axes, all others in body axes.
+/// The field that acts on the body. Field vectors are in spatial axes, all others in body axes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Field {
-    /// Nothing.
+    /// No field.
     None,
     /// Potential energy: the sum of arm . (attitude^T direction) over pairs (arm, direction), such as
     /// weight and vertical.
@@ -38,7 +37,7 @@ impl RigidBody {
         }
     }
 
-    /// The torque in body axes. A potential U(a) of a = attitude^T direction gives a x grad U.
+    /// The torque in body axes. A potential U(a) with a = attitude^T direction gives a x grad U.
     fn torque(&self, q: &Quaternion) -> Vector {
         let seen = |direction: &Vector| apply_transposed(&q.matrix(), direction);
         match &self.field {

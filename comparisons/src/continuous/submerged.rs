@@ -1,6 +1,6 @@
-//! A rigid body in an ideal fluid: Kirchhoff's equations (Lamb, Hydrodynamics, 124) with weight and buoyancy, attitude
-//! and place. Takes inertia, masses, coupling and weight; gives thirteen equations, y = (w, x, y, z, place, angular
-//! momentum, linear momentum), the momenta about the body's point in body axes, the place in space axes.
+//! A rigid body in an ideal fluid: Kirchhoff's equations (Lamb, Hydrodynamics, 124) with weight and buoyancy, attitude and
+//! position. Thirteen equations, y = (w, x, y, z, position, angular momentum, linear momentum). The momenta are about the body's
+//! point in body axes; the position is in spatial axes.
 
 use super::{Motion, inertia, inverse, spun};
 use crate::handwritten::attitude::{
@@ -9,7 +9,7 @@ use crate::handwritten::attitude::{
 };
 use crate::handwritten::kirchhoff_body::Submerged;
 
-/// The body, its kinetic energy omega . I omega/2 + omega . D u + u . M u/2 solved for the velocities.
+/// The body, with its kinetic energy omega . I omega/2 + omega . D u + u . M u/2 solved for the velocities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SubmergedBody {
     /// I^-1.
@@ -18,7 +18,7 @@ pub struct SubmergedBody {
     coupling: Matrix,
     /// I^-1 D.
     turning: Matrix,
-    /// (M - D^T I^-1 D)^-1: what linear momentum moves while the body is free to turn.
+    /// (M - D^T I^-1 D)^-1: the inverse mass while the body is free to rotate.
     inverse_masses: Matrix,
     moment: Vector,
     weight: f64,
@@ -26,7 +26,7 @@ pub struct SubmergedBody {
 }
 
 impl SubmergedBody {
-    /// The equations of this body; not finite where its kinetic energy is not definite.
+    /// The equations of this body; not finite if its kinetic energy is not positive definite.
     pub fn new(body: &Submerged) -> Self {
         let inverse_inertia = inverse(&inertia(&body.poinsot));
         let turning = product(&inverse_inertia, &body.coupling);
@@ -42,7 +42,7 @@ impl SubmergedBody {
         }
     }
 
-    /// Angular and linear velocity in body axes. With pi = I omega + D u and p = D^T omega + M u.
+    /// Angular and linear velocity in body axes, from pi = I omega + D u and p = D^T omega + M u.
     fn velocities(&self, pi: &Vector, p: &Vector) -> (Vector, Vector) {
         let free = add_scaled(p, -1.0, &apply_transposed(&self.turning, pi));
         let u = apply(&self.inverse_masses, &free);
@@ -58,7 +58,7 @@ impl Motion<13> for SubmergedBody {
         let (q, pi, p) = (Quaternion([q0, q1, q2, q3]), [a, b, c], [d, e, f]);
         let (omega, u) = self.velocities(&pi, &p);
         let rotation = q.matrix();
-        // The potential moment . g + weight (place . up) of g = attitude^T up.
+        // The potential moment . g + weight (position . up), with g = attitude^T up.
         let g = apply_transposed(&rotation, &self.up);
         let pushed = add_scaled(&cross(&pi, &omega), 1.0, &cross(&p, &u));
         let torque = add_scaled(&pushed, 1.0, &cross(&g, &self.moment));

@@ -1,6 +1,6 @@
-//! The free body in three to eight dimensions: the hand-written stepper, and Runge-Kutta on the equations of Arnold
-//! and Manakov. Takes the values of a case, whose size says the dimension; gives methods for symmetric factors, as
-//! any other has no motion in continuous time.
+//! The free body in three to eight dimensions: the hand-written stepper, and Runge-Kutta methods for the equations of Arnold and
+//! Manakov. The size of the case's values determines the dimension. Only symmetric factors are accepted, because other factors have
+//! no continuous-time motion.
 
 use super::{Method, Offer, Problem, TIGHT, by_hand, check, eighth, reference};
 use crate::continuous::any_dimension::{BodyN, matrices, principal, seen_from, state};
@@ -10,14 +10,14 @@ use crate::runge_kutta::{Accuracy, Method85, Method98, RungeKutta, Scheme};
 
 type Started = Result<Box<dyn Method>, Unsolvable>;
 
-/// A body in its principal axes.
+/// A body in principal axes.
 struct Body<const N: usize> {
     moments: [f64; N],
-    /// Principal components -> given ones.
+    /// Rotation from principal axes to given axes.
     axes: Square<N>,
-    /// Of the principal axes.
+    /// Attitude of the principal axes.
     attitude: Square<N>,
-    /// In principal axes.
+    /// Momentum in principal axes.
     momentum: Square<N>,
     h: f64,
 }
@@ -34,7 +34,7 @@ fn read<const N: usize>(problem: &Problem<'_>) -> Option<Body<N>> {
     })
 }
 
-/// Attitude and body momentum as the model shows them, the momentum skew to the last bit.
+/// Attitude and body momentum in the axes of the model, with an exactly skew momentum.
 fn shown<const N: usize>(axes: &Square<N>, attitude: &Square<N>, m: &Square<N>) -> Vec<Vec<f64>> {
     let back = transposed(axes);
     let (attitude, m) = (product(attitude, &back), seen_from(m, &back));
@@ -97,7 +97,7 @@ fn integrated<R: Scheme<SIZE> + 'static, const N: usize, const SIZE: usize>(
     Ok(Box::new(Integrated { motion, axes }))
 }
 
-/// Starts what the attitude's size asks for.
+/// Calls a generic function with the dimension of the attitude.
 macro_rules! of_size {
     ($start:ident, $problem:expr) => {
         match $problem.initial.first().map(Vec::len) {

@@ -1,5 +1,5 @@
-//! Two bodies with a spherical joint: the hand-written stepper, Runge-Kutta on hand-written equations. Takes the values of
-//! a case, parameters (J1, J2, d1, d2, eps); gives the methods.
+//! Two bodies with a spherical joint: the hand-written stepper, and Runge-Kutta methods for hand-written equations. The parameters
+//! of a case are (J1, J2, d1, d2, eps).
 
 use super::{LOOSE, Method, Offer, Problem, TIGHT, by_hand, check, eighth, fifth, reference, rows};
 use crate::continuous::coupled::CoupledBodies;
@@ -42,7 +42,7 @@ impl Method for ByHand {
     }
 }
 
-/// A case: the two bodies, their attitudes, their momenta in body axes.
+/// A case: the two bodies, their attitudes, and their body momenta.
 fn read(problem: &Problem<'_>) -> Option<(Pair, [Quaternion; 2], [Vector; 2])> {
     let poinsots: [Matrix; 2] = [problem.parameter(0)?, problem.parameter(1)?];
     let arms = [problem.parameter(2)?, problem.parameter(3)?];
@@ -75,12 +75,12 @@ fn runge_kutta<R: Scheme<14> + 'static>(
     Ok(Box::new(Moving(motion)))
 }
 
-/// Dormand and Prince 5(4) at its smallest tolerance.
+/// Dormand and Prince 5(4) with its smallest tolerance.
 pub(super) fn ode45(problem: &Problem<'_>) -> Result<Box<dyn Method>, Unsolvable> {
     runge_kutta::<Method54<14>>(problem, Accuracy::of(super::SMALLEST))
 }
 
-/// The methods.
+/// The available methods.
 pub(super) fn bodies() -> Vec<Offer> {
     vec![
         reference(|p| runge_kutta::<Method98<14>>(p, Accuracy::reference(2))),

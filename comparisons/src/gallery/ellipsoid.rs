@@ -1,6 +1,6 @@
-//! Elastic ellipsoids in two to four dimensions, stored energies of the metric seen from the body or of the second
-//! moments in space: the hand-written stepper and Runge-Kutta, both by the placement. Takes the values of a case, parameters
-//! (C0, I0, a, b, c, d), whose size says the dimension; gives the methods.
+//! Elastic ellipsoids in two to four dimensions, with a stored energy of the convective metric or of the spatial second moments:
+//! the hand-written stepper and Runge-Kutta methods, both for the placement. The parameters of a case are (C0, I0, a, b, c, d);
+//! their size determines the dimension.
 
 use super::{Method, Offer, Problem, TIGHT, by_hand, check, eighth, reference};
 use crate::continuous::any_dimension::{matrices, state};
@@ -77,7 +77,7 @@ fn integrated<R: Scheme<SIZE> + 'static, const N: usize, const SIZE: usize>(
     Ok(Box::new(Moving { motion, body }))
 }
 
-/// The number of rows, from the entries of the placement.
+/// The number of rows, from the number of entries of the placement.
 fn size(problem: &Problem<'_>) -> Option<usize> {
     Some(problem.initial.first()?.len().isqrt())
 }
@@ -111,7 +111,7 @@ fn dormand_prince(problem: &Problem<'_>, of: Of) -> Started {
     }
 }
 
-/// The methods for a stored energy of the metric seen from the body.
+/// The methods for a stored energy of the convective metric.
 pub(super) fn convective() -> Vec<Offer> {
     vec![
         reference(|p| verner(p, Of::Metric, 2)),
@@ -121,7 +121,7 @@ pub(super) fn convective() -> Vec<Offer> {
     ]
 }
 
-/// The methods for a stored energy of the second moments in space.
+/// The methods for a stored energy of the spatial second moments.
 pub(super) fn spatial() -> Vec<Offer> {
     vec![
         reference(|p| verner(p, Of::Moments, 2)),

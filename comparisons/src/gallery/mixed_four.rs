@@ -1,5 +1,5 @@
-//! Four configurations joined by springs: the hand-written stepper, Runge-Kutta on the equations of motion. Takes the values
-//! of a case, parameters (J, A, M, I, m, b, k, p, s, e, g); gives the methods.
+//! Four configurations coupled by springs: the hand-written stepper, and Runge-Kutta methods for the equations of motion. The
+//! parameters of a case are (J, A, M, I, m, b, k, p, s, e, g).
 
 use super::{LOOSE, Method, Offer, Problem, TIGHT, by_hand, check, eighth, fifth, reference, rows};
 use crate::continuous::mixed_four::{Joined, read as separated, state};
@@ -51,7 +51,7 @@ fn read(problem: &Problem<'_>) -> Option<(Four, Places, Momenta)> {
     Some((four, places, momenta))
 }
 
-/// A state as initial values of the model: momenta of the first three in body axes.
+/// Converts a state to initial values of the model, with body momenta for the first three.
 fn shown(places: &Places, momenta: &Momenta) -> Vec<Vec<f64>> {
     let attitudes = places.attitudes.map(|q| q.normalised());
     let own = |at: usize, v: &Vector| apply_transposed(&attitudes[at].matrix(), v);
@@ -110,7 +110,7 @@ fn runge_kutta<R: Scheme<33> + 'static>(
     Ok(Box::new(Moving(motion)))
 }
 
-/// The methods.
+/// The available methods.
 pub(super) fn joined() -> Vec<Offer> {
     vec![
         reference(|p| runge_kutta::<Method98<33>>(p, Accuracy::reference(2))),

@@ -1,6 +1,5 @@
-//! Which other methods there are for each model of the gallery. Takes a model's name and the values of
-//! a case in the order of its card; gives methods that show their state as the initial values of the
-//! same card, so that whoever compares can ask the model itself for observables and invariants there.
+//! The other methods for each gallery model. A method takes the values of a case in the order of the card, and returns its state as
+//! initial values of the same card. A caller can therefore evaluate observables and invariants with the model itself.
 
 mod any_dimension;
 mod coupled;
@@ -17,58 +16,58 @@ use crate::handwritten::attitude::{Matrix, Quaternion};
 /// The values of a case.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem<'a> {
-    /// Parameters, each row by row, in the order of the card.
+    /// Parameters in the order of the card, each row-major.
     pub parameters: &'a [Vec<f64>],
-    /// Initial values likewise.
+    /// Initial values in the order of the card, each row-major.
     pub initial: &'a [Vec<f64>],
-    /// Step length, the distance of the nodes.
+    /// Step size, the node distance.
     pub h: f64,
 }
 
-/// A method on its way.
+/// A running method.
 pub trait Method {
-    /// Goes to the next node.
+    /// Advances to the next node.
     ///
     /// # Errors
-    /// [`Unsolvable`] when it cannot.
+    /// [`Unsolvable`] if the step fails.
     fn step(&mut self) -> Result<(), Unsolvable>;
 
-    /// The state at the present node as initial values of the model, in the order of the card.
+    /// The state at the current node as initial values of the model, in the order of the card.
     fn shown(&self) -> Vec<Vec<f64>>;
 }
 
-/// What a method is for.
+/// The role of a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// The truth that the others are measured against: closed form, or Runge-Kutta at rounding level.
+    /// The reference for the errors of the others: closed form, or Runge-Kutta at rounding level.
     Reference,
-    /// The generated scheme once more, written by hand.
+    /// The generated scheme, written by hand.
     ByHand,
     /// A method from the literature.
     Published,
 }
 
-/// A method that a model can be compared with.
+/// A method for comparison with a model.
 #[derive(Clone, Copy, Debug)]
 pub struct Offer {
     /// Its name in tables and files.
     pub name: &'static str,
-    /// What it is and where it comes from.
+    /// Its description and source.
     pub doc: &'static str,
-    /// What it is for.
+    /// Its role.
     pub role: Role,
-    /// Starts it.
+    /// Its start function.
     pub start: Start,
 }
 
-/// What starts a method. Refuses values that are not those of the model, and steps without solution.
+/// Starts a method. Returns an error if the values do not fit the model, or if the step has no solution.
 pub type Start = fn(&Problem<'_>) -> Result<Box<dyn Method>, Unsolvable>;
 
-/// Tolerances of the published Runge-Kutta methods: near rounding, and as people use them.
+/// Tolerances of the published Runge-Kutta methods: near rounding, and typical.
 const TIGHT: f64 = 1e-12;
 const LOOSE: f64 = 1e-9;
 
-/// The smallest tolerance that Matlab's ode45 takes, 100 units of rounding: what it makes of 1e-15.
+/// The smallest tolerance of Matlab's ode45, 100 rounding errors; ode45 replaces 1e-15 by this value.
 const SMALLEST: f64 = 2.3e-14;
 
 fn reference(start: Start) -> Offer {
@@ -80,7 +79,7 @@ fn reference(start: Start) -> Offer {
     }
 }
 
-/// A second run at rounding level: its error is that of the reference, or its own.
+/// A second run at rounding level. Its deviation measures the error of the reference, or its own.
 fn check(start: Start) -> Offer {
     Offer {
         name: "verner-98-finer",
@@ -108,8 +107,7 @@ fn eighth(start: Start) -> Offer {
     }
 }
 
-/// Dormand and Prince 5(4) at the smallest tolerance that Matlab's ode45 takes, for the models that
-/// the thesis compares with it.
+/// Dormand and Prince 5(4) with the smallest tolerance of Matlab's ode45, for the models that the thesis compares with it.
 pub fn ode45(model: &str) -> Option<Offer> {
     let start: Start = match model {
         "free-body" => rigid::ode45::<rigid::FreeBody>,
@@ -134,8 +132,7 @@ fn fifth(start: Start) -> Offer {
     }
 }
 
-/// The methods for the model of this name, the reference first; none for a model that nobody wrote
-/// equations for.
+/// The methods for this model, with the reference first; empty for a model without hand-written equations.
 pub fn offers(model: &str) -> Vec<Offer> {
     match model {
         "free-body" => rigid::free::<rigid::FreeBody>(),
@@ -168,7 +165,7 @@ impl Problem<'_> {
     }
 }
 
-/// What is read from a list of numbers; nothing when their count is another.
+/// A value parsed from a list of numbers; `None` if the count differs.
 trait Value: Sized {
     fn read(numbers: &[f64]) -> Option<Self>;
 }
@@ -188,7 +185,7 @@ impl<const N: usize> Value for [f64; N] {
     }
 }
 
-/// Row by row.
+/// Row-major.
 impl<const N: usize> Value for [[f64; N]; N] {
     fn read(numbers: &[f64]) -> Option<Self> {
         let mut matrix = [[0.0; N]; N];
@@ -207,7 +204,7 @@ impl Value for Quaternion {
     }
 }
 
-/// A matrix row by row.
+/// The entries of a matrix, row by row.
 fn rows(m: &Matrix) -> Vec<f64> {
     m.iter().flatten().copied().collect()
 }

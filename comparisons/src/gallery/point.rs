@@ -1,5 +1,5 @@
-//! Points in space, a planet about a fixed sun and a charge in uniform fields: hand-written steppers, Runge-Kutta on
-//! Hamilton's equations. Takes the values of a case, initial the place and the momentum; gives the methods.
+//! Points in space, a planet about a fixed sun and a charge in uniform fields: hand-written steppers, and Runge-Kutta methods for
+//! Hamilton's equations. The initial values are position and momentum.
 
 use super::{LOOSE, Method, Offer, Problem, TIGHT, by_hand, check, eighth, fifth, reference};
 use crate::continuous::Motion;
@@ -13,11 +13,11 @@ use std::marker::PhantomData;
 
 type Started = Result<Box<dyn Method>, Unsolvable>;
 
-/// A kind of point: its equations, and its stepper by hand.
+/// A kind of point: its equations, and its hand-written stepper.
 pub(super) trait Point {
     type Equations: Motion<6> + 'static;
 
-    /// `None` when the values are not those of the model.
+    /// `None` if the values do not fit the model.
     fn read(problem: &Problem<'_>) -> Option<Self::Equations>;
 
     fn written(equations: &Self::Equations, place: &Vector, momentum: &Vector, h: f64) -> Started;
@@ -97,7 +97,7 @@ fn read<P: Point>(problem: &Problem<'_>) -> Option<(P::Equations, Vector, Vector
     Some((P::read(problem)?, problem.initial(0)?, problem.initial(1)?))
 }
 
-/// What starts the methods of one kind of point.
+/// Start functions for one kind of point.
 struct Starts<P>(PhantomData<P>);
 
 impl<P: Point> Starts<P> {
@@ -114,7 +114,7 @@ impl<P: Point> Starts<P> {
     }
 }
 
-/// The methods of one kind of point.
+/// The methods for one kind of point.
 pub(super) fn offers<P: Point>() -> Vec<Offer> {
     vec![
         reference(|p| Starts::<P>::runge_kutta::<Method98<6>>(p, Accuracy::reference(2))),

@@ -1,5 +1,5 @@
-//! Models of one rigid body, in body or spatial representation. Takes their values; gives the methods:
-//! closed form and published integrators for the free body, hand-written steppers, Runge-Kutta for all.
+//! Models of one rigid body, in the body or spatial representation: closed form and published integrators for the free body,
+//! hand-written steppers, and Runge-Kutta methods for all models.
 
 use super::{Method, Offer, Problem, Role, rows};
 use crate::body::exact::Exact;
@@ -15,26 +15,26 @@ use crate::handwritten::heavy_top::{HeavyTop as WrittenTop, Top};
 use crate::runge_kutta::{Accuracy, Method54, Method85, Method98, RungeKutta, Scheme};
 use std::marker::PhantomData;
 
-/// A case of any of these models: the body, its field, and how the model shows a state.
+/// A case of any of these models: the body, its field, and the output format of the model.
 pub(super) struct Body {
     start: Start,
     field: Field,
     shown: Shown,
 }
 
-/// Initial values after the attitude.
+/// The initial values after the attitude.
 struct Shown {
     spatial_momentum: bool,
     carried: Vec<Carried>,
 }
 
-/// An advected quantity without definition.
+/// An advected quantity without a definition.
 enum Carried {
-    /// Fixed in the body, shown in space axes.
+    /// Constant in the body, reported in spatial axes.
     Matrix(Matrix),
-    /// Likewise.
+    /// Constant in the body, reported in spatial axes.
     Vector(Vector),
-    /// Fixed in space, shown in body axes.
+    /// Constant in space, reported in body axes.
     Direction(Vector),
 }
 
@@ -47,9 +47,9 @@ impl Shown {
     }
 }
 
-/// How a model's values are read.
+/// Reads the values of a model.
 pub(super) trait Read {
-    /// `None` when the values are not those of the model.
+    /// `None` if the values do not fit the model.
     fn read(problem: &Problem<'_>) -> Option<Body>;
 }
 
@@ -69,7 +69,7 @@ fn body_start(problem: &Problem<'_>) -> Option<Start> {
     })
 }
 
-/// Attitude, spatial momentum and spatial Poinsot matrix, as the spatial models start from.
+/// Attitude, spatial momentum and spatial Poinsot matrix, the initial data of the spatial models.
 fn spatial_start(problem: &Problem<'_>) -> Option<Start> {
     let attitude: Quaternion = problem.initial(0)?;
     let r = attitude.matrix();
@@ -168,7 +168,7 @@ impl Read for BodyInQuadraticField {
     }
 }
 
-/// A motion of the body, shown as its model does.
+/// A motion of the body, reported in the format of its model.
 struct Moving<M> {
     motion: M,
     shown: Shown,
@@ -193,7 +193,7 @@ impl<M: BodyMotion> Method for Moving<M> {
                 let half = [apply(m, &r[0]), apply(m, &r[1]), apply(m, &r[2])];
                 rows(&std::array::from_fn(|i| {
                     std::array::from_fn(|j| {
-                        // Symmetric to the last bit, as the model demands.
+                        // Exactly symmetric, as the model requires.
                         let (a, b) = if i <= j { (i, j) } else { (j, i) };
                         dot(&r[a], &half[b])
                     })
@@ -345,7 +345,7 @@ fn runge_kutta<B: Read, R: Scheme<7> + 'static>(
     )
 }
 
-/// Runge-Kutta methods for one reader of values.
+/// The Runge-Kutta methods for the models of one reader.
 struct Families<B>(PhantomData<B>);
 
 impl<B: Read> Families<B> {
@@ -365,7 +365,7 @@ impl<B: Read> Families<B> {
         runge_kutta::<B, Method54<7>>(problem, Accuracy::of(super::LOOSE))
     }
 
-    /// What every model of one body can be compared with.
+    /// The methods for every model of one body.
     fn offers(written: super::Start) -> Vec<Offer> {
         vec![
             super::reference(Self::reference),
@@ -377,7 +377,7 @@ impl<B: Read> Families<B> {
     }
 }
 
-/// Dormand and Prince 5(4) at its smallest tolerance.
+/// Dormand and Prince 5(4) with its smallest tolerance.
 pub(super) fn ode45<B: Read>(problem: &Problem<'_>) -> Started {
     runge_kutta::<B, Method54<7>>(problem, Accuracy::of(super::SMALLEST))
 }
@@ -429,7 +429,7 @@ pub(super) fn top<B: Read>() -> Vec<Offer> {
     Families::<B>::offers(written_top::<B>)
 }
 
-/// A body in other fields.
+/// A body in another field.
 pub(super) fn in_field<B: Read>() -> Vec<Offer> {
     Families::<B>::offers(written_field::<B>)
 }

@@ -1,5 +1,5 @@
-//! A body in an ideal fluid: the hand-written stepper, Runge-Kutta on Kirchhoff's equations. Takes the values of a case,
-//! parameters (J, M, D, (moment, weight), (vertical, height 0)), initial the homogeneous matrix and the body momentum.
+//! A body in an ideal fluid: the hand-written stepper, and Runge-Kutta methods for Kirchhoff's equations. The parameters of a case
+//! are (J, M, D, (moment, weight), (vertical, height 0)); the initial values are the homogeneous matrix and the body momentum.
 
 use super::{LOOSE, Method, Offer, Problem, TIGHT, by_hand, check, eighth, fifth, reference};
 use crate::continuous::submerged::SubmergedBody;
@@ -8,7 +8,7 @@ use crate::handwritten::attitude::{Matrix, Quaternion, Vector};
 use crate::handwritten::kirchhoff_body::{KirchhoffBody, Momentum, Submerged};
 use crate::runge_kutta::{Accuracy, Method54, Method85, Method98, RungeKutta, Scheme};
 
-/// A body, where it is and how it moves.
+/// A body with its initial configuration and momentum.
 struct Start {
     body: Submerged,
     attitude: Quaternion,
@@ -41,7 +41,7 @@ fn read(problem: &Problem<'_>) -> Option<Start> {
     })
 }
 
-/// A state as initial values of the model.
+/// Converts a state to initial values of the model.
 fn shown(r: &Matrix, place: &Vector, angular: &Vector, linear: &Vector) -> Vec<Vec<f64>> {
     let rows = r.iter().zip(place);
     let rigid = rows.flat_map(|([a, b, c], x)| [*a, *b, *c, *x]);
@@ -105,7 +105,7 @@ fn runge_kutta<R: Scheme<13> + 'static>(
     Ok(Box::new(Moving(motion)))
 }
 
-/// The methods.
+/// The available methods.
 pub(super) fn bodies() -> Vec<Offer> {
     vec![
         reference(|p| runge_kutta::<Method98<13>>(p, Accuracy::reference(2))),

@@ -1,6 +1,6 @@
-//! The free body in unit quaternions, in body or spatial representation: the hand-written stepper of the family, and
-//! Runge-Kutta on Euler's equations. Takes the values of a case; gives methods whose quaternions go on without a jump of
-//! sign, so that a motion on SU(2) is compared and not only the rotation under it.
+//! The free body in unit quaternions, in the body or spatial representation: the hand-written stepper of the family, and
+//! Runge-Kutta methods for Euler's equations. Quaternions are continuous in sign, so that the comparison covers the motion on SU(2)
+//! and not only the rotation.
 
 use super::{
     LOOSE, Method, Offer, Problem, Role, TIGHT, by_hand, check, eighth, fifth, reference, rows,
@@ -18,7 +18,7 @@ use std::marker::PhantomData;
 
 /// A case of either model.
 pub(super) struct Body {
-    /// Moment of inertia in body axes.
+    /// Inertia matrix in body axes.
     inertia: Matrix,
     /// The member of the family of discretisations.
     c: f64,
@@ -27,18 +27,18 @@ pub(super) struct Body {
     shown: Shown,
 }
 
-/// How the model shows a state.
+/// The output format of the model.
 #[derive(Clone, Copy)]
 enum Shown {
     /// Quaternion and body momentum.
     Body,
-    /// Quaternion, spatial momentum, and this inertia of the body seen from space.
+    /// Quaternion, spatial momentum, and the spatial inertia matrix for this body inertia.
     Space(Matrix),
 }
 
-/// How a model's values are read.
+/// Reads the values of a model.
 pub(super) trait Read {
-    /// `None` when the values are not those of the model.
+    /// `None` if the values do not fit the model.
     fn read(problem: &Problem<'_>) -> Option<Body>;
 }
 
@@ -80,7 +80,7 @@ impl Shown {
             Shown::Space(inertia) => {
                 let r = q.matrix();
                 let half = r.map(|row| apply(inertia, &row));
-                // Symmetric to the last bit, as the model demands.
+                // Exactly symmetric, as the model requires.
                 let entry = |i: usize, j: usize| dot(&r[i.min(j)], &half[i.max(j)]);
                 let inertia = [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)));
                 vec![
@@ -129,14 +129,14 @@ impl Method for ByHand {
     }
 
     fn shown(&self) -> Vec<Vec<f64>> {
-        // The model asks for a unit quaternion; the stepper lets its norm drift by rounding between two anchors.
+        // The model requires a unit quaternion; the stepper's norm drifts by rounding between two resets.
         let q = self.axes.leave_attitude(&self.motion.quaternion());
         let momentum = self.axes.leave(&self.motion.body_momentum());
         self.shown.of(&q.normalised(), &momentum)
     }
 }
 
-/// The same for a body of revolution.
+/// Like `ByHand`, for a body of revolution.
 struct Explicit {
     motion: SymmetricCayleyKlein,
     axes: PrincipalAxes,
@@ -207,7 +207,7 @@ fn runge_kutta<B: Read, R: Scheme<7> + 'static>(
     }))
 }
 
-/// Runge-Kutta methods for one reader of values.
+/// The Runge-Kutta methods for the models of one reader.
 struct Families<B>(PhantomData<B>);
 
 impl<B: Read> Families<B> {
@@ -228,7 +228,7 @@ impl<B: Read> Families<B> {
     }
 }
 
-/// The methods.
+/// The available methods.
 pub(super) fn body<B: Read>() -> Vec<Offer> {
     vec![
         reference(Families::<B>::reference),

@@ -1,6 +1,6 @@
-//! Vectors and unit quaternions of the hand-written steppers: three and four plain numbers.
-//! Takes and gives arrays; a quaternion (w, x, y, z) stands for the rotation body -> space, composed on the right
-//! by body rotations. Order of operations is chosen for short dependency chains, since a step is bound by latency.
+//! Vectors and unit quaternions of the hand-written steppers, as plain arrays of three and four numbers. A quaternion (w, x, y, z)
+//! represents the rotation body -> space; body rotations compose on the right. The order of operations gives short dependency
+//! chains, because latency limits the speed of a step.
 
 /// Components along three axes.
 pub type Vector = [f64; 3];
@@ -8,13 +8,13 @@ pub type Vector = [f64; 3];
 /// Row-major 3 x 3 matrix.
 pub type Matrix = [[f64; 3]; 3];
 
-/// Scalar product.
+/// Dot product.
 #[inline(always)]
 pub fn dot(a: &Vector, b: &Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Vector product a x b.
+/// Cross product a x b.
 #[inline(always)]
 pub fn cross(a: &Vector, b: &Vector) -> Vector {
     [
@@ -30,7 +30,7 @@ pub fn add_scaled(a: &Vector, s: f64, b: &Vector) -> Vector {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
 }
 
-/// Quaternion (w, x, y, z); a rotation when its norm is one.
+/// Quaternion (w, x, y, z); a rotation if its norm is one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quaternion(pub [f64; 4]);
 
@@ -38,7 +38,7 @@ impl Quaternion {
     /// The identity rotation.
     pub const IDENTITY: Quaternion = Quaternion([1.0, 0.0, 0.0, 0.0]);
 
-    /// Product: the rotation `other`, stated in the frame carried by `self`, follows `self`.
+    /// Product: first `self`, then the rotation `other` in the frame rotated by `self`.
     #[inline(always)]
     pub fn times(&self, other: &Quaternion) -> Quaternion {
         let [a, b, c, d] = self.0;
@@ -77,7 +77,7 @@ impl Quaternion {
         self.scaled(1.0 / self.norm_squared().sqrt())
     }
 
-    /// E with Id + (2/|q|^2) E the rotation matrix of q / |q|: lets a rotation begin before |q| is known.
+    /// E such that Id + (2/|q|^2) E is the rotation matrix of q / |q|; a rotation can start before |q| is known.
     #[inline(always)]
     pub fn deviation(&self) -> Matrix {
         let [w, x, y, z] = self.0;
@@ -104,7 +104,7 @@ impl Quaternion {
 
     /// A unit quaternion of an orthogonal matrix with determinant one (sign of the quaternion unspecified).
     pub fn from_matrix(m: &Matrix) -> Quaternion {
-        // The largest of 4w^2, 4x^2, 4y^2, 4z^2 is at least one, so that nothing small is ever divided by.
+        // The largest of 4w^2, 4x^2, 4y^2, 4z^2 is at least one, so that no division is by a small number.
         let trace = m[0][0] + m[1][1] + m[2][2];
         let squares = [
             1.0 + trace,
@@ -144,7 +144,7 @@ pub fn apply_transposed(m: &Matrix, v: &Vector) -> Vector {
     ]
 }
 
-// Written out: loops over rows and columns are unrolled too late by the compiler, which then keeps matrices in memory.
+// Written out: the compiler unrolls loops over rows and columns too late, and then keeps matrices in memory.
 
 /// s v.
 #[inline(always)]
@@ -230,7 +230,7 @@ pub fn scaled_matrix(s: f64, m: &Matrix) -> Matrix {
     [scaled(s, &m[0]), scaled(s, &m[1]), scaled(s, &m[2])]
 }
 
-/// Inverse by cofactors; not finite when there is none.
+/// Inverse by cofactors; not finite if the matrix is singular.
 #[inline(always)]
 pub fn inverse(m: &Matrix) -> Matrix {
     let columns = [
@@ -241,7 +241,7 @@ pub fn inverse(m: &Matrix) -> Matrix {
     scaled_matrix(1.0 / dot(&m[0], &columns[0]), &transposed(&columns))
 }
 
-/// Largest size of a component; NaN when one is not finite, which `max` alone would pass over.
+/// Largest absolute component; NaN if a component is NaN, which `max` alone would ignore.
 #[inline(always)]
 pub fn largest(v: &Vector) -> f64 {
     v[0].abs().max(v[1].abs()).max(v[2].abs()) + 0.0 * (v[0] + v[1] + v[2])

@@ -1,6 +1,6 @@
-//! Rigid body in a field fixed in space, potential split over both ends of a step: second order, self-adjoint.
-//! Takes J, a field, attitude, body momentum and h; gives attitude and momenta at the nodes. State: attitude
-//! quaternion and the spatial momentum of the edge; what the field needs is computed from the attitude.
+//! Rigid body in a field fixed in space, with the potential split over both ends of a step: second order, self-adjoint. Takes J, a
+//! field, attitude, body momentum and h; gives attitude and momenta at the nodes. The state is the attitude quaternion and the
+//! spatial momentum of the edge; field values follow from the attitude.
 
 use super::Unsolvable;
 use super::attitude::{
@@ -10,7 +10,7 @@ use super::principal_axes::PrincipalAxes;
 use super::principal_root::{self, Quartic};
 use super::spaced::{SpacedQuaternion, SpacedVector};
 
-/// A rotation as Id + scale E, so that products with E need not wait for the division that gives the scale.
+/// A rotation as Id + scale E, so that products with E do not wait for the division in the scale.
 #[derive(Clone, Copy, Debug)]
 pub struct Turned {
     deviation: Matrix,
@@ -26,13 +26,13 @@ impl Turned {
         }
     }
 
-    /// A body vector in space.
+    /// The spatial components of a body vector.
     #[inline(always)]
     pub fn forth(&self, v: &Vector) -> Vector {
         add_scaled(v, self.scale, &apply(&self.deviation, v))
     }
 
-    /// A space vector in the body.
+    /// The body components of a spatial vector.
     #[inline(always)]
     pub fn back(&self, v: &Vector) -> Vector {
         add_scaled(v, self.scale, &apply_transposed(&self.deviation, v))
@@ -41,10 +41,10 @@ impl Turned {
 
 /// A potential of the attitude.
 pub trait Field: Copy {
-    /// The same field with body quantities in principal axes and energies times `factor`.
+    /// The same field with body quantities in principal axes and energies multiplied by `factor`.
     fn entered(&self, axes: &PrincipalAxes, factor: f64) -> Self;
 
-    /// Force on the momentum at an attitude: its spatial and its body components.
+    /// The rate of momentum at an attitude: its spatial and its body components.
     fn force(&self, rotation: &Turned) -> (Vector, Vector);
 
     /// Energy at an attitude.
@@ -63,7 +63,7 @@ pub struct QuadraticField {
 impl Field for QuadraticField {
     fn entered(&self, axes: &PrincipalAxes, factor: f64) -> QuadraticField {
         let columns = self.stiffness.map(|row| axes.enter(&row));
-        // Rows are turned by the loop above, columns here; K stays symmetric up to rounding.
+        // The loop above rotates rows, this one columns; K stays symmetric up to rounding.
         let rows = [0, 1, 2].map(|j| axes.enter(&[columns[0][j], columns[1][j], columns[2][j]]));
         QuadraticField {
             stiffness: [0, 1, 2]
@@ -76,7 +76,7 @@ impl Field for QuadraticField {
     fn force(&self, rotation: &Turned) -> (Vector, Vector) {
         let gamma = rotation.back(&self.axis);
         let gradient = apply(&self.stiffness, &gamma);
-        // The spatial force is normal to z by construction, so that m . z stays.
+        // The spatial force is normal to z by construction, which preserves m . z.
         let spatial = cross(&self.axis, &rotation.forth(&gradient));
         (spatial, cross(&gamma, &gradient))
     }
@@ -111,7 +111,7 @@ impl Field for TwoFields {
 
     #[inline(always)]
     fn force(&self, rotation: &Turned) -> (Vector, Vector) {
-        // Two fields leave no direction in space along which a momentum would stay: one product less than in space.
+        // With two fields no spatial momentum component is conserved, so this uses the body form, with one product fewer.
         let force = add_scaled(
             &cross(&rotation.back(&self.up), &self.weight),
             -1.0,
@@ -125,15 +125,15 @@ impl Field for TwoFields {
     }
 }
 
-/// A body on its way; principal axes inside. Momenta are stored times h/2, forces times h^2/4.
+/// A moving body, in principal axes. Stores momenta times h/2 and forces times h^2/4.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyInField<F> {
     q: SpacedQuaternion,
-    /// Momentum of the edge that begins here, in space.
+    /// Spatial momentum of the outgoing edge.
     n: SpacedVector,
-    /// The same in the body at this node: all that the solver waits for.
+    /// Body momentum of the outgoing edge at this node, the only input of the solver.
     u: SpacedVector,
-    /// Half the change of the spatial momentum that belongs to the node.
+    /// Half the change of the spatial momentum at the node.
     kick: SpacedVector,
     field: F,
     moments: Vector,
@@ -144,7 +144,7 @@ pub struct BodyInField<F> {
 }
 
 impl<F: Field> BodyInField<F> {
-    /// Starts a trajectory; the momentum is that of node 0 in body axes.
+    /// Starts a trajectory with the body momentum of node 0.
     pub fn start(
         poinsot: &Matrix,
         field: &F,
@@ -173,7 +173,7 @@ impl<F: Field> BodyInField<F> {
         })
     }
 
-    /// One step of the motion; unchanged when the equation has no solution.
+    /// Steps once; if the equation has no solution, the state is unchanged.
     #[inline(always)]
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         let u = self.u.get();
@@ -183,7 +183,7 @@ impl<F: Field> BodyInField<F> {
         let turn = principal_root::turn(&self.moments, &self.gyration, &u, &squares, a, kappa);
         let q = self.q.get();
         let unscaled = q.times(&turn);
-        // |q|^2 is one up to rounding; the numerator takes that rounding out again, to first order.
+        // The numerator removes the rounding error of |q|^2 = 1, to first order.
         let correction = 2.0 - q.norm_squared();
         let scale = (correction + correction) / turn.norm_squared();
         let rotation = Turned {
@@ -200,22 +200,22 @@ impl<F: Field> BodyInField<F> {
         Ok(())
     }
 
-    /// Attitude body -> space at the present node.
+    /// Attitude body -> space at the current node.
     pub fn attitude(&self) -> Quaternion {
         self.axes.leave_attitude(&self.q.get())
     }
 
-    /// Spatial momentum m_k at the present node.
+    /// Spatial momentum m_k at the current node.
     pub fn spatial_momentum(&self) -> Vector {
         add_scaled(&self.n.get(), -1.0, &self.kick.get()).map(|c| 2.0 * c / self.h)
     }
 
-    /// Body momentum mu_k at the present node.
+    /// Body momentum mu_k at the current node.
     pub fn body_momentum(&self) -> Vector {
         apply_transposed(&self.attitude().matrix(), &self.spatial_momentum())
     }
 
-    /// Energy mu . I^-1 mu / 2 and that of the field: oscillates within O(h^2).
+    /// The kinetic energy mu . I^-1 mu / 2 plus the field energy; oscillates within O(h^2).
     pub fn energy(&self) -> f64 {
         let rotation = Turned::of(&self.q.get());
         let mu = rotation.back(&self.spatial_momentum());

@@ -1,13 +1,14 @@
-//! Free body in n dimensions: A - A^T = h M with A = Om J, J diagonal, solved for S = sym A from S-history.
-//! Takes the diagonal of J, attitude, body momentum (skew) and h; gives attitude and momenta at the nodes. State:
-//! attitude and the constant spatial momentum. Beyond the reach of the fast iteration, Newton on the group (Lie-Newton).
+//! Free body in n dimensions: A - A^T = h M with A = Om J, J diagonal, solved for S = sym A, extrapolated from previous values of
+//! S. Takes the diagonal of J, attitude, body momentum (skew) and h; gives attitude and momenta at the nodes. The state is the
+//! attitude and the constant spatial momentum. Beyond the range of the fast iteration, uses Newton's method on the group
+//! (Lie-Newton).
 
-// Loops over indices read as the formulas they were typed from.
+// Index loops keep the shape of the formulas.
 #![allow(clippy::needless_range_loop)]
 
 use super::Unsolvable;
 
-/// Square matrix by rows.
+/// Row-major square matrix.
 pub type Square<const N: usize> = [[f64; N]; N];
 
 /// A b.
@@ -74,11 +75,11 @@ fn reorthonormalised<const N: usize>(r: &Square<N>) -> Square<N> {
     product(&gram, r)
 }
 
-/// A free body in N dimensions on its way.
+/// A moving free body in N dimensions.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyN<const N: usize> {
     attitude: Square<N>,
-    /// Body momentum times h at the present node.
+    /// Body momentum times h at the current node.
     v: Square<N>,
     /// Spatial momentum times h.
     spatial: Square<N>,
@@ -92,11 +93,11 @@ pub struct BodyN<const N: usize> {
     h: f64,
 }
 
-/// Sweeps of the fast iteration before Lie-Newton takes over: it gains a decimal place each where it is of use.
+/// Iterations of the fast method before Lie-Newton takes over; where it is useful, each gains a decimal digit.
 const MOST_SWEEPS: usize = 24;
 
 impl<const N: usize> BodyN<N> {
-    /// Starts a trajectory; the momentum is that of node 0 in body axes. Needs positive entries of J.
+    /// Starts a trajectory with the body momentum of node 0. Needs positive entries of J.
     pub fn start(
         j: &[f64; N],
         attitude: &Square<N>,
@@ -127,7 +128,7 @@ impl<const N: usize> BodyN<N> {
         })
     }
 
-    /// Where the iteration begins: the cubic through the last four steps, or S = J.
+    /// The initial guess: the cubic through the last four steps, or S = J.
     #[inline(always)]
     fn guess(&self) -> Square<N> {
         let mut s = [[0.0; N]; N];
@@ -146,7 +147,7 @@ impl<const N: usize> BodyN<N> {
         s
     }
 
-    /// J^2 - A^T A for A = S + V/2, which vanishes with Om = A J^-1 orthogonal; gives A and the largest entry.
+    /// J^2 - A^T A for A = S + V/2, which vanishes if Om = A J^-1 is orthogonal; returns A, the defect and its largest entry.
     #[inline(always)]
     fn defect(&self, s: &Square<N>) -> (Square<N>, Square<N>, f64) {
         let mut a = *s;
@@ -167,7 +168,7 @@ impl<const N: usize> BodyN<N> {
         (a, left, size)
     }
 
-    /// One step of the motion; unchanged when the equation has no solution.
+    /// Steps once; if the equation has no solution, the state is unchanged.
     #[inline(always)]
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         let scale = self.j.iter().fold(0.0_f64, |m, x| m.max(x * x));
@@ -176,7 +177,8 @@ impl<const N: usize> BodyN<N> {
         let mut solved = None;
         for _ in 0..MOST_SWEEPS {
             let (a, defect, size) = self.defect(&s);
-            // Done when only rounding is left: it stops falling, or is a few roundings of the terms.
+            // Converged if only rounding is left: the defect is a few rounding errors of the terms, or stops decreasing near that
+            // level.
             if size <= 4.0 * f64::EPSILON * scale
                 || (size <= 64.0 * f64::EPSILON * scale && size >= 0.5 * previous)
             {
@@ -209,7 +211,7 @@ impl<const N: usize> BodyN<N> {
             }
         }
         self.attitude = reorthonormalised(&product(&self.attitude, &turn));
-        // Momentum from the attitude: the bare iteration Om^T M Om would add its rounding up.
+        // Momentum from the attitude: the iteration Om^T M Om would accumulate rounding.
         self.v = transposed_product(&self.attitude, &product(&self.spatial, &self.attitude));
         self.past = [s, self.past[0], self.past[1], self.past[2]];
         self.known += u32::from(self.known < 4);
@@ -235,7 +237,7 @@ impl<const N: usize> BodyN<N> {
             let size = pairs
                 .iter()
                 .map(|(i, k)| f(*i, *k).abs())
-                // Written so that NaN stays.
+                // Written so that NaN propagates.
                 .fold(0.0_f64, |a, b| if b <= a || a.is_nan() { a } else { b });
             let scale = self.j.iter().fold(0.0_f64, |m, x| m.max(*x));
             if size <= 8.0 * f64::EPSILON * scale {
@@ -271,7 +273,7 @@ impl<const N: usize> BodyN<N> {
         Err(Unsolvable)
     }
 
-    /// Attitude at the present node.
+    /// Attitude at the current node.
     pub fn attitude(&self) -> Square<N> {
         self.attitude
     }
@@ -281,7 +283,7 @@ impl<const N: usize> BodyN<N> {
         self.v.map(|row| row.map(|x| x / self.h))
     }
 
-    /// Spatial momentum, that of node 0.
+    /// Spatial momentum, constant since node 0.
     pub fn spatial_momentum(&self) -> Square<N> {
         self.spatial.map(|row| row.map(|x| x / self.h))
     }
@@ -299,7 +301,7 @@ impl<const N: usize> BodyN<N> {
     }
 }
 
-/// Cayley's (Id - X)^-1 (Id + X) of half the algebra element.
+/// The Cayley map (Id - X)^-1 (Id + X), where X is half the algebra element.
 fn cayley<const N: usize>(half: &Square<N>) -> Option<Square<N>> {
     let one = identity::<N>();
     let mut columns = [[0.0; N]; N];
@@ -318,7 +320,7 @@ fn cayley<const N: usize>(half: &Square<N>) -> Option<Square<N>> {
     Some(transposed(&columns))
 }
 
-/// Solution of a linear system given by rows with the right side last; pivots by size.
+/// Solves a linear system whose rows end with the right-hand side, with partial pivoting.
 fn eliminated(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     let n = rows.len();
     for c in 0..n {

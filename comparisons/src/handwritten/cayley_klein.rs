@@ -1,20 +1,20 @@
-//! Free body on SU(2): the family L_d = -(4c/h) q0 + (2/h) Q . (I - c) Q of discrete Lagrangians, body representation.
-//! Takes diagonal moments I, the parameter c, a unit quaternion, body momentum and h; gives both at the nodes.
-//! c = 0 is Moser-Veselov on SO(3); any other c is no function on SO(3), yet of second order and Poisson.
+//! Free body on SU(2), body representation: the family L_d = -(4c/h) q0 + (2/h) Q . (I - c) Q of discrete Lagrangians. Takes
+//! diagonal moments I, the parameter c, a unit quaternion, body momentum and h; gives quaternion and momentum at the nodes. c = 0
+//! is Moser-Veselov on SO(3). For any other c, L_d is not a function on SO(3), but the scheme is of second order and Poisson.
 
 use super::Unsolvable;
 use super::attitude::{Quaternion, Vector, add_scaled, apply, apply_transposed, dot};
 use super::spaced::{SpacedQuaternion, SpacedVector};
 
-/// Steps between two returns to the conserved spatial momentum, as for the free body on SO(3).
+/// Number of steps between two resets to the conserved spatial momentum, as for the free body on SO(3).
 const REANCHOR_EVERY: u32 = 64;
 
-/// A body on its way. With u = h mu / 2 a step solves c Q + q0 (I - c) Q + Q x I Q = u for W = (q0, Q).
+/// A moving body. With u = h mu / 2, a step solves c Q + q0 (I - c) Q + Q x I Q = u for W = (q0, Q).
 #[derive(Clone, Copy, Debug)]
 pub struct CayleyKlein {
     u: SpacedVector,
     q: SpacedQuaternion,
-    /// Shifts s of the last three steps: the next one starts from the parabola through them.
+    /// Shifts s of the last three steps; the next step starts from the parabola through them.
     shifts: [f64; 3],
     until_anchor: u32,
     moments: Vector,
@@ -27,7 +27,7 @@ pub struct CayleyKlein {
 }
 
 impl CayleyKlein {
-    /// Starts a trajectory; the momentum is that of node 0 in body axes. The first step must be solvable.
+    /// Starts a trajectory with the body momentum of node 0. The first step must be solvable.
     pub fn start(
         moments: &Vector,
         c: f64,
@@ -59,10 +59,10 @@ impl CayleyKlein {
         dot(&turn, u) - 0.5 * self.c * dot(&turn, &turn)
     }
 
-    /// The shift s with its W, up to a positive factor.
+    /// The shift s and its W, up to a positive factor.
     ///
-    /// With s = Q . (I - c) Q + c (1 - q0) the three equations become linear, (I - s - hat(u)) Q = q0 u, solved by
-    /// (q0, Q) ~ (det, n) as on SO(3); what is left is u . n - s det = c (|(det, n)| - det) for s alone.
+    /// With s = Q . (I - c) Q + c (1 - q0), the three equations become linear: (I - s - hat(u)) Q = q0 u, solved by (q0, Q) ~ (det,
+    /// n) as on SO(3). One equation remains for s alone: u . n - s det = c (|(det, n)| - det).
     #[inline(always)]
     fn shift(&self, u: &Vector, start: f64) -> Result<(f64, Quaternion), Unsolvable> {
         let squares = u.map(|x| x * x);
@@ -84,7 +84,7 @@ impl CayleyKlein {
             let nn = (n1 * n1 + n2 * n2) + n3 * n3;
             let un = (u[0] * n1 + u[1] * n2) + u[2] * n3;
             let length = (det * det + nn).sqrt();
-            // (|w| - det) without its cancellation.
+            // (|w| - det) without cancellation.
             let value = (un - s * det) * (length + det) - self.c * nn;
             let det_rate = -((d23 + d31) + (d12 + a));
             let (r1, r2, r3) = (-(d2 + d3) * u[0], -(d3 + d1) * u[1], -(d1 + d2) * u[2]);
@@ -96,7 +96,7 @@ impl CayleyKlein {
                 - (self.c + self.c) * half_nn_rate;
             let change = value / slope;
             s -= change;
-            // Quadratic convergence: this change is in error by its own square.
+            // Convergence is quadratic: the error of this change is its own square.
             if change.abs() <= 3e-9 * i2 {
                 let (e1, e2, e3) = (d1 + change, d2 + change, d3 + change);
                 let (e23, e31, e12) = (e2 * e3, e3 * e1, e1 * e2);
@@ -112,7 +112,7 @@ impl CayleyKlein {
         Err(Unsolvable)
     }
 
-    /// One step of the motion; unchanged when the equation has no solution.
+    /// Steps once; if the equation has no solution, the state is unchanged.
     #[inline(always)]
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         let u = self.u.get();
@@ -121,7 +121,7 @@ impl CayleyKlein {
         self.shifts = [last, now, s];
         let inverse = 1.0 / turn.norm_squared();
         let [_, n1, n2, n3] = turn.0;
-        // mu' = Om^T mu: only Q x I Q changes its sign.
+        // mu' = Om^T mu: only the sign of Q x I Q changes.
         let double = inverse + inverse;
         self.u.set([
             u[0] + double * (self.gyration[0] * (n2 * n3)),
@@ -136,7 +136,7 @@ impl CayleyKlein {
         Ok(())
     }
 
-    /// Takes the rounding of many steps out: |q| = 1 and u as the attitude gives it.
+    /// Removes the rounding error of many steps: normalises q and recomputes u from the attitude.
     #[cold]
     #[inline(never)]
     fn anchor(&mut self) {
@@ -146,7 +146,7 @@ impl CayleyKlein {
         self.until_anchor = REANCHOR_EVERY;
     }
 
-    /// The unit quaternion at the present node: q and -q differ.
+    /// The unit quaternion at the current node; q and -q are different states.
     pub fn quaternion(&self) -> Quaternion {
         self.q.get()
     }
@@ -156,18 +156,18 @@ impl CayleyKlein {
         self.u.get().map(|x| 2.0 * x / self.h)
     }
 
-    /// Spatial momentum, that of node 0.
+    /// Spatial momentum, constant since node 0.
     pub fn spatial_momentum(&self) -> Vector {
         self.spatial.map(|x| 2.0 * x / self.h)
     }
 
-    /// Energy mu . I^-1 mu / 2: exact for c = 0, oscillating within O(h^2) otherwise.
+    /// Energy mu . I^-1 mu / 2: exact for c = 0, otherwise oscillating within O(h^2).
     pub fn energy(&self) -> f64 {
         let mu = self.body_momentum();
         0.5 * dot(&mu, &[0, 1, 2].map(|i| mu[i] * self.reciprocal[i]))
     }
 
-    /// What is left of the equation as it is derived, c Q + q0 (I - c) Q + Q x I Q = u, at the present node.
+    /// The residual of the derived equation c Q + q0 (I - c) Q + Q x I Q = u at the current node.
     pub fn residual(&self) -> Result<f64, Unsolvable> {
         let u = self.u.get();
         let (_, turn) = self.shift(&u, self.first_shift(&u))?;
@@ -176,7 +176,7 @@ impl CayleyKlein {
         let image = [0, 1, 2].map(|i| self.moments[i] * q[i]);
         let left = [0, 1, 2].map(|i| self.c * q[i] + q0 * (image[i] - self.c * q[i]));
         let left = add_scaled(&left, 1.0, &super::attitude::cross(&q, &image));
-        // Written so that NaN stays.
+        // Written so that NaN propagates.
         Ok((0..3)
             .map(|i| (left[i] - u[i]).abs())
             .fold(0.0, |a: f64, b| if b <= a || a.is_nan() { a } else { b }))

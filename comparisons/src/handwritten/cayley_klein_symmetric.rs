@@ -1,32 +1,31 @@
-//! Free body of revolution on SU(2), the family of `cayley_klein`, explicitly: with two equal moments the angle of the
-//! step and its part about the axis are constant, so that one equation for one number is solved at the start.
-//! Takes diagonal moments, two of them equal, the parameter c, a unit quaternion, body momentum and h; gives both at
-//! the nodes.
+//! Free body of revolution on SU(2), the family of `cayley_klein`, with an explicit step. With two equal moments, the rotation
+//! angle of the step and its axial component are constant, so a single scalar equation is solved at the start. Takes diagonal
+//! moments (two of them equal), the parameter c, a unit quaternion, body momentum and h; gives quaternion and momentum at the
+//! nodes.
 
 use super::Unsolvable;
 use super::attitude::{Quaternion, Vector, apply, apply_transposed};
 
-/// Steps between two returns to the conserved spatial momentum, as for the free body on SO(3).
+/// Number of steps between two resets to the conserved spatial momentum, as for the free body on SO(3).
 const REANCHOR_EVERY: u32 = 64;
 
-/// A body of revolution on its way.
+/// A moving body of revolution.
 ///
-/// With I = (a, a, b), d = b - a and u = h mu / 2, the equation c Q + q0 (I - c) Q + Q x I Q = u is
-/// D Q3 = u3 and (A + d Q3 R) (Q1, Q2) = (u1, u2), where A = c + q0 (a - c), D = c + q0 (b - c) and R turns by a right
-/// angle. The momentum then turns about the axis by twice the angle of A + d Q3 R: u3, the length of u and with them
-/// q0 are the same at every node.
+/// With I = (a, a, b), d = b - a and u = h mu / 2, the equation c Q + q0 (I - c) Q + Q x I Q = u becomes D Q3 = u3 and (A + d Q3 R)
+/// (Q1, Q2) = (u1, u2). Here A = c + q0 (a - c), D = c + q0 (b - c), and R is a quarter turn. The momentum rotates about the axis
+/// by twice the angle of A + d Q3 R, so u3, the length of u and q0 are the same at every node.
 #[derive(Clone, Copy, Debug)]
 pub struct SymmetricCayleyKlein {
     /// h/2 times the body momentum.
     u: Vector,
     q: Quaternion,
-    /// The axis of revolution and the two others, in cyclic order.
+    /// The axis of revolution and the two other axes, in cyclic order.
     places: [usize; 3],
-    /// q0 and the part about the axis of every step.
+    /// q0 and the axial component of every step.
     turn: [f64; 2],
-    /// What gives the part across the axis: (x, y) -> (p x - r y, r x + p y).
+    /// The map from the transverse momentum to the transverse component: (x, y) -> (p x - r y, r x + p y).
     across: [f64; 2],
-    /// What the momentum across the axis is turned by: cosine and sine.
+    /// Cosine and sine of the rotation of the transverse momentum per step.
     precession: [f64; 2],
     until_anchor: u32,
     moments: Vector,
@@ -36,10 +35,10 @@ pub struct SymmetricCayleyKlein {
 }
 
 impl SymmetricCayleyKlein {
-    /// Starts a trajectory; the momentum is that of node 0 in body axes.
+    /// Starts a trajectory with the body momentum of node 0.
     ///
     /// # Errors
-    /// [`Unsolvable`] when no two moments are equal, and beyond the reach of the equation.
+    /// [`Unsolvable`] if no two moments are equal, or if the equation has no solution.
     pub fn start(
         moments: &Vector,
         c: f64,
@@ -48,7 +47,7 @@ impl SymmetricCayleyKlein {
         h: f64,
     ) -> Result<SymmetricCayleyKlein, Unsolvable> {
         let places = [[0, 1, 2], [1, 2, 0], [2, 0, 1]];
-        // Moments found by diagonalising are equal to rounding.
+        // Moments from a diagonalisation are equal only to rounding.
         let equal = |x: f64, y: f64| (x - y).abs() <= 8.0 * f64::EPSILON * x;
         let found = places
             .into_iter()
@@ -77,7 +76,7 @@ impl SymmetricCayleyKlein {
         })
     }
 
-    /// One step of the motion; the equation is solved already.
+    /// Steps once; the equation is already solved.
     #[inline(always)]
     pub fn step(&mut self) {
         let [axis, j, k] = self.places;
@@ -97,7 +96,8 @@ impl SymmetricCayleyKlein {
         }
     }
 
-    /// Takes the rounding of many steps out: |q| = 1 and u as the attitude gives it, but for the constant part of it.
+    /// Removes the rounding error of many steps: normalises q and recomputes u from the attitude, except for its constant
+    /// component.
     #[cold]
     #[inline(never)]
     fn anchor(&mut self) {
@@ -109,7 +109,7 @@ impl SymmetricCayleyKlein {
         self.until_anchor = REANCHOR_EVERY;
     }
 
-    /// The unit quaternion at the present node: q and -q differ.
+    /// The unit quaternion at the current node; q and -q are different states.
     pub fn quaternion(&self) -> Quaternion {
         self.q
     }
@@ -119,20 +119,20 @@ impl SymmetricCayleyKlein {
         self.u.map(|x| 2.0 * x / self.h)
     }
 
-    /// Spatial momentum, that of node 0.
+    /// Spatial momentum, constant since node 0.
     pub fn spatial_momentum(&self) -> Vector {
         self.spatial.map(|x| 2.0 * x / self.h)
     }
 
-    /// Energy mu . I^-1 mu / 2: constant for every member of the family, as |mu| and the part about the axis are.
+    /// Energy mu . I^-1 mu / 2: constant for every member of the family, because |mu| and the axial component are.
     pub fn energy(&self) -> f64 {
         let mu = self.body_momentum();
         (0..3).map(|i| 0.5 * mu[i] * mu[i] / self.moments[i]).sum()
     }
 }
 
-/// 1 - q0: the smallest root e of e (2 - e) = Q3^2 + t / (A^2 + d^2 Q3^2), with t = u1^2 + u2^2. Newton's method from
-/// the left, which approaches it monotonically; it is past the root only where there is none.
+/// 1 - q0: the smallest root e of e (2 - e) = Q3^2 + t / (A^2 + d^2 Q3^2), with t = u1^2 + u2^2. Newton's method converges
+/// monotonically from the left; it passes the root only if there is none.
 fn deviation([a, b]: [f64; 2], c: f64, along: f64, across: f64) -> Result<f64, Unsolvable> {
     let d = b - a;
     let mut e = 0.0;
@@ -145,14 +145,14 @@ fn deviation([a, b]: [f64; 2], c: f64, along: f64, across: f64) -> Result<f64, U
         let value = e * (2.0 - e) - spin * spin - across / square;
         let slope =
             2.0 - 2.0 * e - 2.0 * spin * spin_rate + across * square_rate / (square * square);
-        // Also taken by a NaN.
+        // NaN also takes this branch.
         let rises = slope > 0.0 && q > 0.0;
         if !rises {
             return Err(Unsolvable);
         }
         let change = -value / slope;
         e += change;
-        // Quadratic convergence: what is left is the square of this change.
+        // Convergence is quadratic: the remaining error is the square of this change.
         if change.abs() <= 1e-9 * e {
             let (p, q) = (a - e * (a - c), b - e * (b - c));
             let spin = along / q;

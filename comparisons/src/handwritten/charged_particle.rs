@@ -1,10 +1,10 @@
-//! A charge in uniform fields by Boris (1970): velocities between the nodes, each half a kick of E, a rotation about
-//! B by 2 atan(q |B| h/2m), half a kick. Takes mass, charge, B, E, place, momentum and h; gives places and momenta at the nodes.
+//! A charge in uniform fields by the method of Boris (1970). Velocities live on the edges: half a kick of E, a rotation about B by
+//! 2 atan(q |B| h/2m), half a kick. Takes mass, charge, B, E, position, momentum and h; gives positions and momenta at the nodes.
 
 use super::Unsolvable;
 use super::attitude::{Vector, add_scaled, cross, dot, scaled};
 
-/// What moves, and where.
+/// A charge and its fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Charge {
     /// Mass.
@@ -17,11 +17,11 @@ pub struct Charge {
     pub electric: Vector,
 }
 
-/// A particle on its way.
+/// A moving charge.
 #[derive(Clone, Copy, Debug)]
 pub struct ChargedParticle {
     x: Vector,
-    /// Velocity on the edge that starts at the node.
+    /// Velocity on the outgoing edge.
     v: Vector,
     /// q h B/2m.
     t: Vector,
@@ -37,7 +37,7 @@ impl ChargedParticle {
     /// Starts a trajectory with the momentum m V + (q/2) B x X of node 0.
     ///
     /// # Errors
-    /// [`Unsolvable`] for what is not finite.
+    /// [`Unsolvable`] if a value is not finite.
     pub fn start(
         charge: &Charge,
         place: &Vector,
@@ -52,7 +52,7 @@ impl ChargedParticle {
         let turned = cross(&charge.magnetic, place);
         let kinetic = add_scaled(momentum, -0.5 * charge.charge, &turned);
         let at_node = scaled(1.0 / charge.mass, &kinetic);
-        // Half of a rotation lies between the node and the edge: v + t x v = at_node + kick.
+        // Half of a rotation separates the node from the edge: v + t x v = at_node + kick.
         let u = add_scaled(&at_node, 1.0, &kick);
         let along = add_scaled(&u, dot(&t, &u), &t);
         let factor = 2.0 / (1.0 + dot(&t, &t));
@@ -72,10 +72,10 @@ impl ChargedParticle {
         }
     }
 
-    /// One step of the motion.
+    /// Steps once.
     ///
     /// # Errors
-    /// [`Unsolvable`] when the place is not finite.
+    /// [`Unsolvable`] if the position is not finite.
     #[inline(always)]
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         let x = add_scaled(&self.x, self.h, &self.v);
@@ -90,18 +90,18 @@ impl ChargedParticle {
         Ok(())
     }
 
-    /// Place at the present node.
+    /// Position at the current node.
     pub fn place(&self) -> Vector {
         self.x
     }
 
-    /// Velocity at the present node: half of the rotation and of the kick before that on the edge.
+    /// Velocity at the current node, half a rotation and half a kick before the velocity of the outgoing edge.
     pub fn velocity(&self) -> Vector {
         let turned = add_scaled(&self.v, 1.0, &cross(&self.t, &self.v));
         add_scaled(&turned, -1.0, &self.kick)
     }
 
-    /// m V + (q/2) B x X at the present node.
+    /// The momentum m V + (q/2) B x X at the current node.
     pub fn momentum(&self) -> Vector {
         let Charge {
             mass,

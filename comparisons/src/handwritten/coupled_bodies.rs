@@ -1,6 +1,6 @@
-//! Two bodies with a spherical joint: full Newton on the pair of rotations, solved by 3 x 3 blocks.
-//! Takes J_i + eps d_i d_i^T, the arms d_i, eps, attitudes, body momenta and h; gives attitudes and momenta at the
-//! nodes. State: both attitudes and both spatial momenta. The thesis's own iteration is in `coupled_fixed_point`.
+//! Two bodies with a spherical joint: full Newton on the pair of rotations, with 3 x 3 blocks. Takes J_i + eps d_i d_i^T, the arms
+//! d_i, eps, attitudes, body momenta and h; gives attitudes and momenta at the nodes. The state is both attitudes and both spatial
+//! momenta. `coupled_fixed_point` contains the thesis's iteration.
 
 use super::Unsolvable;
 use super::attitude::{
@@ -9,7 +9,7 @@ use super::attitude::{
 };
 use super::principal_axes::PrincipalAxes;
 
-/// What the pair is made of; matrices and arms in the axes of each body.
+/// The data of the pair; matrices and arms in the axes of each body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
     /// Poinsot matrices about the centres of mass, plus eps d d^T.
@@ -20,21 +20,21 @@ pub struct Pair {
     pub eps: f64,
 }
 
-/// Most Newton iterations of one step.
+/// Maximum number of Newton iterations per step.
 pub const MOST_ITERATIONS: usize = 4;
 
 /// Largest residual of an accepted solution, in units of h/2 times the largest momentum (at least one).
 pub const RESIDUAL: f64 = 1e-15;
 
-/// One body's half of the equations, in its principal axes.
+/// One body's half of the equations, in principal axes.
 #[derive(Clone, Copy, Debug)]
 struct Half {
     moments: Vector,
     arm: Vector,
 }
 
-/// Rodrigues vector c with what the equations need of it: with alpha = 1 + |c|^2,
-/// G = (I c + c x I c)/alpha and w = (c x d + c x (c x d))/alpha = (Om - Id) d / 2.
+/// Rodrigues vector c and derived quantities: with alpha = 1 + |c|^2, G = (I c + c x I c)/alpha and w = (c x d + c x (c x d))/alpha
+/// = (Om - Id) d / 2.
 #[derive(Clone, Copy, Debug)]
 struct Turn {
     c: Vector,
@@ -94,7 +94,7 @@ fn rate(base: &Matrix, inverse: f64, v: &Vector, c: &Vector) -> Matrix {
     scaled_matrix(inverse, &add_outer(base, v, &scaled(-2.0, c)))
 }
 
-/// Newton's matrix by blocks, factored: A11^-1, A21, A11^-1 A12 and the inverse of the Schur complement.
+/// The factored Newton matrix in blocks: A11^-1, A21, A11^-1 A12 and the inverse of the Schur complement.
 #[derive(Clone, Copy, Debug)]
 struct Factors {
     first: Matrix,
@@ -118,12 +118,12 @@ impl Factors {
     }
 }
 
-/// Two bodies on their way; principal axes of either inside. Momenta are stored times h/2.
+/// Two moving bodies, each in its principal axes. Stores momenta times h/2.
 #[derive(Clone, Copy, Debug)]
 pub struct CoupledBodies {
     q: [Quaternion; 2],
     m: [Vector; 2],
-    /// Rodrigues vectors of the last four steps, the newest first: the next starts from the cubic through them.
+    /// Rodrigues vectors of the last four steps, newest first; the next step starts from the cubic through them.
     past: [[Vector; 2]; 4],
     known: u32,
     halves: [Half; 2],
@@ -135,7 +135,7 @@ pub struct CoupledBodies {
 }
 
 impl CoupledBodies {
-    /// Starts a trajectory; momenta are those of node 0, each in the axes of its body.
+    /// Starts a trajectory with the body momenta of node 0.
     pub fn start(
         pair: &Pair,
         attitudes: &[Quaternion; 2],
@@ -166,7 +166,7 @@ impl CoupledBodies {
         })
     }
 
-    /// The equations G_1 - eps d_1 x R w_2 = u_1 and G_2 - eps d_2 x R^T w_1 = u_2, left minus right.
+    /// The equations G_1 - eps d_1 x R w_2 = u_1 and G_2 - eps d_2 x R^T w_1 = u_2: left side minus right side.
     #[inline(always)]
     fn residuals(&self, t: &[Turn; 2], r: &Matrix, u: &[Vector; 2]) -> [Vector; 2] {
         let [one, two] = &self.halves;
@@ -202,7 +202,7 @@ impl CoupledBodies {
         }
     }
 
-    /// Where Newton begins: extrapolation of what is known of the past.
+    /// The initial guess of Newton's method, extrapolated from previous steps.
     #[inline(always)]
     fn guess(&self) -> [Vector; 2] {
         let [a, b, c, d] = &self.past;
@@ -221,7 +221,7 @@ impl CoupledBodies {
         [along(0), along(1)]
     }
 
-    /// One step of the motion; unchanged when Newton does not converge in [`MOST_ITERATIONS`].
+    /// Steps once; the state is unchanged if Newton does not converge in [`MOST_ITERATIONS`].
     #[inline(always)]
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         let rotations = [self.q[0].matrix(), self.q[1].matrix()];
@@ -239,8 +239,8 @@ impl CoupledBodies {
         loop {
             iterations += 1;
             let factors = self.factors(&t, &r);
-            // A second correction with the same matrix costs a residual instead of a factorisation; together the two
-            // are of third order.
+            // A second correction with the same matrix costs a residual instead of a factorisation; both together converge
+            // cubically.
             for _ in 0..2 {
                 let change = factors.solve(&f);
                 c = [
@@ -251,7 +251,7 @@ impl CoupledBodies {
                 f = self.residuals(&t, &r, &u);
             }
             let (first, second) = (largest(&f[0]), largest(&f[1]));
-            // Written so that a NaN stays.
+            // Written so that NaN propagates.
             let size = first.max(second) + 0.0 * (first + second);
             if size <= RESIDUAL * scale {
                 self.residual = size;
@@ -264,7 +264,7 @@ impl CoupledBodies {
         self.iterations = iterations;
         self.past = [c, self.past[0], self.past[1], self.past[2]];
         self.known += u32::from(self.known < 4);
-        // The joint hands over eps (Om_1 - Id) d_1 x (Om_2 - Id) d_2 in space, so that the sum of momenta stays.
+        // The joint transfers eps (Om_1 - Id) d_1 x (Om_2 - Id) d_2 in space, which conserves the sum of the momenta.
         let moved = [
             apply(&rotations[0], &t[0].moved),
             apply(&rotations[1], &t[1].moved),
@@ -276,7 +276,7 @@ impl CoupledBodies {
         ];
         for (q, turn) in self.q.iter_mut().zip(&t) {
             let [x, y, z] = turn.c;
-            // |q|^2 = 1 up to rounding; the factor takes that out again, to first order.
+            // Removes the rounding error of |q|^2 = 1, to first order.
             let correction = 1.5 - 0.5 * q.norm_squared();
             let turned = q.times(&Quaternion([1.0, x, y, z]));
             *q = turned.scaled(correction * turn.inverse.sqrt());
@@ -294,17 +294,17 @@ impl CoupledBodies {
         self.residual
     }
 
-    /// Attitudes body -> space at the present node.
+    /// Attitudes body -> space at the current node.
     pub fn attitudes(&self) -> [Quaternion; 2] {
         [0, 1].map(|i| self.axes[i].leave_attitude(&self.q[i]))
     }
 
-    /// Spatial momenta at the present node.
+    /// Spatial momenta at the current node.
     pub fn spatial_momenta(&self) -> [Vector; 2] {
         self.m.map(|m| m.map(|c| 2.0 * c / self.h))
     }
 
-    /// Body momenta at the present node.
+    /// Body momenta at the current node.
     pub fn body_momenta(&self) -> [Vector; 2] {
         [0, 1].map(|i| {
             let u = apply_transposed(&self.q[i].matrix(), &self.m[i]);
@@ -312,7 +312,7 @@ impl CoupledBodies {
         })
     }
 
-    /// Energy mu . M^-1 mu / 2 with the mass matrix of both bodies together: oscillates within O(h^2).
+    /// Energy mu . M^-1 mu / 2 with the joint mass matrix of both bodies; oscillates within O(h^2).
     pub fn energy(&self) -> f64 {
         let rotations = [self.q[0].matrix(), self.q[1].matrix()];
         let u = [0, 1].map(|i| apply_transposed(&rotations[i], &self.m[i]));

@@ -1,6 +1,6 @@
-//! The thesis's iteration for coupled bodies (appendix A.4, mended): each body in turn solves its own Moser-Veselov
-//! equation with the coupling of the other held fixed. Takes the data of the pair; gives both rotations of one step
-//! and the rate at which the iteration contracts, which does not depend on h.
+//! The thesis's iteration for coupled bodies (appendix A.4, corrected): each body in turn solves its own Moser-Veselov equation
+//! with the coupling to the other held fixed. Gives both rotations of one step, and the contraction rate of the iteration, which
+//! does not depend on h.
 
 use super::Unsolvable;
 use super::attitude::{Matrix, Quaternion, Vector, add_scaled, apply, apply_transposed, cross};
@@ -9,20 +9,20 @@ use super::one_sided_top::edge_rotation;
 use super::principal_axes::PrincipalAxes;
 use super::principal_root::Quartic;
 
-/// The rotations of one step, found by the fixed point.
+/// The rotations of one step from the fixed-point iteration.
 #[derive(Clone, Debug)]
 pub struct FixedPoint {
-    /// Rotations of both bodies over the step, each in the axes of its body.
+    /// Rotations of both bodies over the step, each in its body axes.
     pub turns: [Matrix; 2],
     /// Sizes of the successive changes of the rotations.
     pub changes: Vec<f64>,
 }
 
-/// Changes below this are rounding and say nothing about the rate.
+/// Changes below this are rounding, and do not determine the rate.
 const ROUNDING: f64 = 1e-13;
 
 impl FixedPoint {
-    /// Iterates until rotations do not change any more.
+    /// Iterates until the rotations no longer change.
     pub fn solve(
         pair: &Pair,
         attitudes: &[Quaternion; 2],
@@ -65,7 +65,7 @@ impl FixedPoint {
                     let (i, r, c) = (n / 9, n % 9 / 3, n % 3);
                     (found.turns[i][r][c] - before[i][r][c]).abs()
                 })
-                // Written so that NaN stays.
+                // Written so that NaN propagates.
                 .fold(0.0_f64, |a, b| if b <= a || a.is_nan() { a } else { b });
             found.changes.push(change);
             if change <= 4.0 * f64::EPSILON {
@@ -75,7 +75,7 @@ impl FixedPoint {
         Err(Unsolvable)
     }
 
-    /// Contraction per sweep: the last ratio of changes that rounding has not reached.
+    /// Contraction per sweep: the last ratio of changes above rounding.
     pub fn rate(&self) -> f64 {
         let clear: Vec<f64> = self
             .changes
@@ -90,7 +90,7 @@ impl FixedPoint {
     }
 }
 
-/// The same rotation of the body in the axes of the user.
+/// The same rotation of the body in the user's axes.
 fn in_user_axes(axes: &PrincipalAxes, turn: &Matrix) -> Matrix {
     let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
         .map(|e| axes.leave(&apply(turn, &axes.enter(&e))));

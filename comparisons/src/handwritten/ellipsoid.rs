@@ -1,33 +1,32 @@
-//! Elastic ellipsoids by their placement Q: C0 Q'' I0 = -grad V(Q) by Störmer and Verlet, half a kick, a drift, half a
-//! kick. Takes C0, I0, the stored energy of C = Q^T C0 Q or of S = Q I0 Q^T, placement, velocity and h; gives placements
-//! and momenta at the nodes.
+//! The placement Q of an elastic ellipsoid: C0 Q'' I0 = -grad V(Q) by Störmer-Verlet: half a kick, a drift, half a kick. Takes C0,
+//! I0, the stored energy of C = Q^T C0 Q or of S = Q I0 Q^T, placement, velocity and h; gives placements and momenta at the nodes.
 
 use super::Unsolvable;
 use super::body_n::{Square, product, transposed, transposed_product};
 
-/// What the stored energy is a function of.
+/// The argument of the stored energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Of {
-    /// C = Q^T C0 Q, the metric of space seen from the body.
+    /// C = Q^T C0 Q, the convective metric.
     Metric,
-    /// S = Q I0 Q^T, the second moments in space.
+    /// S = Q I0 Q^T, the spatial second moments.
     Moments,
 }
 
-/// An ellipsoid of Mooney and Rivlin: W(X) = a I1(X) + b I2(X) + c det(X) - (d/2) log det(X).
+/// A Mooney-Rivlin ellipsoid: W(X) = a I1(X) + b I2(X) + c det(X) - (d/2) log det(X).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipsoid<const N: usize> {
     /// C0, metric of space.
     pub metric: Square<N>,
-    /// I0, second moments in the reference.
+    /// I0, second moments of the reference.
     pub moments: Square<N>,
     /// a, b, c, d.
     pub energy: [f64; 4],
-    /// What W is a function of.
+    /// The argument of W.
     pub of: Of,
 }
 
-/// The inverse and the determinant, by elimination with pivots; not finite where there is none.
+/// The inverse and the determinant, by elimination with pivoting; not finite if the matrix is singular.
 #[inline(always)]
 pub fn inverse<const N: usize>(a: &Square<N>) -> (Square<N>, f64) {
     let mut left = *a;
@@ -81,7 +80,7 @@ fn trace<const N: usize>(a: &Square<N>) -> f64 {
 }
 
 impl<const N: usize> Ellipsoid<N> {
-    /// What W is a function of, at this placement.
+    /// The argument of W at this placement.
     #[inline(always)]
     fn argument(&self, q: &Square<N>) -> Square<N> {
         match self.of {
@@ -117,20 +116,20 @@ impl<const N: usize> Ellipsoid<N> {
     }
 }
 
-/// An ellipsoid with what its acceleration needs.
+/// An ellipsoid with precomputed data for its acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prepared<const N: usize> {
     /// The ellipsoid.
     pub body: Ellipsoid<N>,
-    /// I0^-1 for an energy of C, C0^-1 for one of S: the other factor cancels.
+    /// I0^-1 for an energy of C, C0^-1 for an energy of S; the other factor cancels.
     factor: Square<N>,
 }
 
 impl<const N: usize> Prepared<N> {
-    /// Inverts the factor that the force meets.
+    /// Inverts the factor that multiplies the force.
     ///
     /// # Errors
-    /// [`Unsolvable`] when it has no inverse.
+    /// [`Unsolvable`] if it is singular.
     pub fn new(body: &Ellipsoid<N>) -> Result<Self, Unsolvable> {
         let (factor, _) = match body.of {
             Of::Metric => inverse(&body.moments),
@@ -156,7 +155,7 @@ impl<const N: usize> Prepared<N> {
         force.map(|row| row.map(|x| -2.0 * x))
     }
 
-    /// The velocity Q' of a momentum, which is seen from the body for an energy of C, in space for one of S.
+    /// The velocity Q' of a momentum, which is a body momentum for an energy of C and a spatial one for an energy of S.
     pub fn velocity(&self, q: &Square<N>, momentum: &Square<N>) -> Square<N> {
         let back = inverse(q).0;
         // Q^T C0 Q' I0, and C0 Q' I0 Q^T.
@@ -178,19 +177,19 @@ impl<const N: usize> Prepared<N> {
     }
 }
 
-/// An ellipsoid on its way.
+/// A moving ellipsoid.
 #[derive(Clone, Copy, Debug)]
 pub struct ElasticEllipsoid<const N: usize> {
     q: Square<N>,
     v: Square<N>,
-    /// Of the present placement: the next step begins with it.
+    /// Acceleration at the current placement, which the next step uses first.
     acceleration: Square<N>,
     body: Prepared<N>,
     h: f64,
 }
 
 impl<const N: usize> ElasticEllipsoid<N> {
-    /// Starts a trajectory with the momentum of node 0, as the ellipsoid's energy sees it.
+    /// Starts a trajectory with the momentum of node 0, in the body for an energy of C and in space for an energy of S.
     ///
     /// # Errors
     /// [`Unsolvable`] for a singular placement or factor.
@@ -216,10 +215,10 @@ impl<const N: usize> ElasticEllipsoid<N> {
         }
     }
 
-    /// One step of the motion; unchanged when the placement would be singular.
+    /// Steps once; the state is unchanged if the new placement would be singular.
     ///
     /// # Errors
-    /// [`Unsolvable`] then.
+    /// [`Unsolvable`] in that case.
     #[inline(always)]
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         let half = 0.5 * self.h;
@@ -235,17 +234,17 @@ impl<const N: usize> ElasticEllipsoid<N> {
         Ok(())
     }
 
-    /// Placement at the present node.
+    /// Placement at the current node.
     pub fn placement(&self) -> Square<N> {
         self.q
     }
 
-    /// Momentum at the present node.
+    /// Momentum at the current node.
     pub fn momentum(&self) -> Square<N> {
         self.body.momentum(&self.q, &self.v)
     }
 
-    /// Kinetic and stored energy: oscillates within O(h^2).
+    /// Kinetic plus stored energy; oscillates within O(h^2).
     pub fn energy(&self) -> f64 {
         let body = &self.body.body;
         let material = product(&product(&body.metric, &self.v), &body.moments);

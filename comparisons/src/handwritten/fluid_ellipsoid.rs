@@ -1,26 +1,26 @@
-//! An incompressible self-gravitating ellipsoid, of Dirichlet and Riemann, by its placement Q with det Q = 1: half a kick of
-//! gravity and of the pressure, a drift, half a kick, the momentum projected (RATTLE). The pressure's impulse stands linearly in
-//! the new placement, whose determinant is a cubic in it; its root is found from zero. Takes moments, mass, placement and
-//! momentum; gives the same a step later.
+//! An incompressible self-gravitating ellipsoid (Dirichlet, Riemann), by its placement Q with det Q = 1: half a kick of gravity and
+//! pressure, a drift, half a kick, and a projection of the momentum (RATTLE). The new placement is linear in the pressure impulse,
+//! so its determinant is a cubic; the solver finds the root connected to zero. Takes moments, mass, placement and momentum; gives
+//! placement and momentum after one step.
 
 use super::Unsolvable;
 use super::attitude::{Matrix, inverse, product, sum, transposed};
 use super::ellipsoid;
 use crate::elliptic::carlson_rj;
 
-/// What the ellipsoid is.
+/// The data of the ellipsoid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FluidEllipsoid {
     /// I0, second moments of mass in the reference.
     pub moments: Matrix,
-    /// Mass, in units of a constant of gravitation of one.
+    /// Mass, in units in which the gravitational constant is one.
     pub mass: f64,
 }
 
-/// Eigenvalues, and the eigenvectors as columns, of a symmetric matrix by Jacobi's rotations.
+/// Eigenvalues and eigenvectors (as columns) of a symmetric matrix, by Jacobi rotations.
 fn spectrum(a: &Matrix) -> ([f64; 3], Matrix) {
     let (mut a, mut v) = (*a, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
-    // Quadratic: six sweeps leave nothing.
+    // Convergence is quadratic; six sweeps reach rounding.
     for _ in 0..8 {
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
             if a[i][j] == 0.0 {
@@ -43,7 +43,7 @@ fn spectrum(a: &Matrix) -> ([f64; 3], Matrix) {
     ([a[0][0], a[1][1], a[2][2]], v)
 }
 
-/// The matrix of cofactors, the derivative of the determinant.
+/// The cofactor matrix, which is the derivative of the determinant.
 fn cofactors(q: &Matrix) -> Matrix {
     let (back, determinant) = ellipsoid::inverse(q);
     transposed(&back).map(|row| row.map(|x| determinant * x))
@@ -55,7 +55,8 @@ fn paired(a: &Matrix, b: &Matrix) -> f64 {
 }
 
 impl FluidEllipsoid {
-    /// The pull of gravity on the placement: `V = -(3/5) M² R_F(B)`, B = Q Qᵀ, and R_F falls by a sixth of R_D(y, z, x) with x.
+    /// The gravitational force on the placement: `V = -(3/5) M² R_F(B)` with B = Q Qᵀ. The derivative of R_F with respect to x is
+    /// -R_D(y, z, x)/6.
     fn pull(&self, q: &Matrix) -> Matrix {
         let (x, v) = spectrum(&product(q, &transposed(q)));
         let mut slope = [[0.0; 3]; 3];
@@ -71,11 +72,11 @@ impl FluidEllipsoid {
         product(&slope, q).map(|row| row.map(|x| twice * x))
     }
 
-    /// Placement, momentum and the pressure's impulse over h, for a step of h from a placement of determinant one and a
-    /// momentum that keeps it so.
+    /// Placement, momentum and the pressure impulse divided by h, after a step of h. The initial placement must have determinant
+    /// one, with a momentum that preserves it.
     ///
     /// # Errors
-    /// [`Unsolvable`] where no pressure brings the determinant back to one.
+    /// [`Unsolvable`] if no pressure restores the determinant to one.
     pub fn step(
         &self,
         q: &Matrix,

@@ -1,6 +1,6 @@
-//! Free rigid body, body representation: explicit Moser-Veselov step with the constant kappa of the trajectory.
-//! Takes J (any symmetric Poinsot matrix with positive moments), attitude, body momentum and h; gives attitude and
-//! body momentum at the nodes. Hairer and Vilmart (2006), eq. for the Rodrigues vector, in the kappa form.
+//! Free rigid body, body representation: explicit Moser-Veselov step with the trajectory's constant kappa. Takes J (any symmetric
+//! Poinsot matrix with positive moments), attitude, body momentum and h; gives attitude and body momentum at the nodes. Based on
+//! the equation of Hairer and Vilmart (2006) for the Rodrigues vector, in the kappa form.
 
 use super::Unsolvable;
 use super::attitude::{
@@ -10,10 +10,10 @@ use super::principal_axes::PrincipalAxes;
 use super::principal_root::Quartic;
 use super::spaced::{SpacedQuaternion, SpacedVector};
 
-/// Steps between two projections onto the conserved quantities: rounding grows for 64 steps, then starts anew.
+/// Number of steps between two projections onto the conserved quantities; rounding accumulates over 64 steps at most.
 const PROJECTION_EVERY: u32 = 64;
 
-/// A free body on its way; principal axes inside, the middle moment second.
+/// A moving free body, in principal axes with the middle moment second.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeBody {
     /// h/2 times the body momentum.
@@ -37,7 +37,7 @@ pub struct FreeBody {
 }
 
 impl FreeBody {
-    /// Starts a trajectory; the momentum is that of node 0 in body axes. Refused beyond the solvability bound.
+    /// Starts a trajectory with the body momentum of node 0. Fails beyond the solvability bound.
     pub fn start(
         poinsot: &Matrix,
         attitude: &Quaternion,
@@ -52,8 +52,8 @@ impl FreeBody {
         let a = squares[0] + squares[1] + squares[2];
         let kappa = Quartic::new(&i).constant_root(&squares, a)?;
         let d = i.map(|m| m - kappa);
-        // a and sum u_i^2 / I_i are conserved, so that u_1^2 and u_3^2 follow u_2^2 on straight lines; the middle
-        // moment keeps both slopes between -1 and 0. Three equal moments leave every component constant.
+        // a and sum u_i^2 / I_i are conserved, so u_1^2 and u_3^2 are linear in u_2^2; the middle moment bounds both slopes by -1
+        // and 0. With three equal moments every component is constant.
         let reciprocal = i.map(|m| 1.0 / m);
         let spread = reciprocal[0] - reciprocal[2];
         let (slope_1, slope_3) = if spread == 0.0 {
@@ -84,7 +84,7 @@ impl FreeBody {
         })
     }
 
-    /// One step of the motion.
+    /// Steps once.
     #[inline(always)]
     pub fn step(&mut self) {
         let [x, y, z] = self.u.get();
@@ -108,8 +108,8 @@ impl FreeBody {
         }
     }
 
-    /// The nearest state with the momentum and energy of node 0: a Newton step for the body momentum, then the
-    /// smallest rotation that turns the attitude to the spatial momentum.
+    /// Projects onto the momentum and energy of node 0: a Newton step for the body momentum, then the smallest rotation that aligns
+    /// the attitude with the spatial momentum.
     #[cold]
     #[inline(never)]
     fn project(&mut self) {
@@ -120,8 +120,8 @@ impl FreeBody {
             u = u.map(|c| c * (1.0 + 0.5 * (self.a - square) / self.a.max(f64::MIN_POSITIVE)));
             let rates = [u[0] / i[0], u[1] / i[1], u[2] / i[2]];
             let energy = dot(&u, &rates);
-            // Part of the gradient of the energy along the momentum sphere. At a steady rotation it vanishes and the
-            // energy cannot leave its extremum by more than rounding.
+            // The component of the energy gradient tangent to the momentum sphere. At a steady rotation it vanishes, and the energy
+            // leaves its extremum only by rounding.
             let along = add_scaled(&rates, -energy / self.a.max(f64::MIN_POSITIVE), &u);
             let slope = dot(&along, &along);
             if slope > 1e-12 * dot(&rates, &rates) {
@@ -139,17 +139,17 @@ impl FreeBody {
         self.until_projection = PROJECTION_EVERY;
     }
 
-    /// Attitude body -> space at the present node.
+    /// Attitude body -> space at the current node.
     pub fn attitude(&self) -> Quaternion {
         self.axes.leave_attitude(&self.q.get())
     }
 
-    /// Body momentum mu_k at the present node.
+    /// Body momentum mu_k at the current node.
     pub fn body_momentum(&self) -> Vector {
         self.axes.leave(&self.u.get()).map(|c| 2.0 * c / self.h)
     }
 
-    /// Spatial momentum computed from attitude and body momentum.
+    /// Spatial momentum, computed from attitude and body momentum.
     pub fn spatial_momentum(&self) -> Vector {
         apply(&self.q.get().matrix(), &self.u.get()).map(|c| 2.0 * c / self.h)
     }
@@ -161,8 +161,8 @@ impl FreeBody {
         2.0 * (x * x / i[0] + y * y / i[1] + z * z / i[2]) / (self.h * self.h)
     }
 
-    /// Body momentum that the attitude gives to the spatial momentum of node 0: differs from
-    /// [`FreeBody::body_momentum`] by rounding only.
+    /// Body momentum from the attitude and the spatial momentum of node 0; differs from [`FreeBody::body_momentum`] by rounding
+    /// only.
     pub fn momentum_from_attitude(&self) -> Vector {
         self.axes
             .leave(&apply_transposed(&self.q.get().matrix(), &self.spatial))

@@ -1,6 +1,6 @@
-//! Heavy top, body representation, potential split over both ends of a step: second order, self-adjoint.
-//! Takes J, gU (weight times support -> centre of mass, body axes), z (up, space axes), attitude, body momentum, h;
-//! gives attitude, momenta and the vertical at the nodes. State: attitude quaternion and spatial momentum.
+//! Heavy top, body representation, with the potential split over both ends of a step: second order, self-adjoint. Takes J, gU
+//! (weight times support -> centre of mass, body axes), z (up, spatial axes), attitude, body momentum, h; gives attitude, momenta
+//! and the vertical at the nodes. The state is the attitude quaternion and the spatial momentum.
 
 use super::Unsolvable;
 use super::attitude::{
@@ -10,7 +10,7 @@ use super::principal_axes::PrincipalAxes;
 use super::principal_root::{self, Quartic};
 use super::spaced::{SpacedQuaternion, SpacedVector};
 
-/// What a top is made of: J in body axes, gU in body axes, z in space axes.
+/// The data of a top: J and gU in body axes, z in spatial axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Top {
     /// Poinsot (second moment) matrix J.
@@ -21,15 +21,15 @@ pub struct Top {
     pub up: Vector,
 }
 
-/// A heavy top on its way; principal axes inside. Momenta are stored times h/2, forces times h^2/4.
+/// A moving heavy top, in principal axes. Stores momenta times h/2 and forces times h^2/4.
 #[derive(Clone, Copy, Debug)]
 pub struct HeavyTop {
     q: SpacedQuaternion,
     /// Spatial momentum m_k of the node.
     m: SpacedVector,
-    /// Half the spatial change of momentum that belongs to the node: z x (R gU).
+    /// Half the spatial change of momentum at the node: z x (R gU).
     kick: SpacedVector,
-    /// Body momentum of the edge that begins here, R^T (m + kick): all that the solver waits for.
+    /// Body momentum of the outgoing edge, R^T (m + kick), the only input of the solver.
     u: SpacedVector,
     /// gU in principal axes.
     weight: Vector,
@@ -43,7 +43,7 @@ pub struct HeavyTop {
 }
 
 impl HeavyTop {
-    /// Starts a trajectory; the momentum is that of node 0 in body axes.
+    /// Starts a trajectory with the body momentum of node 0.
     pub fn start(
         top: &Top,
         attitude: &Quaternion,
@@ -73,7 +73,7 @@ impl HeavyTop {
         })
     }
 
-    /// One step of the motion; unchanged when the equation has no solution.
+    /// Steps once; if the equation has no solution, the state is unchanged.
     #[inline(always)]
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         let u = self.u.get();
@@ -83,12 +83,12 @@ impl HeavyTop {
         let turn = principal_root::turn(&self.moments, &self.gyration, &u, &squares, a, kappa);
         let q = self.q.get();
         let unscaled = q.times(&turn);
-        // |q|^2 is one up to rounding; the numerator takes that rounding out again, to first order.
+        // The numerator removes the rounding error of |q|^2 = 1, to first order.
         let correction = 2.0 - q.norm_squared();
         let square = turn.norm_squared();
         let scale = (correction + correction) / square;
         let e = unscaled.deviation();
-        // Momentum of the edge in space; then the kicks on both sides of the new node.
+        // Spatial momentum of the edge, then the kicks before and after the new node.
         let n = add_scaled(&self.m.get(), 1.0, &self.kick.get());
         let carried = add_scaled(&n, scale, &apply_transposed(&e, &n));
         let vertical = add_scaled(&self.up, scale, &apply_transposed(&e, &self.up));
@@ -105,17 +105,17 @@ impl HeavyTop {
         Ok(())
     }
 
-    /// Attitude body -> space at the present node.
+    /// Attitude body -> space at the current node.
     pub fn attitude(&self) -> Quaternion {
         self.axes.leave_attitude(&self.q.get())
     }
 
-    /// Spatial momentum m_k at the present node.
+    /// Spatial momentum m_k at the current node.
     pub fn spatial_momentum(&self) -> Vector {
         self.m.get().map(|c| 2.0 * c / self.h)
     }
 
-    /// Body momentum mu_k at the present node.
+    /// Body momentum mu_k at the current node.
     pub fn body_momentum(&self) -> Vector {
         self.axes
             .leave(&apply_transposed(&self.q.get().matrix(), &self.m.get()))
@@ -128,7 +128,7 @@ impl HeavyTop {
             .leave(&apply_transposed(&self.q.get().matrix(), &self.up))
     }
 
-    /// Energy mu . I^-1 mu / 2 + gU . Gamma: oscillates within O(h^2).
+    /// Energy mu . I^-1 mu / 2 + gU . Gamma; oscillates within O(h^2).
     pub fn energy(&self) -> f64 {
         let mu = apply_transposed(&self.q.get().matrix(), &self.m.get());
         let rates = [
@@ -143,7 +143,7 @@ impl HeavyTop {
         (2.0 * dot(&mu, &rates) + 4.0 * potential) / (self.h * self.h)
     }
 
-    /// Momentum of the edge that begins here, in body axes: N_{k+1} = mu_k + (h/2) Gamma_k x gU.
+    /// Body momentum of the outgoing edge: N_{k+1} = mu_k + (h/2) Gamma_k x gU.
     pub fn edge_momentum(&self) -> Vector {
         self.axes.leave(&self.u.get()).map(|c| 2.0 * c / self.h)
     }

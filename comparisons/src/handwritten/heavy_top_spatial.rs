@@ -1,13 +1,13 @@
-//! Heavy top, spatial representation: J and the arm chi are carried by the motion, the vertical is a parameter.
-//! Takes weight, z, J and chi in space at node 0, attitude, spatial momentum and h; gives attitude, momentum, J and
-//! chi at the nodes. Its half kicks (h/2) w z x chi are those of the body representation, turned by Lambda.
+//! Heavy top, spatial representation: J and the arm chi are advected by the motion, and the vertical is a parameter. Takes weight,
+//! z, the spatial J and chi at node 0, attitude, spatial momentum and h; gives attitude, momentum, J and chi at the nodes. Its half
+//! kicks (h/2) w z x chi are the body kicks, rotated by Lambda.
 
 use super::Unsolvable;
 use super::attitude::{Matrix, Quaternion, Vector, apply, apply_transposed};
 use super::free_body_spatial::{seen_from_body, seen_from_space};
 use super::heavy_top::{HeavyTop, Top};
 
-/// What a top is made of, seen from space at node 0.
+/// The data of a top in the spatial frame at node 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpatialTop {
     /// Weight w.
@@ -20,7 +20,7 @@ pub struct SpatialTop {
     pub arm: Vector,
 }
 
-/// A heavy top on its way, stated in space.
+/// A moving heavy top in the spatial representation.
 #[derive(Clone, Copy, Debug)]
 pub struct HeavyTopSpatial {
     top: HeavyTop,
@@ -29,7 +29,7 @@ pub struct HeavyTopSpatial {
 }
 
 impl HeavyTopSpatial {
-    /// Starts a trajectory; the momentum is that of node 0 in space axes.
+    /// Starts a trajectory with the spatial momentum of node 0.
     pub fn start(
         top: &SpatialTop,
         attitude: &Quaternion,
@@ -52,13 +52,13 @@ impl HeavyTopSpatial {
         })
     }
 
-    /// One step of the motion; unchanged when the equation has no solution.
+    /// Steps once; if the equation has no solution, the state is unchanged.
     #[inline(always)]
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         self.top.step()
     }
 
-    /// Attitude body -> space at the present node.
+    /// Attitude body -> space at the current node.
     pub fn attitude(&self) -> Quaternion {
         self.top.attitude()
     }

@@ -1,15 +1,15 @@
-//! A planet about a fixed sun by Störmer and Verlet: half a kick, a drift, half a kick, one force a step.
-//! Takes mass, gravitational parameter, place, momentum and h; gives places and momenta at the nodes.
+//! A planet about a fixed sun by Störmer-Verlet: half a kick, a drift, half a kick, with one force evaluation per step. Takes mass,
+//! gravitational parameter, position, momentum and h; gives positions and momenta at the nodes.
 
 use super::Unsolvable;
 use super::attitude::{Vector, add_scaled, dot, scaled};
 
-/// A planet on its way.
+/// A moving planet.
 #[derive(Clone, Copy, Debug)]
 pub struct Kepler {
     x: Vector,
     v: Vector,
-    /// Of the present place: the next step begins with it.
+    /// Acceleration at the current position, which the next step uses first.
     acceleration: Vector,
     m: f64,
     k: f64,
@@ -27,7 +27,7 @@ impl Kepler {
     /// Starts a trajectory with the momentum of node 0.
     ///
     /// # Errors
-    /// [`Unsolvable`] at the sun, and without mass.
+    /// [`Unsolvable`] at the sun, and for zero mass.
     pub fn start(
         m: f64,
         k: f64,
@@ -50,10 +50,10 @@ impl Kepler {
         }
     }
 
-    /// One step of the motion; unchanged when it would meet the sun.
+    /// Steps once; the state is unchanged if the planet would meet the sun.
     ///
     /// # Errors
-    /// [`Unsolvable`] then.
+    /// [`Unsolvable`] in that case.
     #[inline(always)]
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         let half = 0.5 * self.h;
@@ -70,17 +70,17 @@ impl Kepler {
         Ok(())
     }
 
-    /// Place at the present node.
+    /// Position at the current node.
     pub fn place(&self) -> Vector {
         self.x
     }
 
-    /// Momentum at the present node.
+    /// Momentum at the current node.
     pub fn momentum(&self) -> Vector {
         scaled(self.m, &self.v)
     }
 
-    /// Kinetic less gravitational energy: oscillates within O(h^2).
+    /// Kinetic minus gravitational energy; oscillates within O(h^2).
     pub fn energy(&self) -> f64 {
         self.m * (0.5 * dot(&self.v, &self.v) - self.k / dot(&self.x, &self.x).sqrt())
     }

@@ -1,6 +1,6 @@
-//! Rigid body in an ideal fluid on SE(3): rotation as in Moser and Veselov, the linear velocity of a step the mean of
-//! its translation seen from both ends. Takes J, added masses M, coupling D, weight, position, body momentum and h;
-//! gives positions and momenta at the nodes. State: attitude, position, spatial momentum about the origin.
+//! Rigid body in an ideal fluid on SE(3). The rotation is Moser-Veselov; the linear velocity of a step is the mean of its
+//! translation in the body frames of both ends. Takes J, added masses M, coupling D, weight, position, body momentum and h; gives
+//! positions and momenta at the nodes. The state is attitude, position, and spatial momentum about the origin.
 
 use super::Unsolvable;
 use super::attitude::{
@@ -8,18 +8,18 @@ use super::attitude::{
     dot, hat, inverse, largest, product, scaled, scaled_matrix, sum, transposed,
 };
 
-/// What a body and its fluid are made of; all but the vertical in body axes.
+/// The data of a body and its fluid, in body axes except for the vertical.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Submerged {
-    /// Poinsot matrix of the rotational inertia, fluid included.
+    /// Poinsot matrix of the rotational inertia, including the fluid.
     pub poinsot: Matrix,
     /// Mass and added masses M, symmetric.
     pub masses: Matrix,
     /// Coupling D: omega . D u is part of the kinetic energy.
     pub coupling: Matrix,
-    /// Moment of weight less buoyancy.
+    /// Moment of weight minus buoyancy.
     pub moment: Vector,
-    /// Weight less buoyancy.
+    /// Weight minus buoyancy.
     pub weight: f64,
     /// Vertical z, space axes.
     pub up: Vector,
@@ -28,19 +28,19 @@ pub struct Submerged {
 /// Angular and linear momentum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Momentum {
-    /// About the body's point in body axes, about the origin in space axes.
+    /// Angular momentum: about the body's point in body axes, or about the origin in spatial axes.
     pub angular: Vector,
     /// Linear momentum.
     pub linear: Vector,
 }
 
-/// Most Newton iterations of one step, of two corrections each.
+/// Maximum number of Newton iterations per step, with two corrections each.
 const MOST_ITERATIONS: usize = 10;
 
-/// Residual of an accepted solution over the largest of one and the terms that make it up.
+/// Largest residual of an accepted solution, relative to its largest term or one.
 const RESIDUAL: f64 = 1e-15;
 
-/// What belongs to one trial rotation, given by its Rodrigues vector c, alpha = 1 + |c|^2.
+/// Quantities of a trial rotation with Rodrigues vector c, alpha = 1 + |c|^2.
 #[derive(Clone, Copy, Debug)]
 struct Trial {
     c: Vector,
@@ -51,14 +51,14 @@ struct Trial {
     u: Vector,
     /// D u.
     carried: Vector,
-    /// Translation of the step seen from its tail, u + c x u.
+    /// Translation of the step in the initial body frame, u + c x u.
     y: Vector,
-    /// The part of the angular momentum over alpha.
+    /// The angular momentum terms divided by alpha.
     spin: Vector,
     residual: Vector,
 }
 
-/// A body on its way.
+/// A moving body.
 #[derive(Clone, Copy, Debug)]
 pub struct KirchhoffBody {
     q: Quaternion,
@@ -73,7 +73,7 @@ pub struct KirchhoffBody {
 }
 
 impl KirchhoffBody {
-    /// Starts a trajectory; the momentum is that of node 0 in body axes.
+    /// Starts a trajectory with the body momentum of node 0.
     pub fn start(
         body: &Submerged,
         attitude: &Quaternion,
@@ -108,7 +108,7 @@ impl KirchhoffBody {
         })
     }
 
-    /// Half the change of the spatial momentum that belongs to a node: -(h/2) of the weight at x, and its moment.
+    /// Half the change of the spatial momentum at a node: -(h/2) of the weight at x, and its moment.
     #[inline(always)]
     fn kick(&self, rotation: &Matrix, x: &Vector) -> Momentum {
         let half = 0.5 * self.h;
@@ -121,9 +121,9 @@ impl KirchhoffBody {
         }
     }
 
-    /// The equation of angular momentum for c, that of linear momentum solved: with f = p - c x p,
-    /// u = M^-1 (h f - 2 D^T c / alpha), y = u + c x u and k = D u it reads
-    /// (2 I c + 2 c x I c + k + c x k - c (c . k)) / alpha + (h/2) y x f = h pi.
+    /// The equation of angular momentum for c, with the equation of linear momentum already solved. With f = p - c x p, u = M^-1 (h
+    /// f - 2 D^T c / alpha), y = u + c x u and k = D u it reads (2 I c + 2 c x I c + k + c x k - c (c . k)) / alpha + (h/2) y x f =
+    /// h pi.
     #[inline(always)]
     fn trial(&self, c: &Vector, p: &Vector, pi: &Vector) -> Trial {
         let inverse = 1.0 / (1.0 + dot(c, c));
@@ -149,7 +149,7 @@ impl KirchhoffBody {
         }
     }
 
-    /// Derivative of the residual with respect to c, inverted.
+    /// The inverse Jacobian of the residual with respect to c.
     #[inline(always)]
     fn tangent(&self, t: &Trial, p: &Vector) -> Matrix {
         let c = &t.c;
@@ -179,7 +179,7 @@ impl KirchhoffBody {
         inverse(&total)
     }
 
-    /// One step of the motion; unchanged when Newton does not converge.
+    /// Steps once; the state is unchanged if Newton's method does not converge.
     #[inline(always)]
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         let rotation = self.q.matrix();
@@ -203,8 +203,7 @@ impl KirchhoffBody {
         let mut iterations = 0;
         loop {
             let tangent = self.tangent(&trial, &p);
-            // A second correction with the same matrix costs a residual instead of a matrix; together the two are of
-            // third order.
+            // A second correction with the same matrix costs a residual instead of a matrix; both together converge cubically.
             for _ in 0..2 {
                 let change = apply(&tangent, &trial.residual);
                 trial = self.trial(&add_scaled(&trial.c, -1.0, &change), &p, &pi);
@@ -221,7 +220,7 @@ impl KirchhoffBody {
         self.past = [trial.c, self.past[0], self.past[1], self.past[2]];
         self.known += u32::from(self.known < 4);
         let [cx, cy, cz] = trial.c;
-        // |q|^2 = 1 up to rounding; the factor takes that out again, to first order.
+        // Removes the rounding error of |q|^2 = 1, to first order.
         let correction = 1.5 - 0.5 * self.q.norm_squared();
         self.q = self
             .q
@@ -236,7 +235,7 @@ impl KirchhoffBody {
         Ok(())
     }
 
-    /// Attitude body -> space at the present node.
+    /// Attitude body -> space at the current node.
     pub fn attitude(&self) -> Quaternion {
         self.q
     }

@@ -1,6 +1,6 @@
-//! Two bodies, a rigid motion and a point mass joined by springs: springs act at the nodes, so that each moves by itself
-//! between two kicks. Takes what they are made of, where they are, their momenta and h; gives the same at the nodes.
-//! Rotations by Moser and Veselov, the point by a cubic.
+//! Two bodies, a rigid motion and a point mass coupled by springs. The springs act at the nodes, so that each body moves freely
+//! between two kicks. Takes the data, configurations, momenta and h; gives configurations and momenta at the nodes. Rotations use
+//! Moser-Veselov; the velocity of the point solves a cubic.
 
 use super::Unsolvable;
 use super::attitude::{
@@ -9,7 +9,7 @@ use super::attitude::{
 use super::principal_axes::PrincipalAxes;
 use super::principal_root::Quartic;
 
-/// What the four are made of.
+/// The data of the four bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Four {
     /// Poinsot matrices of the first body, of the rigid motion and of the second body.
@@ -22,36 +22,36 @@ pub struct Four {
     pub quartic: f64,
     /// Stiffness of all springs.
     pub stiffness: f64,
-    /// Where springs are fixed: in the first body, in the rigid motion, in the second body.
+    /// Attachment points of the springs in the first body, the rigid motion and the second body.
     pub arms: [Vector; 3],
     /// Acceleration of gravity, which acts on the point.
     pub gravity: Vector,
 }
 
-/// Where they are.
+/// Their configurations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Places {
-    /// Attitudes of first body, rigid motion and second body.
+    /// Attitudes of the first body, the rigid motion and the second body.
     pub attitudes: [Quaternion; 3],
-    /// Of the rigid motion.
+    /// Position of the rigid motion.
     pub motion: Vector,
-    /// Of the point.
+    /// Position of the point.
     pub point: Vector,
 }
 
-/// Angular momenta about the own points and linear ones, all in space.
+/// Angular momenta about each centre, and linear momenta, all in spatial axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Momenta {
-    /// Of first body, rigid motion and second body.
+    /// Angular momenta of the first body, the rigid motion and the second body.
     pub angular: [Vector; 3],
-    /// Of the rigid motion.
+    /// Linear momentum of the rigid motion.
     pub motion: Vector,
-    /// Of the point.
+    /// Linear momentum of the point.
     pub point: Vector,
 }
 
 impl Four {
-    /// Torques and forces of springs and gravity at these places.
+    /// Torques and forces of springs and gravity in these configurations.
     #[inline(always)]
     pub fn pulled(&self, places: &Places) -> Momenta {
         let Places {
@@ -79,13 +79,13 @@ impl Four {
         }
     }
 
-    /// The velocity of the point for its momentum (m + 4 b |v|^2) v.
+    /// The velocity of the point with momentum (m + 4 b |v|^2) v.
     #[inline(always)]
     pub fn point_velocity(&self, momentum: &Vector) -> Vector {
         let (m, b) = (self.point_mass, 4.0 * self.quartic);
         let size = dot(momentum, momentum).sqrt();
         let mut v = size / m;
-        // From above, Newton's method falls onto the root of a convex function.
+        // Newton's method converges monotonically from above to the root of a convex function.
         for _ in 0..60 {
             let change = (v * (m + b * v * v) - size) / (m + 3.0 * b * v * v);
             v -= change;
@@ -97,7 +97,7 @@ impl Four {
     }
 }
 
-/// A free body for one step.
+/// A free body over one step.
 #[derive(Clone, Copy, Debug)]
 struct Body {
     axes: PrincipalAxes,
@@ -113,7 +113,7 @@ impl Body {
         })
     }
 
-    /// The turn of a step, for h/2 times the momentum, both in principal axes.
+    /// The rotation of a step from h/2 times the momentum, both in principal axes.
     #[inline(always)]
     fn turn(&self, u: &Vector) -> Result<Quaternion, Unsolvable> {
         let squares = u.map(|c| c * c);
@@ -129,15 +129,15 @@ impl Body {
     }
 }
 
-/// The four on their way; principal axes inside.
+/// The four moving bodies, in principal axes.
 #[derive(Clone, Copy, Debug)]
 pub struct MixedFour {
     places: Places,
     momenta: Momenta,
-    /// Rates of change at the present node: the next step begins with them.
+    /// Rates of change at the current node, which the next step uses first.
     rates: Momenta,
     bodies: [Body; 3],
-    /// Its arms in the axes that are used inside.
+    /// The data, with arms in principal axes.
     given: Four,
     h: f64,
 }
@@ -146,7 +146,7 @@ impl MixedFour {
     /// Starts a trajectory with the momenta of node 0.
     ///
     /// # Errors
-    /// [`Unsolvable`] for what is no body.
+    /// [`Unsolvable`] if the data are not admissible for a rigid body.
     pub fn start(
         given: &Four,
         places: &Places,
@@ -190,10 +190,10 @@ impl MixedFour {
         }
     }
 
-    /// One step of the motion; unchanged when it has no solution.
+    /// Steps once; if the step has no solution, the state is unchanged.
     ///
     /// # Errors
-    /// [`Unsolvable`] then.
+    /// [`Unsolvable`] in that case.
     #[inline(always)]
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         let half = 0.5 * self.h;
@@ -219,7 +219,7 @@ impl MixedFour {
         Ok(())
     }
 
-    /// Places at the present node.
+    /// Configurations at the current node.
     pub fn places(&self) -> Places {
         let inside = &self.places.attitudes;
         Places {
@@ -228,7 +228,7 @@ impl MixedFour {
         }
     }
 
-    /// Momenta at the present node.
+    /// Momenta at the current node.
     pub fn momenta(&self) -> Momenta {
         self.momenta
     }

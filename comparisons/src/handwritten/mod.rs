@@ -1,6 +1,6 @@
-//! Steppers written by hand from the published equations, in plain `f64`, as the yardstick for generated code.
-//! They take inertia, initial attitude and momentum, and give attitudes and momenta; they use nothing of the
-//! library under test, so that an agreement of the two is worth something.
+//! Steppers written by hand from the published equations, in plain `f64`, as references for generated code. They take inertia,
+//! initial attitude and momentum, and give attitudes and momenta. They use nothing of the library under test, so that an agreement
+//! is independent evidence.
 
 pub mod attitude;
 pub mod body_in_field;
@@ -29,7 +29,7 @@ pub mod spaced;
 
 use std::fmt;
 
-/// A step that has no solution on the principal branch: the momentum is too large for the step length, or not finite.
+/// A step without a solution on the principal branch: the momentum is too large for the step size, or not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unsolvable;
 

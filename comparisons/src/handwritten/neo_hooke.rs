@@ -1,6 +1,6 @@
-//! A neo-Hookean body by its placement Q, by Störmer and Verlet: `Q'' = -Q (μ (1 - C⁻¹) + (λ/2) log det(C) C⁻¹) I0⁻¹` with
-//! C = QᵀQ, for the energy `(μ/2) (tr C - log det C) + (λ/8) log² det C`. Takes moments, placement and the momentum seen from the
-//! body; gives the same a step later.
+//! A neo-Hookean body by its placement Q, by Störmer-Verlet: `Q'' = -Q (μ (1 - C⁻¹) + (λ/2) log det(C) C⁻¹) I0⁻¹` with C = QᵀQ, for
+//! the energy `(μ/2) (tr C - log det C) + (λ/8) log² det C`. Takes moments, placement and body momentum; gives placement and body
+//! momentum after one step.
 
 use super::Unsolvable;
 use super::attitude::{
@@ -8,10 +8,10 @@ use super::attitude::{
 };
 use super::ellipsoid;
 
-/// What the body is.
+/// The data of the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeoHooke {
-    /// I0, second moments in the reference.
+    /// I0, second moments of the reference.
     pub moments: Matrix,
     /// μ, the shear modulus.
     pub shear: f64,
@@ -20,7 +20,7 @@ pub struct NeoHooke {
 }
 
 impl NeoHooke {
-    /// The derivative of the stored energy by the placement.
+    /// The derivative of the stored energy with respect to the placement.
     fn gradient(&self, q: &Matrix) -> Matrix {
         let (back, determinant) = ellipsoid::inverse(&transposed_product(q, q));
         let mut stress = scaled_matrix(0.5 * self.lame * determinant.ln() - self.shear, &back);
@@ -33,7 +33,7 @@ impl NeoHooke {
     /// Placement and body momentum after a step of h.
     ///
     /// # Errors
-    /// [`Unsolvable`] where placement or moments have no inverse.
+    /// [`Unsolvable`] if placement or moments are singular.
     pub fn step(&self, q: &Matrix, momentum: &Matrix, h: f64) -> Result<[Matrix; 2], Unsolvable> {
         let p = product(&inverse(&transposed(q)), momentum);
         let p = sum(&p, -0.5 * h, &self.gradient(q));

@@ -1,6 +1,6 @@
-//! Heavy top with the whole kick at the head of each edge (the form printed in the thesis, with its sign mended):
-//! N_{k+1} = Om_k^T N_k + h Gamma_k x gU. First order when N_{k+1} is read as the momentum at node k.
-//! Takes J, gU, z, attitude, N_1 and h; gives attitude, N_{k+1} and Gamma_k.
+//! Heavy top with the whole kick at the head of each edge (the form printed in the thesis, with its sign corrected): N_{k+1} =
+//! Om_k^T N_k + h Gamma_k x gU. First order if N_{k+1} is read as the momentum at node k. Takes J, gU, z, attitude, N_1 and h;
+//! gives attitude, N_{k+1} and Gamma_k.
 
 use super::Unsolvable;
 use super::attitude::{Quaternion, Vector, add_scaled, apply_transposed, cross, dot};
@@ -8,7 +8,7 @@ use super::heavy_top::Top;
 use super::principal_axes::PrincipalAxes;
 use super::principal_root::Quartic;
 
-/// A heavy top advanced by edge momenta; plain rather than fast.
+/// A heavy top in edge momenta, simple rather than fast.
 #[derive(Clone, Copy, Debug)]
 pub struct OneSidedTop {
     q: Quaternion,
@@ -63,7 +63,7 @@ impl OneSidedTop {
         })
     }
 
-    /// One step of the motion; unchanged when the equation has no solution.
+    /// Steps once; if the equation has no solution, the state is unchanged.
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         let turn = edge_rotation(&self.axes, &self.quartic, &self.n, self.h)?;
         self.q = self.q.times(&turn).normalised();
@@ -73,12 +73,12 @@ impl OneSidedTop {
         Ok(())
     }
 
-    /// Attitude body -> space at the present node.
+    /// Attitude body -> space at the current node.
     pub fn attitude(&self) -> Quaternion {
         self.axes.leave_attitude(&self.q)
     }
 
-    /// Momentum N_{k+1} of the edge that begins at the present node k, in its body axes.
+    /// Momentum N_{k+1} of the outgoing edge of the current node k, in its body axes.
     pub fn edge_momentum(&self) -> Vector {
         self.axes.leave(&self.n)
     }
@@ -89,7 +89,7 @@ impl OneSidedTop {
             .leave(&apply_transposed(&self.q.matrix(), &self.up))
     }
 
-    /// Energy with N_{k+1} read as the momentum of node k: off by O(h), which is the defect of the one-sided form.
+    /// Energy with N_{k+1} as the momentum of node k: the error is O(h), which is the defect of the one-sided form.
     pub fn energy(&self) -> f64 {
         let i = self.axes.moments;
         let [x, y, z] = self.n;

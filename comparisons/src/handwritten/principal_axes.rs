@@ -1,25 +1,25 @@
-//! Principal axes of a body: the steppers run in them, where inertia is diagonal, and translate at the door.
-//! Takes a symmetric Poinsot (second moment) matrix J; gives the moments of inertia and the rotation to user axes.
+//! Principal axes of a body. The steppers run in principal axes, where inertia is diagonal, and convert input and output. Takes a
+//! symmetric Poinsot (second moment) matrix J; gives the moments of inertia and the rotation to user axes.
 
 use super::Unsolvable;
 use super::attitude::{Matrix, Quaternion, Vector, apply, apply_transposed};
 
-/// Moments of inertia with the frame they belong to.
+/// Moments of inertia and their frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrincipalAxes {
     /// I_1, I_2, I_3 = eigenvalues of tr(J) Id - J, all positive, I_2 between the others.
     pub moments: Vector,
-    /// Rotation taking principal components to user components; the identity when J is diagonal in this order.
+    /// Rotation from principal components to user components; the identity if J is diagonal in this order.
     frame: Quaternion,
 }
 
 impl PrincipalAxes {
-    /// Diagonalises J; refuses a J without positive moments or with an entry that is not a number.
+    /// Diagonalises J; fails if J has a moment that is not positive or an entry that is not finite.
     pub fn new(poinsot: &Matrix) -> Result<PrincipalAxes, Unsolvable> {
         let (second_moments, mut frame) = eigenframe(poinsot);
         let [a, b, c] = second_moments;
         let mut moments = [b + c, c + a, a + b];
-        // A cyclic exchange of axes, at most two of them, brings the middle moment to the second place.
+        // At most two cyclic permutations of the axes bring the middle moment to the second place.
         let cyclic = Quaternion([0.5, 0.5, 0.5, 0.5]);
         while (moments[1] - moments[0]) * (moments[1] - moments[2]) > 0.0 {
             let [x, y, z] = moments;
@@ -42,7 +42,7 @@ impl PrincipalAxes {
         }
     }
 
-    /// User components of a body vector given in principal ones.
+    /// User components of a body vector in principal axes.
     pub fn leave(&self, v: &Vector) -> Vector {
         if self.frame == Quaternion::IDENTITY {
             *v
@@ -51,7 +51,7 @@ impl PrincipalAxes {
         }
     }
 
-    /// Attitude of the principal axes for an attitude of the user's axes.
+    /// Attitude of the principal axes from an attitude of the user's axes.
     pub fn enter_attitude(&self, q: &Quaternion) -> Quaternion {
         if self.frame == Quaternion::IDENTITY {
             *q
@@ -60,7 +60,7 @@ impl PrincipalAxes {
         }
     }
 
-    /// Attitude of the user's axes for an attitude of the principal axes.
+    /// Attitude of the user's axes from an attitude of the principal axes.
     pub fn leave_attitude(&self, q: &Quaternion) -> Quaternion {
         if self.frame == Quaternion::IDENTITY {
             *q
@@ -70,7 +70,7 @@ impl PrincipalAxes {
     }
 }
 
-/// Eigenvalues of a symmetric matrix and the rotation whose columns are the eigenvectors: cyclic Jacobi.
+/// Eigenvalues of a symmetric matrix, and the rotation whose columns are the eigenvectors, by cyclic Jacobi rotations.
 fn eigenframe(matrix: &Matrix) -> (Vector, Quaternion) {
     let scale = matrix
         .iter()
@@ -78,14 +78,14 @@ fn eigenframe(matrix: &Matrix) -> (Vector, Quaternion) {
         .fold(0.0, |m: f64, c| m.max(c.abs()));
     let mut frame = Quaternion::IDENTITY;
     let mut here = *matrix;
-    // Convergence is quadratic: ten sweeps are twice what any 3 x 3 matrix needs.
+    // Convergence is quadratic; ten sweeps are twice the number that any 3 x 3 matrix needs.
     for _ in 0..10 {
         for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             let off = here[i][j];
             if off.abs() <= 1e-17 * scale || !off.is_finite() {
                 continue;
             }
-            // The smaller of the two angles that make the entry zero: larger ones only exchange axes, for ever.
+            // The smaller of the two angles that annihilate the entry; the larger one would only exchange axes, without end.
             let ratio = (here[i][i] - here[j][j]) / (2.0 * off);
             let angle =
                 (1.0_f64.copysign(ratio) / (ratio.abs() + (1.0 + ratio * ratio).sqrt())).atan();
@@ -93,7 +93,7 @@ fn eigenframe(matrix: &Matrix) -> (Vector, Quaternion) {
             let mut turn = [cos, 0.0, 0.0, 0.0];
             turn[k + 1] = sin;
             frame = frame.times(&Quaternion(turn)).normalised();
-            // Recomputed from the given matrix, so that sweeps do not add up rounding.
+            // Recomputed from the given matrix, so that sweeps do not accumulate rounding.
             here = congruent(matrix, &frame.matrix());
         }
     }

@@ -1,11 +1,11 @@
-//! The principal root kappa of the Moser-Veselov quartic for principal moments I and u = h N / 2.
-//! With s1, s2, s3 the elementary symmetric functions of I, a = |u|^2 and e = s3 sum u_i^2 / I_i it reads
-//! kappa^4 - s1 kappa^3 + (s2 + 2a) kappa^2 - (s3 + s1 a) kappa + e + a^2 = 0; kappa is its smallest positive root.
+//! The principal root kappa of the Moser-Veselov quartic for principal moments I and u = h N / 2. Let s1, s2, s3 be the elementary
+//! symmetric functions of I, a = |u|^2 and e = s3 sum u_i^2 / I_i. Then kappa^4 - s1 kappa^3 + (s2 + 2a) kappa^2 - (s3 + s1 a)
+//! kappa + e + a^2 = 0, and kappa is the smallest positive root.
 
 use super::Unsolvable;
 use super::attitude::{Quaternion, Vector};
 
-/// Functions of the moments of inertia alone; the quartic is divided by s3 throughout.
+/// Functions of the moments of inertia alone; all coefficients are divided by s3.
 #[derive(Clone, Copy, Debug)]
 pub struct Quartic {
     reciprocal: Vector,
@@ -21,8 +21,8 @@ pub struct Quartic {
     second: f64,
 }
 
-/// The turn of the step as a quaternion of any length, of u with its squared components, their sum `a` and the root kappa;
-/// `gyration` are the differences I_2 - I_3, I_3 - I_1, I_1 - I_2 of the moments.
+/// The rotation of the step as an unnormalised quaternion, from u, its squared components, their sum `a`, and the root kappa.
+/// `gyration` contains the differences I_2 - I_3, I_3 - I_1, I_1 - I_2 of the moments.
 #[inline(always)]
 pub fn turn(
     moments: &Vector,
@@ -44,7 +44,7 @@ pub fn turn(
 }
 
 impl Quartic {
-    /// Constants of the quartic for moments of inertia I.
+    /// Coefficients of the quartic for moments of inertia I.
     pub fn new(moments: &Vector) -> Quartic {
         let [a, b, c] = *moments;
         let product = a * b * c;
@@ -61,15 +61,14 @@ impl Quartic {
         }
     }
 
-    /// kappa for u with squared components `squares` and `a` their sum.
+    /// kappa for u with squared components `squares` and their sum `a`.
     ///
-    /// Small steps take one pass without a loop: a two-term series, then one iteration of fourth order with a single
-    /// division. Larger steps take a second one, and the largest the monotone iteration, which also finds out that
-    /// there is no root.
+    /// Small steps take one pass without a loop: a two-term series, then one fourth-order iteration with a single division. Larger
+    /// steps take a second iteration. The largest take the monotone iteration, which also detects that no root exists.
     #[inline(always)]
     pub fn principal_root(&self, squares: &Vector, a: f64) -> Result<f64, Unsolvable> {
         let (kappa, terms) = self.once(squares, a);
-        // Written so that a NaN takes the slow way, which reports it.
+        // Written so that NaN takes the slow path, which reports it.
         if terms.energy <= self.easy {
             Ok(kappa)
         } else {
@@ -77,8 +76,8 @@ impl Quartic {
         }
     }
 
-    /// kappa by that one pass, and whether it is exact to rounding; of no meaning otherwise. There is no branch: a loop
-    /// over many bodies takes several of them together.
+    /// kappa by the single pass, and whether it is exact to rounding; otherwise the value is meaningless. The code is branch-free,
+    /// so that the compiler vectorises a loop over many bodies.
     #[inline(always)]
     pub fn root_at_once(&self, squares: &Vector, a: f64) -> (f64, bool) {
         let (kappa, terms) = self.once(squares, a);
@@ -102,8 +101,8 @@ impl Quartic {
         (kappa, terms)
     }
 
-    /// One iteration of fourth order: Newton's change d with the next two terms of the inverse series,
-    /// d + b d^2 + (2 b^2 + c) d^3, where b and c are second and third Taylor coefficients over the fall.
+    /// One fourth-order iteration: Newton's correction d plus the next two terms of the inverse series, d + b d^2 + (2 b^2 + c)
+    /// d^3. b and c are the second and third Taylor coefficients divided by the negative slope.
     #[inline(always)]
     fn improved(&self, start: f64, terms: &Terms) -> f64 {
         let square = start * start;
@@ -120,7 +119,7 @@ impl Quartic {
         (start + newton) + newton * (bent * (1.0 + (bent + bent)) + twist)
     }
 
-    /// Steps near and beyond the solvability bound, and momenta that are no numbers.
+    /// Steps near and beyond the solvability bound, and non-finite momenta.
     #[cold]
     #[inline(never)]
     fn hard(&self, kappa: f64, terms: &Terms) -> Result<f64, Unsolvable> {
@@ -131,8 +130,8 @@ impl Quartic {
         }
     }
 
-    /// Newton's iteration from the left of the smallest root, which it approaches monotonically (the quartic is
-    /// convex and falling there); a slope that is not negative before a root means that there is none.
+    /// Newton's iteration from the left of the smallest root. It converges monotonically, because the quartic is convex and
+    /// decreasing there. A nonnegative slope before a root means that there is none.
     fn monotone(&self, terms: &Terms) -> Result<f64, Unsolvable> {
         let c0 = terms.energy + terms.a_squared;
         let linear = 1.0 + terms.turn;
@@ -146,14 +145,14 @@ impl Quartic {
                 + kappa
                     * (2.0 * terms.curvature
                         + kappa * (4.0 * kappa * self.fourth - 3.0 * self.third));
-            // Also taken by a NaN.
+            // NaN also takes this branch.
             let falling = g1 < 0.0;
             if !falling || !g0.is_finite() {
                 return Err(Unsolvable);
             }
             let change = -g0 / g1;
             kappa += change;
-            // Rounding of g0 is a few units of c0; once the change is that small the iteration only dithers.
+            // The rounding error of g0 is a few units of c0; below this change the iteration only oscillates.
             if change <= 4.0 * f64::EPSILON * kappa {
                 return Ok(kappa);
             }
@@ -161,7 +160,7 @@ impl Quartic {
         Err(Unsolvable)
     }
 
-    /// kappa once and for all, at the start of a free trajectory: the monotone iteration.
+    /// The constant kappa of a free trajectory, computed once at the start by the monotone iteration.
     pub fn constant_root(&self, squares: &Vector, a: f64) -> Result<f64, Unsolvable> {
         let [p, q, r] = self.reciprocal;
         self.monotone(&Terms {
@@ -173,7 +172,7 @@ impl Quartic {
     }
 }
 
-/// Coefficients of the quartic, over s3, that depend on u.
+/// Coefficients of the quartic that depend on u, divided by s3.
 struct Terms {
     /// sum u_i^2 / I_i.
     energy: f64,

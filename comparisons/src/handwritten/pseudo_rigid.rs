@@ -1,7 +1,7 @@
-//! The pseudo-rigid body Q = Rᵀ D S as the thesis discretises it (3.55), with the signs of (3.62) corrected, and the letters of
-//! the bipolar form of any motion of a placement. With J = D (2 - wᵀ) D and K = D (2 - Ωᵀ) D a step solves
-//! `2 skew(Ωᵀ J) = -h hat(m)`, `2 skew(wᵀ K) = -h hat(n)` by Newton's method, its derivatives by hand; stretches follow. Takes
-//! rotations, stretches and their momenta; gives the same a step later.
+//! The pseudo-rigid body Q = Rᵀ D S in the discretisation of the thesis (3.55), with the signs of (3.62) corrected, and the
+//! variables of the bipolar form for any motion of a placement. With J = D (2 - wᵀ) D and K = D (2 - Ωᵀ) D, a step solves
+//! `2 skew(Ωᵀ J) = -h hat(m)`, `2 skew(wᵀ K) = -h hat(n)` by Newton's method with hand-written derivatives. The stretches then
+//! follow explicitly. Takes rotations, stretches and their momenta; gives these after one step.
 
 use super::Unsolvable;
 use super::attitude::{
@@ -15,7 +15,7 @@ pub struct PseudoRigid {
     pub energy: [f64; 4],
 }
 
-/// Where the body is: rotations, stretches, and their momenta, those of rotations seen from space.
+/// The state: rotations, stretches, and their momenta, which are spatial for the rotations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bipolar {
     /// R.
@@ -39,7 +39,7 @@ fn diagonal(d: &Vector) -> Matrix {
     [[d[0], 0.0, 0.0], [0.0, d[1], 0.0], [0.0, 0.0, d[2]]]
 }
 
-/// The rotation of a vector of turning, by the formula of Rodrigues.
+/// The rotation of a rotation vector, by Rodrigues' formula.
 fn turn(v: &Vector) -> Matrix {
     let angle = v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let (a, b) = match angle < 1e-4 {
@@ -50,7 +50,7 @@ fn turn(v: &Vector) -> Matrix {
     sum(&sum(&IDENTITY, a, &own), b, &product(&own, &own))
 }
 
-/// The solution of six linear equations by elimination with pivots; not finite where there is none.
+/// Solves six linear equations by elimination with pivoting; not finite if the matrix is singular.
 fn solved(mut a: [[f64; 7]; 6]) -> [f64; 6] {
     for k in 0..6 {
         let pivot = (k..6).fold(k, |p, r| if a[r][k].abs() > a[p][k].abs() { r } else { p });
@@ -69,7 +69,7 @@ fn solved(mut a: [[f64; 7]; 6]) -> [f64; 6] {
 }
 
 impl PseudoRigid {
-    /// The derivative of the stored energy by the stretches.
+    /// The derivative of the stored energy with respect to the stretches.
     fn slope(&self, d: &Vector) -> Vector {
         let [a, b, c, e] = self.energy;
         let square = d.map(|x| x * x);
@@ -83,7 +83,7 @@ impl PseudoRigid {
     /// A step of h.
     ///
     /// # Errors
-    /// [`Unsolvable`] where Newton's method from rest finds no velocities.
+    /// [`Unsolvable`] if Newton's method from zero velocity does not converge.
     pub fn step(&self, at: &Bipolar, h: f64) -> Result<Bipolar, Unsolvable> {
         let d = diagonal(&at.d);
         let [m, n, p] = &at.momenta;
@@ -130,7 +130,7 @@ impl PseudoRigid {
             if !size.is_finite() {
                 return Err(Unsolvable);
             }
-            // Quadratic, until rounding stops it.
+            // Convergence is quadratic until rounding.
             if size < 1e-12 && size >= 0.5 * last || size == 0.0 {
                 break;
             }
@@ -164,8 +164,8 @@ impl PseudoRigid {
 }
 
 impl Bipolar {
-    /// The placement Rᵀ D S, and its momentum P, by which `P·δQ = m·ξ + n·ζ + p·δD` where R turns by ξ and S by ζ: with
-    /// `Y = R P Sᵀ` the momenta are `2 vee(D Yᵀ)`, `-2 vee(Yᵀ D)` and the diagonal of Y. Stretches must differ.
+    /// The placement Rᵀ D S and its momentum P, defined by `P·δQ = m·ξ + n·ζ + p·δD` for rotations ξ of R and ζ of S. With
+    /// `Y = R P Sᵀ`, the momenta are `2 vee(D Yᵀ)`, `-2 vee(Yᵀ D)` and the diagonal of Y. The stretches must be distinct.
     pub fn placed(&self) -> [Matrix; 2] {
         let d = &self.d;
         let [m, n, p] = &self.momenta;

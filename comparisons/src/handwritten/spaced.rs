@@ -1,10 +1,10 @@
-//! Storage of a trajectory's numbers between two steps, with gaps that keep the compiler from loading neighbours
-//! together. A 16-byte load of two numbers stored separately a few cycles before has to wait until both stores have
-//! left the store buffer; in a step of some fifty cycles that wait is the largest single cost (measured: one third).
+//! Storage of a trajectory's numbers between two steps, with gaps that keep the compiler from loading neighbours together. A
+//! 16-byte load of two numbers that were stored separately a few cycles earlier waits until both stores have left the store buffer.
+//! In a step of about fifty cycles that wait is the largest single cost (measured: one third).
 
 use super::attitude::{Quaternion, Vector};
 
-/// Three numbers, each alone.
+/// Three numbers with gaps between them.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct SpacedVector {
@@ -30,7 +30,7 @@ impl SpacedVector {
         }
     }
 
-    /// Overwrites the vector and leaves the gaps alone.
+    /// Overwrites the vector and leaves the gaps unchanged.
     #[inline(always)]
     pub fn set(&mut self, [x, y, z]: Vector) {
         self.x = x;
@@ -45,7 +45,7 @@ impl SpacedVector {
     }
 }
 
-/// A quaternion as two pairs, each stored and loaded as a whole.
+/// A quaternion as two pairs, each stored and loaded together.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct SpacedQuaternion {
@@ -68,7 +68,7 @@ impl SpacedQuaternion {
         }
     }
 
-    /// Overwrites the quaternion and leaves the gaps alone.
+    /// Overwrites the quaternion and leaves the gaps unchanged.
     #[inline(always)]
     pub fn set(&mut self, q: Quaternion) {
         let [w, x, y, z] = q.0;

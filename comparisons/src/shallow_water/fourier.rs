@@ -1,12 +1,12 @@
-//! The fast Fourier transform in two directions, by halves: each length is a power of two. Takes and gives complex
-//! numbers as pairs, the last direction contiguous. Written for the comparison alone.
+//! The radix-2 fast Fourier transform in two directions; each length is a power of two. Complex numbers are pairs, and the last
+//! direction is contiguous.
 
 use core::f64::consts::TAU;
 
-/// A complex number: its real and its imaginary part.
+/// A complex number: real and imaginary part.
 pub(super) type Complex = [f64; 2];
 
-/// Tables of a transform of fixed lengths.
+/// Tables for a transform of fixed lengths.
 #[derive(Clone, Debug)]
 pub(super) struct Fourier {
     lengths: [usize; 2],
@@ -20,7 +20,7 @@ fn product(a: Complex, b: Complex) -> Complex {
 }
 
 impl Fourier {
-    /// For lengths that are powers of two; none for others.
+    /// For lengths that are powers of two; otherwise `None`.
     pub fn new(lengths: [usize; 2]) -> Option<Self> {
         let roots = |n: usize| {
             let angle = |k: usize| -TAU * k as f64 / n as f64;
@@ -35,7 +35,7 @@ impl Fourier {
         })
     }
 
-    /// `Σ_x values_x exp(-i k x)` in place, waves in the order 0, 1, ..., -2, -1.
+    /// `Σ_x values_x exp(-i k x)` in place, with wave numbers in the order 0, 1, ..., -2, -1.
     pub fn forwards(&mut self, values: &mut [Complex]) {
         let [rows, width] = self.lengths;
         for row in values.chunks_exact_mut(width) {
@@ -64,7 +64,7 @@ impl Fourier {
         }
     }
 
-    /// The signed number of waves of each component along a direction.
+    /// The signed wave number of each component along a direction.
     pub fn waves(&self, d: usize) -> impl Iterator<Item = f64> + use<> {
         let n = self.lengths[d];
         (0..n).map(move |k| match 2 * k <= n {

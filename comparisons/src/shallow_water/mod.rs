@@ -1,5 +1,5 @@
-//! Shallow water as other methods compute it. Fourier components on a grid, whose error is far below that of particles
-//! while fields are smooth, are the reference of particle-mesh methods.
+//! Shallow water with other methods. A pseudospectral method is the reference for particle-mesh methods, because its error is far
+//! smaller while fields are smooth.
 
 mod fourier;
 mod spectral;

@@ -1,12 +1,12 @@
-//! Regularised shallow water by Fourier components: `h_t + div(h u) = 0`, `u_t + (ζ + f) k x u = -grad(c0² S h + |u|²/2)`,
-//! where S is the inverse of a Helmholtz operator, in a periodic box or in a channel. A channel is half of a periodic box
-//! in which depth is even about the walls and the normal velocity odd. Products are free of aliases (two thirds of the
-//! components are kept, data that have others are truncated); the steps are those of the classical Runge-Kutta method.
+//! Pseudospectral solver for regularised shallow water: `h_t + div(h u) = 0`, `u_t + (ζ + f) k x u = -grad(c0² S h + |u|²/2)`,
+//! where S is the inverse of a Helmholtz operator, in a periodic box or a channel. A channel is half of a periodic box in which
+//! depth is even about the walls and the normal velocity odd. Products are dealiased: two thirds of the components are kept, and
+//! initial data are truncated. Time steps use the classical Runge-Kutta method.
 
 use super::fourier::{Complex, Fourier};
 use core::f64::consts::TAU;
 
-/// How depth is smoothed.
+/// The smoothing of the depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Smoothing {
     /// `1 / ((1 + α²k²)(1 + α²l²))`.
@@ -17,7 +17,7 @@ pub enum Smoothing {
     Twice,
 }
 
-/// Depth and velocity at the nodes of the grid, mirrored ones among them.
+/// Depth and velocity at the grid nodes, including mirrored ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fields {
     /// Depth.
@@ -33,14 +33,14 @@ pub struct Fields {
 pub struct Spectral {
     /// Square of the wave speed of unit depth.
     pub speed_squared: f64,
-    /// Twice the rate of rotation.
+    /// The Coriolis parameter, twice the rotation rate.
     pub coriolis: f64,
     /// Lengths of the periodic box.
     lengths: [f64; 2],
     nodes: [usize; 2],
     walls: bool,
     fourier: Fourier,
-    /// Wave numbers of each component; zero for those that are dropped from products.
+    /// Wave numbers of each component; zero for components that products drop.
     waves: Vec<[f64; 2]>,
     /// Whether a component is kept.
     kept: Vec<bool>,
@@ -48,8 +48,8 @@ pub struct Spectral {
 }
 
 impl Spectral {
-    /// Water in a box of these lengths, with walls across the first direction or none, on so many intervals (powers of
-    /// two; none otherwise), its depth smoothed over the length `alpha`.
+    /// Water in a box of these lengths, with or without walls across the first direction, on this number of intervals. The depth is
+    /// smoothed over the length `alpha`. `None` if a number of intervals is not a power of two.
     pub fn new(
         lengths: [f64; 2],
         walls: bool,
@@ -90,7 +90,7 @@ impl Spectral {
         })
     }
 
-    /// Fields of this depth and velocity, `[h, u, v]` at a place in the box.
+    /// The fields with depth and velocity `[h, u, v]` as a function of the position.
     pub fn fields(&self, at: impl Fn([f64; 2]) -> [f64; 3]) -> Fields {
         let count = self.nodes[0] * self.nodes[1];
         let value = |node: usize| {
@@ -126,7 +126,7 @@ impl Spectral {
         all
     }
 
-    /// Drops the components that products are free of, as data have to that are not smooth.
+    /// Drops the dealiased components, as required for initial data that are not smooth.
     pub fn truncate(&mut self, fields: &mut Fields) {
         let kept = self.kept.clone();
         for values in [&mut fields.h, &mut fields.u, &mut fields.v] {
@@ -137,7 +137,7 @@ impl Spectral {
         }
     }
 
-    /// The largest frequency of waves of small amplitude on unit depth at rest: `sqrt(f² + c² |k|² S)`.
+    /// The largest frequency of small-amplitude waves on unit depth at rest: `sqrt(f² + c² |k|² S)`.
     pub fn fastest_wave(&self) -> f64 {
         let all = self.waves.iter().zip(&self.smoothing).zip(&self.kept);
         let square = |((k, s), kept): ((&[f64; 2], &f64), &bool)| match kept {
@@ -148,7 +148,7 @@ impl Spectral {
         (self.coriolis * self.coriolis + largest).sqrt()
     }
 
-    /// The smoothed depth at the nodes of the box, those on both walls among them, the second direction contiguous.
+    /// The smoothed depth at the nodes of the box, including both walls; the second direction is contiguous.
     pub fn smoothed(&mut self, fields: &Fields) -> Vec<f64> {
         let h = self.components(fields.h.iter().copied());
         let smoothing = self.smoothing.clone();
@@ -163,7 +163,7 @@ impl Spectral {
             .collect()
     }
 
-    /// Kinetic and potential energy of the periodic box: that of a channel twice.
+    /// Kinetic and potential energy of the periodic box, which is twice that of a channel.
     pub fn energy(&mut self, fields: &Fields) -> [f64; 2] {
         let h = self.components(fields.h.iter().copied());
         let smoothing = self.smoothing.clone();
@@ -207,7 +207,7 @@ impl Spectral {
                 filtered(k, [a[0] - b[0], a[1] - b[1]])
             },
         );
-        // Products with the vorticity have components that are dropped, too.
+        // Products with the vorticity also produce components that are dropped.
         let coriolis = self.coriolis;
         let turning = |i: usize| rest[i][1] + coriolis;
         let turned = [&of.v, &of.u].map(|x| {
@@ -231,7 +231,7 @@ impl Spectral {
         }
     }
 
-    /// One step of the classical Runge-Kutta method.
+    /// Steps once with the classical Runge-Kutta method.
     pub fn step(&mut self, fields: &mut Fields, dt: f64) {
         let start = fields.clone();
         let mut stage = fields.clone();

@@ -1,5 +1,5 @@
-//! The closed form of the free body against a Taylor series in double-double, and every other way to
-//! move a free body against the closed form: orders, equality of maps, what is conserved.
+//! The closed form of the free body against a double-double Taylor series, and every other method for a free body against the
+//! closed form: orders, equality of maps, and invariants.
 
 use clebsch::scalar::larger;
 use clebsch::{DoubleDouble, Real};
@@ -12,7 +12,7 @@ use clebsch_comparisons::handwritten::attitude::{Matrix, Quaternion, Vector, app
 use clebsch_comparisons::handwritten::free_body::FreeBody;
 use clebsch_comparisons::runge_kutta::{Accuracy, Method54, Method85, Method98, RungeKutta};
 
-/// J of principal moments, turned by a quaternion out of its axes.
+/// J from principal moments, rotated by a quaternion.
 fn poinsot(moments: Vector, frame: [f64; 4]) -> Matrix {
     let half = moments.iter().sum::<f64>() / 2.0;
     let r = Quaternion(frame).normalised().matrix();
@@ -36,8 +36,8 @@ fn start(moments: Vector, frame: [f64; 4], body_momentum: Vector, h: f64) -> Sta
 
 const STRAIGHT: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
 
-/// Bodies of every kind: both sides of the separatrix, both symmetric ones, steady, near the separatrix,
-/// with axes that are not principal.
+/// Bodies of every kind: on both sides of the separatrix, both symmetric cases, steady, near the separatrix, and in axes that are
+/// not principal.
 fn bodies() -> Vec<(&'static str, Start)> {
     let crooked = [0.9, 0.2, -0.3, 0.1];
     vec![
@@ -99,8 +99,8 @@ fn bodies() -> Vec<(&'static str, Start)> {
 
 type Dd = DoubleDouble;
 
-/// The continuous motion by Taylor series in double-double, from the same numbers in f64. Products of
-/// series by Cauchy's rule; 30 terms of steps of 1/16 leave 1e-30.
+/// The continuous motion by a double-double Taylor series, from the same `f64` numbers. Products of series use Cauchy's rule; 30
+/// terms with steps of 1/16 have an error of 1e-30.
 fn taylor(start: &Start, time: f64) -> ([Dd; 4], [Dd; 3]) {
     const TERMS: usize = 30;
     let c = Dd::from_f64;
@@ -161,8 +161,8 @@ fn exact(start: &Start, time: f64) -> (Quaternion, Vector) {
     Exact::start(start).unwrap().at(time)
 }
 
-/// Rounding of the closed form: the start is rounded to principal axes, and 1e-15 of a rate grows to
-/// 1e-14 of a radian within ten radians; hardly more than 50 radians are turned.
+/// Rounding of the closed form: the initial data are rounded to principal axes, and a rate error of 1e-15 grows to 1e-14 radians
+/// within ten radians. The total rotation is about 50 radians at most.
 #[test]
 fn closed_form_is_the_continuous_motion() {
     for (name, start) in bodies() {
@@ -170,7 +170,7 @@ fn closed_form_is_the_continuous_motion() {
             let (q, m) = taylor(&start, time);
             let truth = (Quaternion(q.map(Real::value)), m.map(Real::value));
             let error = distance(&exact(&start, time), &truth);
-            // Beside the separatrix neighbouring starts part exponentially: by e^5 or so here.
+            // Near the separatrix, neighbouring starts diverge exponentially, here by about e^5.
             let bound = if name == "near the separatrix" {
                 1e-12
             } else {
@@ -184,8 +184,8 @@ fn closed_form_is_the_continuous_motion() {
 /// The exact separatrix: parameter m = 1, where the functions are hyperbolic.
 #[test]
 fn separatrix_is_followed() {
-    // |mu|^2 = 2 E I_2 means mu_1^2 (1/2 - 1/4) = mu_3^2 (1 - 1/2) for I = (4, 2, 1). The first pair of
-    // numbers meets it in exact arithmetic of squares rounded to f64, the second one but for rounding.
+    // For I = (4, 2, 1), the condition |mu|^2 = 2 E I_2 means mu_1^2 (1/2 - 1/4) = mu_3^2 (1 - 1/2). The first pair satisfies this
+    // exactly for squares rounded to f64, the second pair up to rounding.
     let pairs = [(0.6187184335382291_f64, 0.4375), (2.0_f64.sqrt(), 1.0)];
     assert!(pairs[0].0.powi(2) == 2.0 * pairs[0].1.powi(2));
     for ((x, z), time) in pairs
@@ -200,7 +200,7 @@ fn separatrix_is_followed() {
     }
 }
 
-/// Largest error at the nodes up to time 10 with these many steps.
+/// Largest error at the nodes up to time 10 with this number of steps.
 fn error<M: BodyMotion>(make: impl Fn(&Start) -> M, start: &Start, steps: u32) -> f64 {
     let start = Start {
         h: 10.0 / f64::from(steps),
@@ -246,8 +246,7 @@ fn orders_are_those_of_the_literature() {
             order([100, 200].map(|n| error(|s| Newton::start(s).unwrap(), &start, n))),
         ),
     ];
-    // The next term of the expansion is (h/2)^2 = 1e-3 of the leading one here; 0.05 is ample and far from
-    // the next order.
+    // The next term of the expansion is (h/2)^2 = 1e-3 of the leading one; 0.05 is a wide margin and far from the next order.
     for (index, (order, measured)) in measured.into_iter().enumerate() {
         assert!(
             (measured - order).abs() < 0.05,
@@ -278,13 +277,13 @@ fn iterations_solve_the_explicit_step() {
         let here = (explicit.attitude(), explicit.body_momentum());
         for other in [&fixed as &dyn BodyMotion, &newton] {
             let apart = distance(&here, &(other.attitude(), other.body_momentum()));
-            // A hundred roundings, which the neighbourhood of the separatrix multiplies by ten or so.
+            // A hundred rounding errors, amplified about tenfold near the separatrix.
             assert!(apart < 1e-12, "{name}: {apart:e}");
         }
     }
 }
 
-/// Rotations keep the momentum of space to rounding; the energy only within O(h^2).
+/// The rotations conserve the spatial momentum to rounding, and the energy only within O(h^2).
 #[test]
 fn splitting_keeps_spatial_momentum_and_swings_in_energy() {
     let start = start([3.5, 2.5, 2.0], STRAIGHT, [-0.5, 0.3, 1.0], 0.1);
@@ -311,7 +310,7 @@ fn splitting_keeps_spatial_momentum_and_swings_in_energy() {
             .zip(after)
             .map(|(a, b)| (a - b).abs())
             .fold(0.0, larger);
-        // 25000 roundings at most, as a random walk.
+        // At most 25000 rounding errors, as a random walk.
         assert!(drift < 1e-13, "{drift:e}");
         assert!(swing > 1e-11 && swing < 1e-3, "{swing:e}");
     }
@@ -340,7 +339,7 @@ fn runge_kutta_meets_its_tolerance() {
         eighth.step().unwrap();
         fifth.step().unwrap();
     }
-    // Rounding of two thousand steps as a random walk, turned into an angle over 50 radians.
+    // Rounding of two thousand steps as a random walk, as an angle over 50 radians.
     assert!(errors(reference.state(), 100.0) < 3e-13);
     assert!(errors(eighth.state(), 100.0) < 1e-11);
     let coarse = errors(fifth.state(), 100.0);

@@ -1,4 +1,4 @@
-//! Particle-mesh shallow water in a channel beside Fourier components of the same regularised equations.
+//! Particle-mesh shallow water in a channel against a pseudospectral solution of the same regularised equations.
 
 use clebsch::mesh::{Domain, Functional, Nodes, Setting, deposit, smooth, smooth_isotropic};
 use clebsch::nalgebra::SVector;
@@ -15,7 +15,7 @@ fn depth(x: [f64; 2], sharpness: f64) -> f64 {
     1.0 + 0.5 * (-sharpness * square).exp()
 }
 
-/// The smoothed depth at nodes after `steps` steps, of so many particles a cell along either direction, which move along the
+/// The smoothed depth at nodes after `steps` steps, with `each` particles per cell along either direction, which move along the
 /// channel at unit speed.
 fn particles<S>(cells: usize, each: usize, alpha: f64, (dt, steps): (f64, usize)) -> Vec<f64>
 where
@@ -47,7 +47,7 @@ where
         }
         let seed: Vec<f64> = weights.iter().zip(&s).map(|(w, s)| w * s).collect();
         deposit.pull_back(&x, &seed, &mut slopes).expect("inside");
-        // The first kick is half of one: leap-frog.
+        // The first kick is half a kick: leap-frog.
         let kick = if step == 0 { 0.5 * dt } else { dt };
         for a in 0..x.len() {
             u[a] -= slopes[a] * (kick / mass[a]);
@@ -57,7 +57,7 @@ where
     s
 }
 
-/// The same by Fourier components, at the nodes of a grid of so many intervals.
+/// The pseudospectral solution at the nodes of a grid with this number of intervals.
 fn reference(cells: usize, alpha: (f64, Smoothing), time: f64) -> Vec<f64> {
     const FINE: usize = 64;
     let made = Spectral::new([LENGTH; 2], true, [FINE; 2], alpha, 1.0, 0.0);
@@ -123,8 +123,7 @@ fn waves_of_small_amplitude_have_the_frequency_of_the_regularised_equations() {
 
 #[test]
 fn particles_and_components_give_the_same_smoothed_depth() {
-    // The errors are 1.3e-3 and 3.1e-4 (isotropic: 3.7e-4): of second order, as that of splines. Half as much again is
-    // allowed.
+    // The errors are 1.3e-3 and 3.1e-4 (isotropic: 3.7e-4): second order, like the splines. The bound is 1.5 times larger.
     for (cells, bound) in [(16, 2.0e-3), (32, 5.5e-4)] {
         let alpha = 2.0 * LENGTH / cells as f64;
         let (dt, steps) = (5e-3, 100);
@@ -136,13 +135,13 @@ fn particles_and_components_give_the_same_smoothed_depth() {
         let isotropic = reference(cells, (alpha, Smoothing::Isotropic), dt * steps as f64);
         let error = difference(&whole, &isotropic);
         assert!(error < bound, "{cells} cells: {error:e}");
-        // The error is below what tells the two smoothers apart.
+        // The error is smaller than the difference of the two smoothers.
         assert!(difference(&whole, &exact) > error);
     }
 }
 
-/// On one mesh, of particles that start in order, one a cell has the error of the mesh already: more change it by less than a
-/// hundredth.
+/// On a fixed mesh, with particles that start on a regular grid, one particle per cell already reaches the mesh error: more
+/// particles change it by less than one percent.
 #[test]
 fn more_particles_a_cell_leave_the_error_of_the_mesh() {
     let (cells, dt, steps) = (32, 5e-3, 100);
@@ -152,7 +151,7 @@ fn more_particles_a_cell_leave_the_error_of_the_mesh() {
         let found = particles::<smooth<f64, 2>>(cells, each, alpha, (dt, steps));
         difference(&found, &exact)
     });
-    // 3.06e-4, 3.05e-4 and 3.05e-4; of 64 a cell 3.05e-4.
+    // 3.06e-4, 3.05e-4 and 3.05e-4; with 64 per cell, 3.05e-4.
     for error in errors {
         assert!((error / errors[2] - 1.0).abs() < 1e-2, "{errors:?}");
     }

@@ -1,5 +1,5 @@
-//! Rotating shallow water by Fourier components, against what is known: the frequency of Poincaré's waves, mass to
-//! rounding, energy to the order of the steps.
+//! The pseudospectral solver for rotating shallow water against known results: the frequency of Poincaré waves, mass to rounding,
+//! and energy to the order of the time steps.
 
 use clebsch_comparisons::shallow_water::{Fields, Smoothing, Spectral};
 use core::f64::consts::TAU;
@@ -36,7 +36,7 @@ fn poincares_waves_have_their_frequency_and_shape() {
             let frequency = (4.0 + 1.69 * square * factor).sqrt();
             assert!(frequency < spectral.fastest_wave());
             let size = 1e-6;
-            // Along k the velocity goes with the depth, across it a quarter of a period behind.
+            // The velocity component along k is in phase with the depth; the component across k lags by a quarter of a period.
             let wave = |x: [f64; 2], time: f64| {
                 let (sin, cos) = (k[0] * x[0] + k[1] * x[1] - frequency * time).sin_cos();
                 let (along, across) = (frequency * cos / square, 2.0 * sin / square);
@@ -50,7 +50,8 @@ fn poincares_waves_have_their_frequency_and_shape() {
                 spectral.step(&mut now, dt);
             }
             let exact = spectral.fields(|x| wave(x, dt * f64::from(steps)));
-            // The steps' own error is (ω dt)⁴ ω t/120 of the amplitude, 1e-7 at most; the rest is of second order in it.
+            // The error of the time steps is (ω dt)⁴ ω t/120 relative to the amplitude, at most 1e-7; the rest is quadratic in the
+            // amplitude.
             let off = apart(&now, &exact);
             assert!(
                 off < 2e-7 * size + 50.0 * size * size,
@@ -60,7 +61,7 @@ fn poincares_waves_have_their_frequency_and_shape() {
     }
 }
 
-/// Steep water that turns and flows.
+/// Steep water with rotation and flow.
 fn steep(spectral: &Spectral) -> Fields {
     spectral.fields(|x| {
         let h = 1.0 + 0.2 * x[0].cos() + 0.1 * (x[0] + x[1]).sin();
@@ -84,7 +85,7 @@ fn mass_is_kept_to_rounding_and_energy_to_the_order_of_the_steps() {
             let [before, after] = [&start, &now].map(|f| spectral.energy(f).iter().sum::<f64>());
             changes.push((after / before - 1.0).abs());
         }
-        // Of fourth order at least: the energy of a linear wave changes with the fifth power of the step.
+        // At least fourth order: the energy error of a linear wave is of fifth order in the step size.
         for pair in changes.windows(2) {
             assert!(pair[0] > 14.0 * pair[1], "{smoothing:?}: {changes:?}");
         }
@@ -95,14 +96,14 @@ fn mass_is_kept_to_rounding_and_energy_to_the_order_of_the_steps() {
 #[test]
 fn what_is_truncated_has_no_components_that_products_drop() {
     let mut spectral = water(Smoothing::Isotropic);
-    // Of 32 nodes along a direction waves up to 10 are kept.
+    // With 32 nodes along a direction, wave numbers up to 10 are kept.
     let smooth = |x: [f64; 2]| 1.0 + (3.0 * x[0]).cos() + (10.0 * x[1] + x[0]).sin();
     let rough = |x: [f64; 2]| smooth(x) + (11.0 * x[0]).cos() + (16.0 * x[1]).cos();
     let mut found = spectral.fields(|x| [rough(x), -rough(x), rough(x)]);
     spectral.truncate(&mut found);
     let wanted = spectral.fields(|x| [smooth(x), -smooth(x), smooth(x)]);
     assert!(apart(&found, &wanted) < 1e-13);
-    // No step brings any back.
+    // Steps do not restore dropped components.
     let mut now = steep(&spectral);
     for _ in 0..20 {
         spectral.step(&mut now, 0.02);

@@ -1,5 +1,5 @@
-//! Runs a tape on many sets of inputs side by side, in the widest registers of the processor. Each set gives the same
-//! numbers as alone.
+//! Runs a tape on many sets of inputs side by side, in the widest registers of the processor. Each set gives the same numbers as on
+//! its own.
 
 use clebsch_program::{Frame, Machine, WIDTH};
 
@@ -14,8 +14,8 @@ impl pulp::WithSimd for Run<'_> {
     }
 }
 
-/// Computes on [`WIDTH`] sets of inputs. False if a decision comes out otherwise than recorded in any of them: the outputs
-/// then mean nothing.
+/// Computes on [`WIDTH`] sets of inputs. Returns false if a decision differs from the recorded one in any set; the outputs are then
+/// meaningless.
 pub fn run(machine: &Machine, frame: &mut Frame<WIDTH>) -> bool {
     pulp::Arch::new().dispatch(Run(machine, frame))
 }

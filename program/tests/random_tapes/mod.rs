@@ -1,4 +1,4 @@
-//! Random tapes, and what their steps give, computed one after the other.
+//! Random tapes, and the results of their steps by sequential evaluation.
 
 use clebsch_program::{Function, Recording, Scalar, Step, Tape, Test};
 
@@ -17,7 +17,7 @@ impl Random {
         (self.bits() % n as u64) as usize
     }
 
-    /// Plain numbers, zeros of both signs, large, small, infinite ones and NaN.
+    /// Ordinary numbers, zeros of both signs, large, small and infinite numbers, and NaN.
     pub fn number(&mut self) -> f64 {
         let plain = (self.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
         match self.bits() % 40 {
@@ -45,17 +45,17 @@ const FUNCTIONS: [Function; 9] = [
     Function::Balance,
 ];
 
-/// How many numbers a tape takes.
+/// Number of inputs of a tape.
 pub const INPUTS: usize = 5;
 
-/// A function that is taken as a whole: sums of neighbours.
+/// A whole function: sums of neighbours.
 fn turned(sizes: &[usize], inputs: &[f64], outputs: &mut [f64]) {
     for i in 0..sizes[0] {
         outputs[i] = inputs[i] + inputs[(i + 1) % sizes[0]];
     }
 }
 
-/// Every operation, calls, and up to three decisions.
+/// A tape with every operation, calls, and up to three decisions.
 pub fn random_tape(random: &mut Random) -> Tape {
     let mut recording = Recording::default();
     let mut all: Vec<Scalar> = Vec::new();
@@ -99,7 +99,7 @@ pub fn random_tape(random: &mut Random) -> Tape {
     recording.tape(outputs)
 }
 
-/// The outputs, and whether every decision comes out as recorded.
+/// The outputs, and whether every decision has the recorded outcome.
 pub fn computed(tape: &Tape, inputs: &[f64]) -> (Vec<f64>, bool) {
     let mut all: Vec<f64> = Vec::new();
     let called = |call: u32, output: u32, all: &[f64]| {
@@ -144,7 +144,7 @@ pub fn computed(tape: &Tape, inputs: &[f64]) -> (Vec<f64>, bool) {
     (tape.outputs.iter().map(|x| of(*x)).collect(), holds)
 }
 
-/// Whether two numbers have the same bits; NaN is NaN.
+/// Whether two numbers have the same bits; all NaN count as equal.
 pub fn same(a: f64, b: f64) -> bool {
     a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()
 }

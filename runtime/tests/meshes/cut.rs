@@ -1,5 +1,5 @@
-//! A Voronoi cell on a torus by definition: of a large square, what is nearer to its site than to any other copy of any
-//! site. Slow, and shares nothing with the mesh.
+//! A Voronoi cell on a torus by definition: the part of a large square that is closer to its site than to any other copy of any
+//! site. Slow, and independent of the mesh code.
 
 use clebsch::nalgebra::SVector;
 
@@ -49,7 +49,7 @@ pub fn cell(lengths: [f64; 2], at: &[Plane], a: usize) -> Cell {
     own
 }
 
-/// What of a polygon is nearer to the origin than to `d`.
+/// The part of a polygon that is closer to the origin than to `d`.
 fn nearer(corners: &[Plane], d: Plane) -> Vec<Plane> {
     let beyond = |p: &Plane| p.dot(&d) - d.norm_squared() / 2.0;
     let mut kept = Vec::new();

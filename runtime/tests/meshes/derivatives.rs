@@ -1,4 +1,4 @@
-//! Derivatives of functionals of meshes, by central differences and by dual numbers.
+//! Tests derivatives of mesh functionals against central differences and dual numbers.
 
 use clebsch::Dual;
 use clebsch::mesh::{Domain, Functional, Setting};
@@ -15,7 +15,7 @@ pub fn setting(lengths: [f64; 2], particles: usize) -> Setting<2> {
     }
 }
 
-/// Random numbers from 0 to 1 (xorshift).
+/// Random numbers in (0, 1) (xorshift).
 pub fn numbers(seed: u64) -> impl FnMut() -> f64 {
     let mut s = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     move || {
@@ -26,7 +26,7 @@ pub fn numbers(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// Places at random in a domain twice as large, so that they are not wrapped.
+/// Random positions in a domain of twice the size, and therefore not wrapped.
 pub fn random(lengths: [f64; 2], count: usize, seed: u64) -> Vec<Plane> {
     let mut next = numbers(seed);
     let mut at = || {
@@ -59,7 +59,7 @@ pub fn against_differences<F: Functional<f64, 2, Argument = Plane>>(
     for a in 0..at.len() {
         for k in 0..2 {
             let mut difference = 0.0;
-            // Of fourth order.
+            // A fourth-order central difference.
             for (shift, weight) in [(-2.0, 1.0), (-1.0, -8.0), (1.0, 8.0), (2.0, -1.0)] {
                 moved[a][k] = at[a][k] + shift * h;
                 difference += weight / (12.0 * h) * sum(&moved);
@@ -77,7 +77,7 @@ pub fn against_differences<F: Functional<f64, 2, Argument = Plane>>(
     assert!(total.norm() < 1e-12 * size * at.len() as f64, "{total}");
 }
 
-/// The same against dual numbers through the mesh of the real parts.
+/// The derivative of `sum seed value` against dual numbers through the mesh of the real parts.
 pub fn against_duals<R, F>(f: &mut R, dual: &mut F, at: &[Plane], seed: &[f64])
 where
     R: Functional<f64, 2, Argument = Plane>,
@@ -108,8 +108,8 @@ pub fn seeds(count: usize) -> Vec<f64> {
     (0..count).map(|_| next() - 0.4).collect()
 }
 
-/// Second derivatives, by pulling back dual numbers, are symmetric, and a few are those of differences: what a tangent
-/// map of a step is made of.
+/// Checks second derivatives, which the tangent map of a step needs: pull-backs of dual numbers are symmetric, and several entries
+/// equal finite differences.
 pub fn second_derivatives<R, F>(f: &mut R, dual: &mut F, at: &[Plane], seed: &[f64], tolerance: f64)
 where
     R: Functional<f64, 2, Argument = Plane>,

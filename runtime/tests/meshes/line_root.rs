@@ -1,11 +1,11 @@
-//! Velocities of one site by Newton's method from rest: roots known in closed form, the one that follows from
-//! rest among several, folds, derivatives, and the same for sizes that are known when a model is read.
+//! Velocities of one site by Newton's method from zero velocity: roots in closed form, the root connected to zero among several,
+//! folds, derivatives, and the same for sizes known only when a model is read.
 
 use clebsch::line::{NoRoot, root_of};
 use clebsch::nalgebra::{Matrix1, Matrix2, SMatrix, SVector, Vector1, Vector2};
 use clebsch::{Dual, Real};
 
-/// The root of momenta that are given with their derivative.
+/// The root for momenta given with their derivative.
 fn root<T: Real, const N: usize>(
     known: &SVector<T, N>,
     turns: [bool; N],
@@ -34,7 +34,7 @@ fn the_root_of_a_cubic_is_cardanos() {
             // 2 s sinh(asinh(half / s^3) / 3)
             let exact = 2.0 * s * ((half / (s * s * s)).asinh() / 3.0).sinh();
             let found = root(&Vector1::new(p), [false], cubic(1.0, b)).expect("a root")[0];
-            // Cardano's formula by two functions of the library, each of a few units.
+            // Cardano's formula with two library functions, each accurate to a few rounding errors.
             assert!(
                 (found - exact).abs() <= 1e-14 * exact.abs(),
                 "{p} {b}: {found} for {exact}"
@@ -45,7 +45,7 @@ fn the_root_of_a_cubic_is_cardanos() {
 
 #[test]
 fn beyond_a_fold_there_is_none_though_other_roots_exist() {
-    // v - v^3 rises to 2/sqrt(27) at 1/sqrt(3); for larger momenta there is a root far away.
+    // v - v^3 increases to 2/sqrt(27) at 1/sqrt(3); for larger momenta only a distant root exists.
     let fold = 2.0 / 27.0_f64.sqrt();
     let near =
         root(&Vector1::new(0.999 * fold), [false], cubic(1.0, -1.0)).expect("before the fold")[0];

@@ -1,5 +1,5 @@
-//! Functionals of meshes and grids by formulas that share nothing with the runtime, and velocities of one site of a line.
-//! One binary: linking costs more than these tests.
+//! Functionals of meshes and grids against independent formulas, and velocities of one site of a chain. All tests share one binary,
+//! because linking costs more than the tests.
 
 mod cut;
 mod derivatives;

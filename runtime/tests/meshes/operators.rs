@@ -1,5 +1,4 @@
-//! What is seen on a mesh: gradient, divergence, curl, circulation, distances and boxes of a grid, by identities and
-//! by definitions.
+//! Mesh operators: gradient, divergence, curl, circulation, distances and boxes of a grid, tested by identities and by definitions.
 
 use super::cut::cell;
 use super::derivatives::{Plane, numbers, random};
@@ -32,7 +31,7 @@ fn vectors(count: usize, seed: u64) -> Vec<Plane> {
         .collect()
 }
 
-/// Far from the seam, of linear functions.
+/// For linear functions, away from the periodic seam.
 #[test]
 fn gradient_and_curl_are_exact_of_linear_functions() {
     let at = bricks(16, 0.3);
@@ -66,7 +65,7 @@ fn gradient_and_curl_are_exact_of_linear_functions() {
     assert!(worst > 0.1, "{worst}");
 }
 
-/// Gradient and divergence are each other's negative adjoints, and the divergence is the rate of areas.
+/// Gradient and divergence are negative adjoints, and the divergence is the rate of change of areas.
 #[test]
 fn divergence_is_the_rate_of_areas() {
     let lengths = [1.2, 0.9];
@@ -102,7 +101,8 @@ fn divergence_is_the_rate_of_areas() {
     }
 }
 
-/// Orders on lattices, and where particles are uneven: errors of the exact gradient fall, those of means do not.
+/// Orders of accuracy on regular lattices and for irregular particles. For irregular particles, errors of the exact gradient
+/// decrease with the spacing; errors of the mean-value gradient do not.
 #[test]
 fn orders_of_consistency() {
     let error = |n: usize, size: f64, of_means: bool| -> f64 {
@@ -139,8 +139,8 @@ fn orders_of_consistency() {
     assert!((means[1] / means[2]).log2() < 0.3, "{means:?}");
 }
 
-/// An operator in use for shallow water, `-(1/(m A)) sum (m_a h_a + m_b h_b)/2 l n`: twice the force where masses are
-/// those of the depth, a force at rest, and momentum from nothing; with equal masses still far from the exact force.
+/// A common shallow-water operator, `-(1/(m A)) sum (m_a h_a + m_b h_b)/2 l n`, is not the force. It gives twice the force if the
+/// masses follow the depth, a force at rest, and a nonzero total momentum; even for equal masses it is far from the exact force.
 #[test]
 fn the_operator_of_means_is_no_force_of_shallow_water() {
     let acceleration = |mesh: &Voronoi<f64>, m: &[f64], exact: bool| -> Vec<Plane> {
@@ -163,7 +163,7 @@ fn the_operator_of_means_is_no_force_of_shallow_water() {
         let difference: Vec<Plane> = f.iter().zip(g).map(|(f, g)| f - g).collect();
         norm(&difference) / norm(g)
     };
-    // An even lattice, an uneven depth.
+    // A regular lattice with a varying depth.
     let at = bricks(32, 0.0);
     let mesh = mesh_of(UNIT, &at);
     let areas = areas_of(&mesh);
@@ -175,7 +175,7 @@ fn the_operator_of_means_is_no_force_of_shallow_water() {
     );
     let twice: Vec<Plane> = exact.iter().map(|f| f * 2.0).collect();
     assert!(apart(&other, &twice) < 0.05, "{}", apart(&other, &twice));
-    // At rest on an uneven mesh.
+    // At rest on an irregular mesh.
     let at = bricks(16, 0.3);
     let mesh = mesh_of(UNIT, &at);
     let m = areas_of(&mesh);
@@ -207,7 +207,7 @@ fn the_operator_of_means_is_no_force_of_shallow_water() {
     assert!(off > 0.2, "{off}");
 }
 
-/// Circulations around triangles: none in all, and rates made of accelerations alone.
+/// Circulations around triangles sum to zero, and only accelerations change them.
 #[test]
 fn circulation_changes_by_acceleration_alone() {
     let at = bricks(8, 0.2);
@@ -223,7 +223,7 @@ fn circulation_changes_by_acceleration_alone() {
     let later = |h: f64| -> Vec<f64> {
         let at: Vec<Plane> = (0..count).map(|a| at[a] + u[a] * h).collect();
         let u: Vec<Plane> = (0..count).map(|a| u[a] + force[a] * h).collect();
-        // The same mesh, moved.
+        // The same mesh after a displacement.
         let mut mesh = mesh.clone();
         mesh.update(&at).unwrap();
         assert_eq!(mesh.counted().flips, 0);
@@ -236,7 +236,7 @@ fn circulation_changes_by_acceleration_alone() {
         let found = (above[t] - below[t]) / (2.0 * h);
         assert!((found - rate[t]).abs() < 1e-9, "{t}: {found} {}", rate[t]);
     }
-    // And the curl of a solid rotation, by triangles.
+    // The curl of a solid rotation, from triangles.
     let turning: Vec<Plane> = at
         .iter()
         .map(|x| Plane::new(-3.0 * x[1], 3.0 * x[0]))
@@ -253,7 +253,7 @@ fn circulation_changes_by_acceleration_alone() {
     }
 }
 
-/// The nearest two of all copies.
+/// The two closest of all copies.
 #[test]
 fn the_nearest_are_neighbours() {
     for count in [1, 2, 3, 10, 200] {
@@ -279,7 +279,7 @@ fn the_nearest_are_neighbours() {
     }
 }
 
-/// Polygons are the cells, and boxes get all of their mass.
+/// Polygons equal the cells, and the boxes receive all of their mass.
 #[test]
 fn boxes_get_the_mass_of_cells() {
     for (count, grid) in [
@@ -316,7 +316,7 @@ fn boxes_get_the_mass_of_cells() {
             out.iter().all(|x| (x - each).abs() < 1e-12),
             "{count} {grid:?} {out:?}"
         );
-        // Depths by cells: each box's mass by many points of it.
+        // A depth per cell: the mass of each box by many sample points.
         let mut next = numbers(2);
         let depth: Vec<f64> = (0..count).map(|_| 0.5 + next()).collect();
         let m: Vec<f64> = areas_of(&mesh)

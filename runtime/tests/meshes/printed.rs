@@ -1,6 +1,6 @@
-//! What chapter 4 of the thesis prints about shallow water on Voronoi cells, beside what is right: each test evaluates both
-//! at random places, and the printed form is off while the right one holds to rounding. What is wanted is differentiated
-//! by dual numbers through the areas of cells.
+//! Errata of chapter 4 of the thesis, shallow water on Voronoi cells. Each test evaluates the printed and the correct form at
+//! random positions; the printed form fails, and the correct form holds to rounding. The reference values come from dual numbers
+//! through the cell areas.
 
 use super::derivatives::{Plane, numbers, setting};
 use clebsch::Dual;
@@ -10,7 +10,7 @@ use clebsch::nalgebra::SVector;
 
 type Along = SVector<Dual<1>, 2>;
 
-/// Particles of unequal masses on an uneven mesh, moving at random.
+/// Particles of different masses on an irregular mesh, with random velocities.
 struct Water {
     at: Vec<Plane>,
     u: Vec<Plane>,
@@ -46,7 +46,7 @@ impl Water {
         self.m[a] / self.areas[a]
     }
 
-    /// Places with their rates.
+    /// Positions with their rates of change.
     fn moving(&self) -> Vec<Along> {
         let moving = |x: f64, u: f64| Dual { real: x, dual: [u] };
         let both = self.at.iter().zip(&self.u);
@@ -54,7 +54,7 @@ impl Water {
             .collect()
     }
 
-    /// Rates of areas.
+    /// Rates of change of the areas.
     fn rates(&self) -> Vec<f64> {
         let mut area = voronoi_area::<Dual<1>>::new(&setting([1.0, 1.0], 64), ()).unwrap();
         let mut out = vec![Dual::constant(0.0); 64];
@@ -83,7 +83,8 @@ impl Water {
     }
 }
 
-/// The printed form is off by more than a twentieth of the size of what is wanted, the right one by rounding.
+/// Checks that the printed form is off by more than a twentieth of the size of the reference, and the correct form only by
+/// rounding.
 fn judge(label: &str, try_at: impl Fn(u64) -> (f64, f64)) {
     for seed in 1..6 {
         let (printed, right) = try_at(seed);
@@ -95,7 +96,7 @@ fn judge(label: &str, try_at: impl Fn(u64) -> (f64, f64)) {
     }
 }
 
-/// The size of a difference beside that of what is wanted.
+/// The size of a difference relative to the reference.
 fn off(found: &[f64], wanted: &[f64]) -> f64 {
     let difference: f64 = found.iter().zip(wanted).map(|(f, w)| (f - w).powi(2)).sum();
     (difference / wanted.iter().map(|w| w * w).sum::<f64>()).sqrt()
@@ -108,7 +109,7 @@ fn four_9_to_four_12_lose_a_half() {
         let n = 12;
         let x: Vec<f64> = (0..n).map(|a| a as f64 + 0.6 * next()).collect();
         let m: Vec<f64> = (0..n).map(|_| 0.5 + next()).collect();
-        // Of a line that closes after n.
+        // For a chain that closes after n particles.
         let width = |x: &[Dual<1>], a: usize| {
             let period = Dual::constant(n as f64);
             let right = if a + 1 == n { x[0] + period } else { x[a + 1] };
@@ -193,7 +194,7 @@ fn four_29_is_not_the_rate_of_areas() {
 fn four_32_does_not_conserve_the_energy() {
     judge("(4.32)", |seed| {
         let water = Water::random(seed);
-        // d/dt of half of sum m h, by the rates of areas and by (4.29).
+        // d/dt of (sum m h)/2, from the rates of areas and from (4.29).
         let rates = water.rates();
         let potential = |rates: &[f64]| -> f64 {
             (0..64)
@@ -213,7 +214,7 @@ fn four_32_does_not_conserve_the_energy() {
         for (rate, area) in printed.iter_mut().zip(&water.areas) {
             *rate *= area;
         }
-        // The potential energy of (4.32) is twice that of the Lagrangian.
+        // The potential energy in (4.32) is twice the one in the Lagrangian.
         let by_print = kinetic(&water.printed_acceleration()) + 2.0 * potential(&printed);
         let by_right = kinetic(&water.right_acceleration()) + potential(&rates);
         let size = potential(&rates).abs();
@@ -228,7 +229,7 @@ fn four_39_is_not_the_rate_of_a_face() {
         let mut moving = Voronoi::<Dual<1>>::new(&Domain::torus([1.0, 1.0]), 64).unwrap();
         moving.update(&water.moving()).unwrap();
         let triangles: Vec<_> = water.mesh.triangles().collect();
-        // How fast a circumcentre moves: it stays as far from each corner as from the others.
+        // The velocity of a circumcentre, which stays equidistant from its three corners.
         let centre_rate = |t: usize| -> Plane {
             let triangle = &triangles[t];
             let [u, v, w] = triangle.sites.map(|site| water.u[site]);
@@ -246,7 +247,7 @@ fn four_39_is_not_the_rate_of_a_face() {
         let (mut wanted, mut printed, mut right) = (vec![], vec![], vec![]);
         for (t, triangle) in triangles.iter().enumerate() {
             for k in 0..3 {
-                // The triangle across, and the corners that are not on the edge.
+                // The triangle across the edge, and the corners opposite the edge.
                 let (a, b) = (triangle.sites[k], triangle.sites[(k + 1) % 3]);
                 let across = triangles.iter().position(|other| {
                     (0..3).any(|j| other.sites[j] == b && other.sites[(j + 1) % 3] == a)
@@ -284,7 +285,7 @@ fn four_39_is_not_the_rate_of_a_face() {
     });
 }
 
-/// Of velocities that are linear in the place, `U = L X` with `dL/dt = F - L^2`: the curl of an acceleration.
+/// For velocities linear in the position, `U = L X` with `dL/dt = F - L^2`: the curl of an acceleration.
 #[test]
 fn four_43_has_the_sign_of_the_divergence_reversed() {
     judge("(4.43)", |seed| {

@@ -1,5 +1,5 @@
-//! The smoothed depth and the repulsion of near particles, against dense linear algebra, sums over all pairs, known
-//! potentials and the linear theory of waves.
+//! The smoothed depth and the short-range repulsion, against dense linear algebra, sums over all pairs, known potentials and linear
+//! wave theory.
 
 use super::derivatives::{
     Plane, against_differences, against_duals, numbers, random, second_derivatives, seeds, setting,
@@ -13,7 +13,7 @@ use clebsch::mesh::{
 use clebsch::nalgebra::{DMatrix, DVector};
 use clebsch::saved::{Saved, Words};
 
-/// The bricks whose potentials are known.
+/// The brick lattice with known potentials.
 fn bricks() -> Vec<Plane> {
     lattice(
         &Domain::torus([1.0, 1.0]),
@@ -31,7 +31,7 @@ fn energy(at: &[Plane], m: &[f64], alpha: f64) -> f64 {
     m.iter().zip(&phi).map(|(m, p)| m * p / 2.0).sum()
 }
 
-/// The solution against a dense one with the stiffness of the triangles, assembled by their gradients.
+/// Compares the solution with a dense solution, whose stiffness is assembled from triangle gradients.
 #[test]
 fn the_depth_solves_its_equation() {
     for (count, alpha) in [(1, 0.3), (3, 0.2), (40, 0.0), (40, 0.1), (40, 3.0)] {
@@ -69,13 +69,13 @@ fn the_depth_solves_its_equation() {
         let exact = matrix.lu().solve(&DVector::from_column_slice(&m)).unwrap();
         let size = exact.amax();
         for a in 0..count {
-            // The residual of the iteration times the condition of the matrix.
+            // The residual of the iteration times the condition number of the matrix.
             assert!(
                 (phi[a] - exact[a]).abs() < 1e-9 * size,
                 "{count} {alpha} {a}"
             );
         }
-        // Once more, from what is known.
+        // Once more, from the stored solution.
         depth.value(&at, &mut phi).unwrap();
         assert_eq!(depth.products().0, 0);
     }
@@ -104,7 +104,7 @@ fn depths_pull_back() {
             let mut dual = helmholtz_depth::<Dual<1>>::new(&setting, (&duals, alpha)).unwrap();
             let multiple: Vec<f64> = m.iter().map(|m| -0.37 * m).collect();
             for (seed, second) in [(seeds(count), true), (multiple, false)] {
-                // What an iteration leaves, over the step.
+                // The residual of the iteration, divided by the difference step.
                 against_differences(&mut depth, &at, &seed, 2e-4, 1e-8);
                 against_duals(&mut depth, &mut dual, &at, &seed);
                 assert_eq!(depth.products().1 > 0, second);
@@ -134,7 +134,7 @@ fn potentials_are_the_known_ones() {
     assert!((found - 0.513_159_242_694).abs() < 1e-11, "{found}");
 }
 
-/// The core against a sum over all copies of all pairs, for radii up to half of the domain.
+/// The core against a sum over all pairs and all their copies, for radii up to half of the domain.
 #[test]
 fn the_core_is_the_sum_over_pairs() {
     let lengths = [1.0, 0.7];
@@ -192,7 +192,7 @@ fn the_core_is_the_sum_over_pairs() {
     }
 }
 
-/// Half of `g sum m phi`, or of `g sum m^2/A` where nothing is smoothed: the accelerations of particles.
+/// Accelerations of particles for `g/2 sum m phi`, or for `g/2 sum m^2/A` without smoothing.
 fn accelerations(at: &[Plane], m: &[f64], alpha: Option<f64>) -> Vec<Plane> {
     let setting = setting([1.0, 1.0], at.len());
     let mut values = vec![0.0; at.len()];
@@ -218,7 +218,7 @@ fn accelerations(at: &[Plane], m: &[f64], alpha: Option<f64>) -> Vec<Plane> {
     gradient.iter().zip(m).map(|(g, m)| -g / *m).collect()
 }
 
-/// A lake of equal depth stays at rest on uneven meshes, and forces add up to nothing on any.
+/// A lake of constant depth stays at rest on irregular meshes, and forces sum to zero on any mesh.
 #[test]
 fn a_lake_stays_at_rest() {
     let domain = Domain::torus([1.0, 1.0]);
@@ -230,7 +230,7 @@ fn a_lake_stays_at_rest() {
         for alpha in [None, Some(alpha)] {
             let all = accelerations(&at, &m, alpha);
             let largest = clebsch::scalar::largest(all.iter().map(|a| a.norm()));
-            // Rounding of forces of the size of c^2/dx.
+            // Rounding errors of forces of size c^2/dx.
             assert!(largest < 1e-12 * n as f64, "{n} {alpha:?}: {largest}");
         }
         let mut core =
@@ -239,7 +239,7 @@ fn a_lake_stays_at_rest() {
         let mut out = vec![1.0; at.len()];
         core.value(&at, &mut out).unwrap();
         assert!(out.iter().all(|x| *x == 0.0));
-        // A heap instead.
+        // A non-constant depth.
         let m = vec![1.0 / at.len() as f64; at.len()];
         let sum: Plane = accelerations(&at, &m, Some(alpha))
             .iter()
@@ -274,7 +274,7 @@ fn wave(at: &[Plane], alpha: Option<f64>, transverse: bool) -> f64 {
     square.abs().sqrt().copysign(square) / k
 }
 
-/// Speeds of waves on hexagons and squares, and that shear is not resisted.
+/// Wave speeds on hexagons and squares; shear meets no resistance.
 #[test]
 fn waves_have_the_known_speeds() {
     let domain = Domain::torus([1.0, 1.0]);
@@ -301,7 +301,7 @@ fn waves_have_the_known_speeds() {
     }
 }
 
-/// A steady shear at random places: ordered motion is kept, particles keep apart, energy is conserved.
+/// A steady shear from random positions: the flow stays ordered, particles stay apart, energy is conserved.
 #[test]
 fn steady_shear_keeps_its_order() {
     let n = 24;
@@ -356,7 +356,7 @@ fn steady_shear_keeps_its_order() {
     let mut mesh = Voronoi::new(&domain, n * n).unwrap();
     let (mut first, mut spread, mut nearest) = (None, 0.0_f64, 1.0_f64);
     push(&at, &mut velocity, 0.5 * dt);
-    // Each bound is a little beyond what one seed gives; after some time motions of different seeds part.
+    // Each bound is slightly beyond the value for one seed; later, motions of different seeds diverge.
     for (from, until, kept) in [(0, 1, 0.997), (1, 2, 0.98), (2, 5, 0.85)] {
         for _ in from * steps..until * steps {
             for (x, v) in at.iter_mut().zip(&velocity) {
@@ -380,7 +380,7 @@ fn steady_shear_keeps_its_order() {
     assert!(nearest >= 0.45, "{nearest}");
 }
 
-/// The second moment makes a solid of the fluid: transverse waves.
+/// The second-moment energy gives the fluid a shear stiffness: transverse waves.
 #[test]
 fn second_moments_resist_shear() {
     let domain = Domain::torus([1.0, 1.0]);
@@ -394,7 +394,7 @@ fn second_moments_resist_shear() {
         .map(|x| Plane::new(x[0], x[1] + 1e-5 * (k * x[0]).sin()))
         .collect();
     moment.value(&moved, &mut out).unwrap();
-    // (chi g / dx^2)/2 of each.
+    // (chi g / dx^2)/2 for each particle.
     let seed = vec![0.05 * at.len() as f64; at.len()];
     moment.pull_back(&moved, &seed, &mut gradient).unwrap();
     let (mut work, mut norm) = (0.0, 0.0);
@@ -407,7 +407,8 @@ fn second_moments_resist_shear() {
     assert!((speed - 0.0704).abs() < 2e-4, "{speed}");
 }
 
-/// Threads change no bit, of depths, derivatives and flips (with the feature `rayon`; without, there is one).
+/// The number of threads does not change a bit of depths, derivatives and flips (with the feature `rayon`; otherwise there is one
+/// thread).
 #[test]
 fn threads_change_no_bit() {
     let domain = Domain::torus([1.0, 1.0]);
@@ -437,7 +438,7 @@ fn threads_change_no_bit() {
     }
 }
 
-/// What is written down and put back into a depth made anew goes on to the same bits; what is no mesh is refused.
+/// A new depth with restored data continues bit for bit; data that do not describe a mesh are rejected.
 #[test]
 fn a_resumed_mesh_goes_on_to_the_same_bits() {
     let at = bricks();
@@ -475,7 +476,7 @@ fn a_resumed_mesh_goes_on_to_the_same_bits() {
         resumed.words(&mut words);
         (words.all_put(), resumed)
     };
-    // The last step once more, and others.
+    // Repeats the last step, then makes further steps.
     for until in [200, 260] {
         let (fits, mut resumed) = put(list.clone());
         assert!(fits);
@@ -488,13 +489,13 @@ fn a_resumed_mesh_goes_on_to_the_same_bits() {
         list[place] = word;
         let (fits, mut resumed) = put(list);
         assert!(!fits, "{place}");
-        // Of use all the same.
+        // The depth works after a rejected restore.
         let mut phi = vec![0.0; 144];
         resumed.value(&at, &mut phi).unwrap();
     }
 }
 
-/// Every functional with particles that move by dual numbers, the smoothed depth with and without a second solution.
+/// Every functional with particles that move by dual numbers; the smoothed depth with and without a second solution.
 #[test]
 fn second_derivatives_are_symmetric() {
     let jitter = Jitter { size: 0.3, seed: 8 };
@@ -520,7 +521,7 @@ fn second_derivatives_are_symmetric() {
         let mut depth = helmholtz_depth::<f64>::new(&setting, (&m, 0.2)).unwrap();
         let data = (&duals[..], constant(0.2));
         let mut dual = helmholtz_depth::<Dual<1>>::new(&setting, data).unwrap();
-        // What an iteration leaves, over the step of the differences.
+        // The residual of the iteration, divided by the difference step.
         second_derivatives(&mut depth, &mut dual, &at, &seed, 1e-6);
     }
 }

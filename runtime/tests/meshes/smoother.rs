@@ -1,5 +1,5 @@
-//! Depths that are smoothed twice, or by a kernel: the equations they solve, exact derivatives, lakes at rest, waves, and
-//! what becomes of forces where neighbours change.
+//! Depths smoothed twice or by a kernel: their equations, exact derivatives, lakes at rest, waves, and the continuity of forces at
+//! a change of neighbours.
 
 use super::derivatives::{
     Plane, against_differences, against_duals, numbers, random, second_derivatives, seeds, setting,
@@ -13,7 +13,7 @@ use clebsch::mesh::{
 use clebsch::nalgebra::SVector;
 use clebsch::saved::{Saved, Words};
 
-/// A smoothed depth in plain numbers.
+/// A smoothed depth over plain numbers.
 trait Depth:
     Functional<f64, 2, Argument = Plane> + for<'a> Functional<f64, 2, Data<'a> = (&'a [f64], f64)>
 {
@@ -53,7 +53,7 @@ fn accelerations<F: Depth>(at: &[Plane], m: &[f64], alpha: f64) -> Vec<Plane> {
     gradient.iter().zip(m).map(|(g, m)| -g / *m).collect()
 }
 
-/// Smoothing twice is smoothing once what areas make of the depth that is smoothed once.
+/// Smoothing twice equals smoothing once with the masses from the areas and the once-smoothed depth.
 #[test]
 fn twice_is_once_and_once_more() {
     for (count, alpha) in [(1, 0.3), (40, 0.0), (40, 0.1), (40, 0.7)] {
@@ -69,14 +69,14 @@ fn twice_is_once_and_once_more() {
         let mut mesh = Voronoi::new(&Domain::torus([1.0, 1.0]), count).unwrap();
         let back = helmholtz_twice::masses(&mut mesh, &at, alpha, &found).unwrap();
         for a in 0..count {
-            // Residuals of 1e-12 times the condition of the matrices.
+            // Residuals of 1e-12 times the condition number of the matrices.
             assert!((found[a] - expected[a]).abs() < 1e-9 * expected[a].abs().max(1.0));
             assert!((back[a] - m[a]).abs() < 1e-9, "{a}: {} {}", back[a], m[a]);
         }
     }
 }
 
-/// The equation of the kernel's depth, by sums over all pairs.
+/// The equation of the kernel depth, by sums over all pairs.
 #[test]
 fn the_kernels_depth_solves_its_equation() {
     let lengths = [1.0, 1.0];
@@ -105,7 +105,8 @@ fn the_kernels_depth_solves_its_equation() {
     }
 }
 
-/// Both, of places by differences and dual numbers, with seeds that are multiples of the masses and others.
+/// Derivatives of both depths with respect to positions, by differences and dual numbers, with seeds proportional to the masses and
+/// other seeds.
 #[test]
 fn they_pull_back() {
     fn check<R, D>(new: impl Fn(&[f64], f64, [f64; 2]) -> (R, D))
@@ -124,8 +125,8 @@ fn they_pull_back() {
             for alpha in [0.0, 0.3] {
                 let (mut depth, mut dual) = new(&m, alpha, lengths);
                 for seed in [seeds(at.len()), multiple.clone()] {
-                    // Differences see the iterations, 1e-12 times the condition of both matrices over the step, and their own
-                    // order where particles are near: 5e-8 of either.
+                    // The error of differences has two parts of 5e-8: the iteration residual 1e-12 times both condition numbers
+                    // over the step, and the truncation error for close particles.
                     against_differences(&mut depth, &at, &seed, 5e-4, 1e-7);
                     against_duals(&mut depth, &mut dual, &at, &seed);
                 }
@@ -152,7 +153,7 @@ fn they_pull_back() {
     });
 }
 
-/// A lake of equal depth stays at rest on uneven meshes, and forces add up to nothing on any.
+/// A lake of constant depth stays at rest on irregular meshes, and forces sum to zero on any mesh.
 #[test]
 fn a_lake_stays_at_rest() {
     fn check<F: Depth>(n: usize, alpha: f64) {
@@ -162,7 +163,7 @@ fn a_lake_stays_at_rest() {
         area.value(&at, &mut m).unwrap();
         let all = accelerations::<F>(&at, &m, alpha);
         let most = clebsch::scalar::largest(all.iter().map(|a| a.norm()));
-        // Rounding of forces of the size of c^2/dx.
+        // Rounding errors of forces of size c^2/dx.
         assert!(most < 1e-12 * n as f64, "{n}: {most}");
         let m = vec![1.0 / (n * n) as f64; n * n];
         let all = accelerations::<F>(&at, &m, alpha);
@@ -201,8 +202,8 @@ fn wave<F: Depth>(at: &[Plane], alpha: f64, transverse: bool) -> f64 {
     square.abs().sqrt().copysign(square) / k
 }
 
-/// Waves on a lattice are smoothed once by a factor and twice by its square; a kernel's are those of the dispersion relation up
-/// to the square of the distance. Shear is not resisted.
+/// On a lattice, smoothing once multiplies waves by a factor and smoothing twice by its square. The kernel follows the dispersion
+/// relation up to the square of the particle distance. Shear meets no resistance.
 #[test]
 fn waves_are_smoothed_twice() {
     let domain = Domain::torus([1.0, 1.0]);
@@ -213,7 +214,7 @@ fn waves_are_smoothed_twice() {
         let bare = wave::<helmholtz_depth<f64>>(&at, 0.0, false);
         let once = wave::<helmholtz_depth<f64>>(&at, alpha, false);
         let twice = wave::<helmholtz_twice<f64>>(&at, alpha, false);
-        // Amplitudes of 1e-5 change speeds by their squares.
+        // Amplitudes of 1e-5 change speeds by their square.
         assert!((twice * bare - once * once).abs() < 1e-6, "{n}: {twice}");
         let kernel = wave::<kernel_depth<f64>>(&at, alpha, false);
         let exact = 1.0 / (1.0 + (core::f64::consts::TAU * alpha).powi(2)).sqrt();
@@ -229,8 +230,8 @@ fn waves_are_smoothed_twice() {
     assert!(apart[0] < 0.05 && apart[1] < apart[0] / 3.0, "{apart:?}");
 }
 
-/// Discrete speeds of waves are those of the dispersion relation up to the square of the distance of particles, unsmoothed, smoothed
-/// once and twice.
+/// Discrete wave speeds converge to the dispersion relation with the square of the particle distance, unsmoothed, smoothed once and
+/// twice.
 #[test]
 fn speeds_approach_the_dispersion_relation_with_the_square_of_the_distance() {
     let domain = Domain::torus([1.0, 1.0]);
@@ -250,15 +251,15 @@ fn speeds_approach_the_dispersion_relation_with_the_square_of_the_distance() {
     }
 }
 
-/// Where four particles are on a circle, their neighbours change: the force of a smoothed depth jumps, less if it is smoothed
-/// twice, and that of a kernel's depth does not.
+/// If four particles lie on a circle, their neighbours change. The force of a smoothed depth jumps there, less if it is smoothed
+/// twice; the force of a kernel depth is continuous.
 #[test]
 fn only_the_kernels_force_is_continuous_where_neighbours_change() {
     let n = 12;
     let mut at = bricks([1.0, 1.0], [n, n], 0.3);
     let m = masses(n * n);
     let m: Vec<f64> = m.iter().map(|m| m / (n * n) as f64).collect();
-    // Where it flips, by bisection: the number of flips that a mesh has made on the way.
+    // Finds the flip by bisection on the number of flips of a mesh.
     let mut mesh = Voronoi::new(&Domain::torus([1.0, 1.0]), n * n).unwrap();
     let start = at[50];
     let place = |s: f64| start + Plane::new(0.6, 0.35) * (s / n as f64);
@@ -280,7 +281,7 @@ fn only_the_kernels_force_is_continuous_where_neighbours_change() {
             low = middle;
         }
     }
-    // The jump over 2e-6 of a distance, beside a change over as much elsewhere.
+    // The jump over a distance of 2e-6, against the change over the same distance elsewhere.
     let mut jump = |force: &dyn Fn(&[Plane]) -> Vec<Plane>| {
         let mut change = |s: f64| {
             at[50] = place(s - 1e-6);
@@ -299,7 +300,7 @@ fn only_the_kernels_force_is_continuous_where_neighbours_change() {
     assert!(once > 10.0 && kernel < 3.0, "{once} {twice} {kernel}");
 }
 
-/// Threads change no bit (with the feature `rayon`), and what is written down goes on to the same bits.
+/// Neither the number of threads (with the feature `rayon`) nor saving and restoring changes a bit.
 #[test]
 fn threads_and_resuming_change_no_bit() {
     let n = 64;

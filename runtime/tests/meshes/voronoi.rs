@@ -1,5 +1,5 @@
-//! Voronoi cells on the periodic plane, by formulas that share nothing with the mesh: cells cut out of half-planes,
-//! differences of areas and moments, known potentials.
+//! Voronoi cells on the periodic plane, against independent formulas: cells cut out of half planes, differences of areas and
+//! moments, known potentials.
 
 use super::cut::cell;
 use super::derivatives::{
@@ -16,7 +16,7 @@ fn areas_of(lengths: [f64; 2], at: &[Plane]) -> Result<Vec<f64>, MeshError> {
     Ok(out)
 }
 
-/// Sites of 1 to 60 particles, by mesh and by cutting: areas, centres of mass, moments, and the sum of areas.
+/// Between 1 and 60 particles, by mesh and by cutting: areas, centres of mass, moments, and the sum of areas.
 #[test]
 fn cells_are_those_cut_out_of_half_planes() {
     for count in (1..=20).chain([33, 60]) {
@@ -25,7 +25,7 @@ fn cells_are_those_cut_out_of_half_planes() {
             let at = random(lengths, count, seed);
             let mut mesh = Voronoi::<f64>::new(&Domain::torus(lengths), count).unwrap();
             mesh.update(&at).unwrap();
-            // What is made anew has no edge to flip.
+            // A new mesh needs no flips.
             assert_eq!(mesh.counted().flips, 0);
             let mut areas = vec![0.0; count];
             let mut centres = vec![Plane::zeros(); count];
@@ -58,7 +58,7 @@ fn cells_are_those_cut_out_of_half_planes() {
     }
 }
 
-/// Of lattices, where every in-circle test is a tie, areas are equal.
+/// Lattices, where every in-circle test is a tie, have equal areas.
 #[test]
 fn lattices_have_equal_cells() {
     for n in 1..12 {
@@ -75,8 +75,8 @@ fn lattices_have_equal_cells() {
     }
 }
 
-/// Moving meshes are those made anew: areas agree where every particle goes its own way for many steps, across the
-/// seams and many periods away.
+/// An updated mesh equals a new one: areas agree for particles that move independently for many steps, across the seams and many
+/// periods away.
 #[test]
 fn flips_and_making_anew_give_the_same_cells() {
     let lengths = [1.0, 0.8];
@@ -94,7 +94,7 @@ fn flips_and_making_anew_give_the_same_cells() {
             }
             followed.value(&at, &mut out).unwrap();
             let sum: f64 = out.iter().sum();
-            // Of places some periods away.
+            // Positions several periods away.
             assert!((sum / 0.8 - 1.0).abs() < 2e-13, "{count} {step} {k}: {sum}");
             if k % 10 == 0 {
                 let anew = areas_of(lengths, &at).unwrap();
@@ -105,13 +105,13 @@ fn flips_and_making_anew_give_the_same_cells() {
         }
         let counted = followed.mesh().counted();
         println!("{count} particles, {step}: {counted:?}");
-        // Long steps turn triangles over.
+        // Large steps invert triangles.
         assert_eq!(counted.flips > 0, step < 0.05, "{counted:?}");
     }
 }
 
-/// Rows of a lattice slide past one another by exact parts of their distance, so that every in-circle test is a tie time
-/// and again: cells are those of a mesh made anew, of equal areas where rows are brought to a lattice.
+/// Rows of a lattice slide past each other by exact fractions of their distance, so that every in-circle test is repeatedly a tie.
+/// Cells equal those of a new mesh, and areas are equal if the rows form a lattice.
 #[test]
 fn rows_slide_through_ties() {
     let n = 8;
@@ -123,7 +123,7 @@ fn rows_slide_through_ties() {
         let anew = areas_of([1.0, 1.0], &at).unwrap();
         for (a, area) in out.iter().enumerate() {
             assert!((area - anew[a]).abs() < 1e-14);
-            // Every row has neighbours at the same shift on either side.
+            // Every row has the same shift to both neighbours.
             assert!((area - 1.0 / 64.0).abs() < 1e-14, "{step} {a}: {area}");
         }
         for (k, x) in at.iter_mut().enumerate() {
@@ -138,7 +138,7 @@ fn rows_slide_through_ties() {
     assert!(counted.flips > 500 && counted.rebuilds == 1, "{counted:?}");
 }
 
-/// Degenerate places are refused with their numbers, and the mesh goes on afterwards.
+/// Degenerate positions are an error that names the particles, and the mesh continues to work.
 #[test]
 fn degenerate_places_are_refused() {
     let mut area = voronoi_area::<f64>::new(&setting([1.0, 1.0], 4), ()).unwrap();
@@ -194,7 +194,7 @@ fn degenerate_places_are_refused() {
     assert!(voronoi_area::<f64>::new(&basin, ()).is_err());
 }
 
-/// Sites on few lines, all collinear, on a circle, or in clusters: no hang, no panic, the right sum.
+/// Sites on few lines, all collinear, on a circle, or in clusters: the mesh terminates without panic, with the right sum.
 #[test]
 fn special_positions_are_meshed() {
     let mut next = numbers(3);
@@ -238,7 +238,7 @@ fn special_positions_are_meshed() {
         match areas_of([1.0, 1.0], at) {
             Ok(areas) => {
                 let sum: f64 = areas.iter().sum();
-                // Clusters have sides of 1e-13 of the domain, and circumcentres far from them.
+                // Clusters have a size of 1e-13 of the domain, and circumcentres far away.
                 assert!((sum - 1.0).abs() < 1e-13, "set {k}: {sum}");
                 assert!(areas.iter().all(|a| a.is_finite()), "set {k}");
             }
@@ -248,7 +248,7 @@ fn special_positions_are_meshed() {
                 assert!(apart.norm() < 1e-14, "set {k}: {first} {second}");
             }
             Err(MeshError::Flat { sites }) => {
-                // Sides are of a billionth of the domain or less.
+                // Edges of at most one billionth of the domain.
                 let [a, b, c] = sites.map(|site| at[site]);
                 let shortest = [a - b, b - c, c - a].map(|x| x.map(|x| x - x.round()).norm());
                 assert!(shortest.iter().any(|x| *x < 1e-8), "set {k}: {shortest:?}");
@@ -282,7 +282,7 @@ fn second_moments_pull_back() {
     }
 }
 
-/// Half of `sum m^2/A`, and what second moments add, on bricks: known to twelve digits.
+/// Half of `sum m^2/A`, and the second-moment term, on bricks: known to twelve digits.
 #[test]
 fn potentials_are_the_known_ones() {
     let domain = Domain::torus([1.0, 1.0]);
@@ -298,7 +298,7 @@ fn potentials_are_the_known_ones() {
     assert!((stiff - 0.540_546_384_102).abs() < 1e-12, "{stiff}");
 }
 
-/// Starts: as many particles as said, cells of a relaxed start nearly equal.
+/// Initial positions: the requested number of particles, and nearly equal cells after relaxation.
 #[test]
 fn starts_are_even() {
     let domain = Domain::torus([1.0, 1.0]);

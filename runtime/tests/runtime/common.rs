@@ -1,5 +1,5 @@
-//! What the tests share: a small deterministic random source, bodies, the residual of the
-//! Moser-Veselov equation written without the solver's formulas.
+//! Shared by the tests: a small deterministic random source, bodies, and the residual of the Moser-Veselov equation without the
+//! formulas of the solver.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
 use clebsch::linalg::{axial_of_difference, hat};
@@ -36,7 +36,7 @@ impl Random {
         Rotation::exp(&(self.vector() * 3.0))
     }
 
-    /// A Poinsot matrix: diagonal in even cases, flat (singular) in every eighth.
+    /// A random Poinsot matrix: diagonal in even cases, flat (singular) in every eighth.
     pub fn poinsot(&mut self, case: u64) -> Matrix3<f64> {
         let mut j = Vector3::new(self.unit(), self.unit(), self.unit()) * 2.0;
         if case.is_multiple_of(8) {
@@ -51,7 +51,7 @@ impl Random {
     }
 }
 
-/// The body with these principal moments of inertia, its axes turned by the rotation vector.
+/// The body with these principal moments of inertia, with axes rotated by the rotation vector.
 pub fn body(moments: [f64; 3], turned: Vector3<f64>) -> Poinsot {
     let half_trace = moments.iter().sum::<f64>() / 2.0;
     let j = Matrix3::from_diagonal(&Vector3::from(moments.map(|i| half_trace - i)));
@@ -68,7 +68,7 @@ pub fn residual<T: Real>(j: &Matrix3<T>, omega: &Rotation<T>, h_n: &Vector3<T>) 
     largest(&(axial_of_difference(&a) - *h_n))
 }
 
-/// Largest entry, derivative parts and lanes included.
+/// Largest absolute entry, including derivatives and lanes.
 pub fn largest<T: Real>(v: &Vector3<T>) -> f64 {
     v.iter()
         .map(|x| x.magnitude())
@@ -83,8 +83,8 @@ pub fn lift_matrix<T: Real>(m: &Matrix3<f64>) -> Matrix3<T> {
     m.map(T::from_f64)
 }
 
-/// The independent solver of the tests: Newton's method on the quaternion form
-/// `q0 I Q + Q x I Q = h N / 2`, `q0 = sqrt(1 - |Q|^2)`.
+/// An independent solver for the tests: Newton's method on the quaternion form `q0 I Q + Q x I Q = h N / 2`,
+/// `q0 = sqrt(1 - |Q|^2)`.
 pub fn quaternion_newton(j: &Matrix3<f64>, h_n: &Vector3<f64>) -> Vector3<f64> {
     let inertia = Matrix3::from_diagonal_element(j.trace()) - j;
     let mut q = inertia.lu().solve(&(h_n * 0.5)).expect("regular inertia");

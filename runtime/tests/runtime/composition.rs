@@ -1,4 +1,4 @@
-//! Compositions of a symmetric step: their factors, and their order on a nonlinear problem.
+//! Compositions of a symmetric step: their coefficients, and their order on a nonlinear problem.
 
 use clebsch::integrate::{Composition, CompositionOrder, Reversible, Stepper};
 use clebsch::{DoubleDouble, Real, StartError, StepError};
@@ -11,7 +11,7 @@ fn factors_are_symmetric_and_meet_the_conditions_of_their_order() {
         let factors = order.factors();
         let power = |p: i32| factors.iter().map(|g| g.powi(p)).sum::<f64>();
         assert!(factors.iter().eq(factors.iter().rev()));
-        // Rounding of some seventeen terms below 1.
+        // Rounding error of about seventeen terms below 1.
         assert!((power(1) - 1.0).abs() < 1e-15, "{order}");
         for p in (3..order.number()).step_by(2) {
             let p = p as i32;
@@ -20,7 +20,7 @@ fn factors_are_symmetric_and_meet_the_conditions_of_their_order() {
     }
 }
 
-/// A pendulum by the Stoermer-Verlet method.
+/// A pendulum by the Störmer-Verlet method.
 struct Pendulum;
 
 #[derive(Clone, Copy, Debug)]

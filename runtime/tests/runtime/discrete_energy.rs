@@ -1,6 +1,6 @@
-//! The discrete energy of a step is how fast its action falls as the step grows, both nodes held
-//! fixed: also where a quantity is no action of the group on a constant and is advanced step by
-//! step, which reads other quantities, parameters and the velocity.
+//! The discrete energy of a step is minus the derivative of its action with respect to the step size, with both nodes fixed. This
+//! also holds for a quantity that is not a group action on a constant. Such a quantity is advanced step by step, and depends on
+//! other quantities, parameters and the velocity.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(non_snake_case)]
@@ -39,7 +39,7 @@ clebsch::model! {
     }
 }
 
-/// One step from a random state; `$stiff` is the coefficient of the square.
+/// One step from a random state; `$stiff` is the coefficient of the quadratic term.
 macro_rules! compared {
     ($module:ident, $model:ident, $initial:ident, $parameters:ident, $stiff:expr $(, $c:ident)?) => {{
         use $module::{$initial, $model, $parameters};
@@ -58,13 +58,12 @@ macro_rules! compared {
             let before = state;
             model.step(&mut state, &mut work).expect("solvable");
             let Ω = before.Λ().matrix().transpose() * state.Λ().matrix();
-            // What the constraints say.
+            // Values from the constraints.
             let (next_vertical, next_load) = (Ω.transpose() * Γ, Ω.transpose() * (Y + Γ * s));
             let rounding = 1e-14 * (1.0 + Γ.norm() + Y.norm());
             assert!((model.Γ(&state) - next_vertical).norm() < rounding);
             assert!((model.Y(&state) - next_load).norm() < rounding);
-            // Terms at a node count half at each end of the edge; constants of the kinetic energy,
-            // its value at rest, are dropped.
+            // Nodal terms count half at each end of the edge; the constant of the kinetic energy at zero velocity is dropped.
             let action = |h: f64| {
                 let still = (J.trace() - $stiff * 9.0) / h;
                 let kinetic = -(J * Ω).trace() / h + $stiff * Ω.trace().powi(2) / h + still;
@@ -74,8 +73,8 @@ macro_rules! compared {
             let δ = 1e-3 * h;
             let expected = (4.0 * slope(δ) - slope(2.0 * δ)) / 3.0;
             let found = model.discrete_energy(h, &before, &state);
-            // Extrapolated central differences are off by 4 (δ/h)^4 of the terms of the slope,
-            // rounding of the action over δ adds less.
+            // Extrapolated central differences have an error of 4 (δ/h)^4 of the terms of the slope; the rounding of the action
+            // divided by δ is smaller.
             let size = (J.trace() + 9.0 * $stiff) / (h * h);
             assert!((found - expected).abs() < 1e-11 * size, "{found} {expected}");
         }

@@ -1,5 +1,5 @@
-//! Motions that a clock drives: an advected number that goes on with the step. Steps from random states are those of Störmer
-//! and Verlet with the force of the time at the node.
+//! Motions driven by a clock, an advected scalar that increases by the step size. Steps from random states equal Störmer-Verlet
+//! steps with the force at the time of the node.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(non_snake_case)]
@@ -59,19 +59,19 @@ fn a_pendulum_on_a_lift_steps_as_by_hand() {
             t += h;
             p += kick(q, t);
             let [found, momentum] = [state.q().matrix()[0], state.momentum().0[0]];
-            // Five steps of a few roundings each.
+            // Five steps with a few rounding errors each.
             assert!((found - q).abs() < 1e-14 * (1.0 + q.abs()), "{found} {q}");
             assert!(
                 (momentum - p).abs() < 1e-14 * (1.0 + p.abs()),
                 "{momentum} {p}"
             );
-            // The time a step later would be seen.
+            // A force evaluated one step later would differ.
             assert!((kick(q, t) - kick(q, t + h)).abs() > 0.0);
         }
     }
 }
 
-/// The torque at a node is that of its time: half of it at the start of a step, half at its end.
+/// The torque at a node uses the time of the node: half of it at the start of a step, half at the end.
 #[test]
 fn a_top_in_gravity_that_grows_takes_the_torque_of_each_node() {
     let mut random = Random(12);
@@ -88,7 +88,7 @@ fn a_top_in_gravity_that_grows_takes_the_torque_of_each_node() {
         let before = state;
         model.step(&mut state, &mut work).expect("solvable");
         let [R0, R1] = [before.Λ(), state.Λ()].map(|r| r.matrix());
-        // In space: the change of the momentum is the mean of the torques at both ends, times the step.
+        // In space, the change of the momentum is the mean of the torques at both ends times the step size.
         let torque = |R: Matrix3<f64>, t: f64| -(t * R * gU).cross(&z);
         let change = 0.5 * h * (torque(R0, t) + torque(R1, t + h));
         let [m0, m1] = [&before, &state].map(|s| s.spatial_momentum().0);

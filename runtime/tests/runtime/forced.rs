@@ -1,11 +1,11 @@
-//! The forced Moser-Veselov solver: residual up to the bound, refusal beyond it, special bodies.
+//! The forced Moser-Veselov solver: residual up to the bound, failure beyond it, special bodies.
 
 use super::common::{Random, body, quaternion_newton, residual};
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::solvers::moser_veselov::{forced, largest_step, reach};
 use clebsch::{Poinsot, PoinsotError, Rotation};
 
-/// Relative to the trace of `I`. A dozen roundings of products of that size; measured 1.5e-15.
+/// Relative to the trace of `I`: a dozen rounding errors of products of that size; measured 1.5e-15.
 const RESIDUAL: f64 = 4e-15;
 
 #[test]
@@ -35,7 +35,7 @@ fn residual_is_rounding_up_to_the_bound_and_nothing_is_accepted_beyond() {
         }
     }
     assert!(worst <= RESIDUAL, "{worst:e}");
-    // The principal branch never reaches half a turn.
+    // On the principal branch, the rotation angle is less than pi.
     assert!(least_scalar_part > 0.4, "{least_scalar_part}");
 }
 
@@ -49,7 +49,7 @@ fn an_independent_newton_finds_the_same_root() {
         let h_n = direction * (0.9 * random.unit() / reach(&body, &direction));
         let [_, x, y, z] = forced(&body, &h_n).expect("solvable").quaternion();
         let difference = Vector3::new(x, y, z) - quaternion_newton(&j, &h_n);
-        // The condition of the root at 0.9 of the bound costs one digit.
+        // At 0.9 of the bound, the condition number of the root costs one digit.
         assert!(difference.norm() < 2e-14, "case {case}: {difference}");
     }
 }
@@ -70,7 +70,7 @@ fn rotation_about_a_principal_axis_has_a_closed_form() {
                 // I sin(theta) = h m.
                 let expected = (h_m.asin() / 2.0).sin();
                 let q = forced(&body, &h_n).expect("solvable").quaternion();
-                // Two roundings, through the condition of the arc sine.
+                // Two rounding errors times the condition number of the arc sine.
                 let allowed = 4e-16 / (1.0 - h_m * h_m).sqrt();
                 assert!(
                     (q[axis + 1] - expected).abs() < allowed,
@@ -138,7 +138,7 @@ fn rest_is_the_identity_and_nan_is_refused() {
 fn the_largest_step_offered_can_be_made_and_hardly_more() {
     let body = body([3.5, 2.5, 2.0], Vector3::new(0.3, 0.1, -0.7));
     let (mu, torque) = (Vector3::new(4.0, -5.0, 3.0), Vector3::new(1.0, 7.0, -20.0));
-    // An edge momentum with half a kick, as forced steppers have: quadratic in the step.
+    // An edge momentum with half a kick, as in forced steppers: quadratic in the step size.
     let h_n = |h: f64| (mu + torque * (0.5 * h)) * h;
     let error = forced(&body, &h_n(1.0)).expect_err("too long");
     let largest = largest_step(1.0, |h| Some(reach(&body, &h_n(h))));
@@ -151,7 +151,7 @@ fn the_largest_step_offered_can_be_made_and_hardly_more() {
             .to_string()
             .contains("reduce the step size from 1 to at most")
     );
-    // Nothing to do, nothing possible.
+    // The first search succeeds at once, the second fails always.
     assert_eq!(largest_step(0.01, |h| Some(reach(&body, &h_n(h)))), 0.01);
     assert_eq!(largest_step(0.01, |_| None), 0.0);
 }
@@ -173,7 +173,7 @@ fn what_is_no_body_is_refused_with_numbers() {
             ..
         })
     ));
-    // Moments (1, 1, 3) break the triangle inequality.
+    // Moments (1, 1, 3) violate the triangle inequality.
     let Err(PoinsotError::Triangle {
         smallest,
         largest_moment,
@@ -202,7 +202,7 @@ fn a_million_random_problems_end_in_a_solution_or_an_error() {
     let mut random = Random(31);
     let (mut solved, mut refused, mut worst) = (0_u32, 0_u32, 0.0_f64);
     for case in 0..1_000_000_u64 {
-        // Moments over six decades, momenta over nine around what can be solved.
+        // Moments over six decades, and momenta over nine decades around the solvability bound.
         let scale = |random: &mut Random, decades: f64| 10_f64.powf(decades * random.symmetric());
         let mut j = random.poinsot(case);
         if case % 3 == 0 {
@@ -220,15 +220,15 @@ fn a_million_random_problems_end_in_a_solution_or_an_error() {
         match forced(&body, &h_n) {
             Ok(omega) => {
                 solved += 1;
-                // Rounding of `adj(I - kappa)` and `det(I - kappa)` is that of their largest terms,
-                // which may exceed what is left of them by the spread of the moments.
+                // The rounding errors of `adj(I - kappa)` and `det(I - kappa)` scale with their largest terms, which can exceed
+                // their values by the spread of the moments.
                 let moments = clebsch::linalg::symmetric_eigenvalues(&body.inertia());
                 let spread = moments[2] / moments[0];
                 worst = worst.max(residual(&j, &omega, &h_n) / (trace * spread));
             }
             Err(error) => {
                 refused += 1;
-                // At the bound itself either answer is right.
+                // Exactly at the bound, both outcomes are correct.
                 assert!(
                     error.ratio.is_nan() || error.ratio > 1.0 - 1e-9,
                     "case {case}: {error:?}"
@@ -245,7 +245,7 @@ fn a_million_random_problems_end_in_a_solution_or_an_error() {
 fn a_point_mass_is_refused_with_the_reason_and_the_way_out() {
     let mut random = Random(32);
     for case in 0..1000 {
-        // Over twelve decades, in axes of its own or along one that is given.
+        // Over twelve decades, along random axes or a given one.
         let size = 10_f64.powf(6.0 * random.symmetric());
         let a = match case % 4 {
             0 => Vector3::z(),
@@ -265,7 +265,7 @@ fn a_point_mass_is_refused_with_the_reason_and_the_way_out() {
         ] {
             assert!(said.contains(words), "{words}\n{said}");
         }
-        // The way out, with a bob of a thousandth of the length.
+        // The suggested remedy: a bob with a thousandth of the length.
         let bob = Matrix3::identity() * (a.norm_squared() * 1e-6);
         assert!(Poinsot::new(a * a.transpose() + bob).is_ok(), "{a}");
     }

@@ -1,4 +1,4 @@
-//! The free body: conservation over a million steps, published-grade reference numbers, refusal.
+//! The free body: conservation over a million steps, reference numbers, errors.
 
 use super::common::{Random, body};
 use clebsch::nalgebra::{Matrix3, Vector3};
@@ -7,8 +7,7 @@ use clebsch::{BodyMomentum, Poinsot, Rotation, SpatialMomentum};
 
 const H: f64 = 0.1;
 
-/// Worst relative drift of energy, `|mu|^2` and spatial momentum over `steps` steps, looked at
-/// every `every` steps.
+/// Largest relative drift of energy, `|mu|^2` and spatial momentum over `steps` steps, sampled every `every` steps.
 fn drift(body: &Poinsot, momentum: Vector3<f64>, steps: u64, every: u64) -> [f64; 3] {
     let inverse = body.inertia().try_inverse().expect("regular");
     let energy = |mu: &Vector3<f64>| 0.5 * mu.dot(&(inverse * mu));
@@ -48,7 +47,7 @@ fn a_million_steps_keep_energy_and_momentum() {
         for axes in [straight, turned] {
             let worst = drift(&body(moments, axes), momentum, 1_000_000, 37);
             for (name, drift) in ["energy", "|mu|^2", "spatial momentum"].iter().zip(worst) {
-                // 64 steps of unprojected rounding, measured below 5e-15.
+                // 64 steps of rounding without projection, measured below 5e-15.
                 assert!(drift < 1e-14, "{moments:?} {axes}: {name} {drift:e}");
             }
         }
@@ -61,9 +60,9 @@ fn close_to_the_bound_nothing_is_amplified() {
     for case in 0..40 {
         let body = Poinsot::new(random.poinsot(case)).expect("a body");
         let direction = random.vector();
-        // The attitude that `drift` starts with.
+        // The initial attitude of `drift`.
         let seen = SpatialMomentum(direction).to_body(&Random(9).rotation()).0;
-        // At the bound itself two roots meet, and what 64 steps of rounding do to the motion grows.
+        // At the bound two roots meet, and the motion amplifies the rounding of 64 steps more.
         for (share, allowed) in [(0.5, 2e-14), (0.9, 4e-14), (0.99, 1e-13)] {
             let momentum = direction * (share / reach(&body, &(seen * H)));
             let worst = drift(&body, momentum, 20_000, 7);
@@ -89,11 +88,11 @@ fn a_replaced_state_is_followed() {
     };
     let mut free = Free::start(&body, &start, &momentum, H).expect("slow enough");
     let first = run(&mut free, &momentum, 100);
-    // Back at the start, with the momentum kept or another.
+    // Back at the start, with the stored momentum or another one.
     assert_eq!(run(&mut free, &momentum, 100), first);
     let mut fresh = Free::start(&body, &start, &other, H).expect("slow enough");
     assert_eq!(run(&mut free, &other, 100), run(&mut fresh, &other, 100));
-    // A momentum that is too large is refused, and nothing has changed.
+    // A momentum that is too large is an error, and the state stays unchanged.
     let (before, mut attitude) = (free, start);
     let error = free.follow(&mut attitude, &SpatialMomentum(momentum.0 * 1e3));
     assert!(error.expect_err("too fast").ratio > 1.0);
@@ -154,8 +153,8 @@ fn equals_the_forced_solver_without_a_force() {
     }
 }
 
-/// Numbers from tests/reference/generate.py in the repository: momentum and attitude after 1 and 10
-/// steps, moments (2, 2, 1), momentum (0.1, 0, 1), h = 0.1, attitude the identity at the start.
+/// Numbers from tests/reference/generate.py in the repository: momentum and attitude after 1 and 10 steps, moments (2, 2, 1),
+/// momentum (0.1, 0, 1), h = 0.1, initial attitude the identity.
 #[test]
 #[allow(clippy::excessive_precision, reason = "the digits as computed")]
 fn reference_numbers_of_the_symmetric_top() {

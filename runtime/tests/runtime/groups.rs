@@ -1,4 +1,4 @@
-//! The laws every group keeps, checked by the same code for each, and the conventions of SO(3).
+//! Group laws, checked by the same code for every group, and the conventions of SO(3).
 
 use super::common::{Random, dd, largest, lift};
 use clebsch::linalg::hat;
@@ -8,10 +8,10 @@ use clebsch::{
     SpatialMomentum,
 };
 
-/// Nine entries, each with some four roundings of numbers of size 1, in Frobenius norm.
+/// Nine entries, each with about four rounding errors of numbers of order 1, in the Frobenius norm.
 const ROUNDING: f64 = 4e-15;
 
-/// Associativity, neutral element, inverses and membership, with `apart` as the distance.
+/// Checks associativity, the neutral element, inverses and membership, with `apart` as the distance.
 fn conforms<G: Group<f64> + PartialEq>(mut pick: impl FnMut() -> G, apart: impl Fn(&G, &G) -> f64) {
     for _ in 0..200 {
         let (a, b, c) = (pick(), pick(), pick());
@@ -27,7 +27,7 @@ fn conforms<G: Group<f64> + PartialEq>(mut pick: impl FnMut() -> G, apart: impl 
         let xi: Vec<f64> = (0..G::DIMENSION).map(|i| 0.1 + 0.05 * i as f64).collect();
         let moved = a.compose(&one.retract(&xi));
         assert!(apart(&a.retract(&xi), &moved) < ROUNDING);
-        // The other acts on the left, to first order as the group does.
+        // `retract_from_left` acts on the left, and equals the exponential to first order.
         assert!(apart(&a.retract_from_left(&[]), &a) < ROUNDING);
         let little: Vec<f64> = xi.iter().map(|x| 1e-6 * x).collect();
         let moved_from_left = one.retract(&little).compose(&a);
@@ -67,7 +67,7 @@ fn retraction_and_exponential_start_as_the_identity_plus_hat() {
         Rotation::exp(&xi),
     ] {
         let second = one + hat(&xi) + hat(&xi) * hat(&xi) * 0.5;
-        // What is left is of third order.
+        // The remaining error is of third order.
         assert!((moved.matrix() - second).norm() < 1e-12);
     }
 }
@@ -80,7 +80,7 @@ fn exponential_turns_by_the_length_of_its_argument() {
         let expected = Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
         assert!((matrix - expected).norm() < ROUNDING, "{angle}");
     }
-    // Lanes at rest and moving side by side; derivatives at rest; 30 digits.
+    // Lanes with and without rotation side by side; derivatives at zero; 30 digits.
     let lanes = Vector3::new(Lanes([0.0; 2]), Lanes([0.0, 2.0]), Lanes([0.0; 2]));
     let q = Rotation::exp(&lanes).quaternion();
     assert!((q[0].0[0] - 1.0).abs() + (q[0].0[1] - 1.0_f64.cos()).abs() < ROUNDING);
@@ -164,7 +164,7 @@ fn what_is_no_rotation_is_refused() {
     );
     assert!(Rotation::from_quaternion([1.0, 1e-3, 0.0, 0.0]).is_err());
     assert!(Rotation::from_quaternion([f64::INFINITY, 0.0, 0.0, 0.0]).is_err());
-    // Ten digits are accepted and made orthonormal.
+    // A matrix with ten digits is accepted and orthonormalised.
     let typed = m.map(|x| (x * 1e10).round() * 1e-10);
     let read = Rotation::from_matrix(&typed).expect("ten digits");
     assert!(read.distance_from_group() < ROUNDING);
@@ -198,14 +198,14 @@ fn an_element_that_is_no_number_is_far_from_its_group() {
     }
     assert!(Group::<f64>::distance_from_group(&(lost, own)).is_nan());
     assert!(Group::<f64>::distance_from_group(&(own, lost)).is_nan());
-    // Finite entries whose products are not.
+    // Finite entries whose products overflow.
     let overflowing =
         Matrix3::from_row_slice(&[1e200, -1e200, 0.0, 1e200, 1e200, 0.0, 0.0, 0.0, 1.0]);
     assert!(Rotation::from_matrix(&overflowing).is_err());
     assert!(Orthogonal::<3>::from_matrix(&overflowing).is_err());
 }
 
-/// Messages count from 1, as files and plots do; the fields of errors are indices.
+/// Messages count from 1, like files and plots; the fields of errors are zero-based indices.
 #[test]
 fn messages_count_from_one() {
     use clebsch::Problem;

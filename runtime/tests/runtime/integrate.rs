@@ -1,4 +1,4 @@
-//! The loop: samples where they belong, drift at every step, errors where they happen.
+//! The integration loop: samples at the right nodes, drift at every step, errors at the right node.
 
 use clebsch::card::{Card, Conserved, Field, Invariant, Kind, OpenError, Settings, Trajectory};
 use clebsch::integrate::{Observer, RunError, Watched, run, run_until_stopped};
@@ -49,7 +49,7 @@ static CARD: Card = Card {
     sized: &|_| None,
 };
 
-/// Counts; its invariant dips at node 5 only; refuses to go beyond `stop`.
+/// Counts steps; its invariant deviates at node 5 only, and it fails beyond `stop`.
 struct Counter {
     node: u64,
     stop: u64,
@@ -120,15 +120,15 @@ fn samples_start_stride_and_end_and_drift_between_samples() {
     assert_eq!(notes.progress.last(), Some(&(10, 10)));
     assert_eq!((summary.steps, summary.node, summary.time), (10, 10, 5.0));
     assert_eq!(summary.samples, 4);
-    // The dip at node 5 lies between the nodes that were looked at.
+    // The deviation at node 5 is between the checked nodes.
     assert_eq!(summary.drifts[0].worst, 0.0);
     assert_eq!(summary.drifts[0].last, 0.0);
     assert_eq!(summary.drifts[0].scale, 4.0);
-    // A short run without samples looks at every node.
+    // A short run without samples checks every node.
     let mut other = (CARD.open)(&[], &[], Settings::step(0.5)).expect("opens");
     let all = run(other.as_mut(), 10, 0, &mut Notes::default()).expect("runs");
     assert_eq!((all.samples, all.drifts[0].worst), (2, 0.5));
-    // Going on from there.
+    // Continues from there.
     let again = run(counter.as_mut(), 3, 0, &mut notes).expect("runs");
     assert_eq!((again.node, again.samples), (13, 2));
     assert_eq!(notes.nodes, [0, 4, 8, 10, 10, 13]);
@@ -157,23 +157,23 @@ fn what_was_done_before_a_run_stopped_is_told() {
     let mut notes = Notes::default();
     let (summary, stopped) = run_until_stopped(&mut counter, 10, 4, &mut notes);
     assert!(matches!(stopped, Some(RunError::Step(e)) if e.node == 7));
-    // The last node is a sample, though it was not to be one.
+    // The last node becomes a sample, although it was not scheduled.
     assert_eq!(notes.nodes, [0, 4, 7]);
     assert_eq!(notes.last, [7.0, 49.0]);
     assert_eq!((summary.steps, summary.node, summary.time), (7, 7, 3.5));
     assert_eq!(summary.samples, 3);
     assert_eq!(summary.drifts[0].worst, 0.0);
-    // One that was to be a sample is so once.
+    // A scheduled last sample appears once.
     let mut counter = Counter { node: 0, stop: 8 };
     let mut notes = Notes::default();
     let (summary, _) = run_until_stopped(&mut counter, 10, 4, &mut notes);
     assert_eq!((notes.nodes, summary.samples), (vec![0, 4, 8], 3));
-    // Nothing at all.
+    // No step succeeds.
     let mut counter = Counter { node: 0, stop: 0 };
     let (summary, stopped) = run_until_stopped(&mut counter, 10, 4, &mut Notes::default());
     assert_eq!((summary.steps, summary.samples), (0, 1));
     assert!(stopped.is_some());
-    // A number that is none: what was done before its node.
+    // A NaN: the summary covers the nodes before it.
     for watched in [Watched::Invariant, Watched::Scale] {
         let mut failing = Failing {
             node: 0,
@@ -190,7 +190,7 @@ fn what_was_done_before_a_run_stopped_is_told() {
         );
         assert!(summary.drifts.iter().all(|d| d.worst.is_finite()));
     }
-    // To the end: as `run`.
+    // A complete run gives the same result as `run`.
     let end = |run: &dyn Fn(&mut Counter, &mut Notes)| {
         let mut counter = Counter { node: 0, stop: 99 };
         let mut notes = Notes::default();
@@ -210,12 +210,12 @@ fn errors_say_what_was_expected() {
         found: 3,
     };
     assert_eq!(error.to_string(), "`J` takes 9 numbers, found 3");
-    // A result is copied out of every step: ten words hold the numbers of every refusal.
+    // Every step returns a result by value; ten words hold the numbers of every error.
     let size = std::mem::size_of::<StepError>();
     assert!(size <= 80, "{size}");
 }
 
-/// Fails in one way each: by a number of an invariant, of a scale or of an observable.
+/// Fails in one of several ways: NaN in an invariant, a scale or an observable.
 struct Failing {
     node: u64,
     at: u64,
@@ -304,7 +304,7 @@ impl Trajectory for Failing {
 fn a_number_that_is_none_stops_the_run_at_its_node() {
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for (watched, at, words) in [
-            // Every fourth node is looked at.
+            // Every fourth node is checked.
             (
                 Watched::Invariant,
                 0,
@@ -363,7 +363,7 @@ fn a_number_that_is_none_stops_the_run_at_its_node() {
             assert_eq!(found.value.to_bits(), value.to_bits());
         }
     }
-    // Large is not infinite, and a node that is not sampled is not looked at.
+    // A large value is finite, and a node that is not sampled is not checked.
     for (watched, at, value) in [
         (Watched::Invariant, 4, f64::MAX),
         (Watched::Invariant, 5, f64::NAN),
@@ -379,7 +379,7 @@ fn a_number_that_is_none_stops_the_run_at_its_node() {
     }
 }
 
-/// Notes of samples of any shape.
+/// Accepts samples of any shape.
 struct NoShape<'a>(&'a mut Notes);
 
 impl Observer for NoShape<'_> {
@@ -388,7 +388,7 @@ impl Observer for NoShape<'_> {
     }
 }
 
-/// An invariant that is off by this at node 5, of terms whose size is this factor times the node.
+/// An invariant that deviates by this amount at node 5, with terms of size this factor times the node.
 struct Resting {
     counter: Counter,
     off: f64,
@@ -441,7 +441,7 @@ fn an_invariant_is_measured_by_its_largest_terms_or_absolutely() {
     let none = drift(0.0);
     assert_eq!((none.worst, none.last, none.scale), (5e-15, 0.0, 0.0));
     assert!(none.is_absolute());
-    // Nothing at the start, most at the end, at node 10.
+    // Zero at the start, largest at the end, at node 10.
     let most = drift(1.0);
     assert_eq!(
         (most.worst, most.last, most.scale),

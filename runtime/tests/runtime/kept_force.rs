@@ -1,5 +1,5 @@
-//! What acts on a field at a node is kept in the workspace for the step that starts there: a step is to the last bit that
-//! of a workspace made anew, whatever states were stepped before. Factors of parameters are inverted once.
+//! The workspace stores the force on a field at a node for the next step. A step equals the step with a new workspace bit for bit,
+//! whatever states were stepped before. Parameter factors are inverted once.
 
 use clebsch::integrate::{Model, Stepper};
 use clebsch::nalgebra::Matrix3;
@@ -51,7 +51,7 @@ fn a_step_is_that_of_a_workspace_made_anew() {
     let (mut first, mut work) = model.start(initial(1.1), h).expect("starts");
     let (mut second, _) = model.start(initial(0.9), h).expect("starts");
     for k in 0..60 {
-        // Each twice, then the other.
+        // Two steps of one state, then two of the other.
         let state = if k % 4 < 2 { &mut first } else { &mut second };
         let mut other = *state;
         let mut anew = model.prepare(&other, h, ()).expect("made");

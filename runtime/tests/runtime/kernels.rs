@@ -1,5 +1,5 @@
-//! Kernels evaluated as data against the same operations on matrices of a static size: the same bits, for every
-//! operation and shape, on numbers of every kind. A recorded tape gives them too.
+//! Kernels evaluated as data, against the same operations on statically sized matrices: equal bits for every operation and shape,
+//! on numbers of every kind. A recorded tape gives the same bits.
 
 use super::common::Random;
 use clebsch::emitted as e;
@@ -10,7 +10,7 @@ use clebsch_program::{
     Tape, Unvalued, Value, evaluate,
 };
 
-/// Random operands of each operation and shape.
+/// Random operands per operation and shape.
 const DRAWS: usize = 400;
 
 /// The runtime's binary64 numbers.
@@ -85,7 +85,7 @@ impl Arithmetic for Numbers {
     }
 }
 
-/// Numbers of every kind: plain ones of many sizes, zeros of both signs, subnormal, infinite and none.
+/// Numbers of every kind: ordinary ones of many sizes, zeros of both signs, subnormal, infinite and NaN.
 struct Source(Random);
 
 impl Source {
@@ -121,7 +121,8 @@ fn kind(a: &Array<f64>) -> Kind {
     })
 }
 
-/// One operation on inputs. The compiler makes this and the next functions once: no closure or size is a parameter of a type.
+/// One operation on inputs. The function takes trait objects and runtime sizes, so that the compiler instantiates it only once; so
+/// do the functions below.
 fn kernel(given: &[Array<f64>], make: &dyn Fn(&[Value]) -> Operation) -> Result<Kernel, Misfit> {
     let mut kernel = Kernel::new();
     let mut values = Vec::new();
@@ -137,7 +138,7 @@ fn same(found: f64, wanted: f64) -> bool {
     found.to_bits() == wanted.to_bits() || found.is_nan() && wanted.is_nan()
 }
 
-/// Evaluated, and recorded and run, the operation gives these bits.
+/// Checks that the operation gives these bits, evaluated directly and recorded as a tape.
 fn gives(what: &str, given: &[Array<f64>], make: &dyn Fn(&[Value]) -> Operation, wanted: &[f64]) {
     let kernel = kernel(given, make).unwrap_or_else(|misfit| panic!("{what}: {misfit}"));
     kernel.verify().expect("it was verified line by line");
@@ -161,7 +162,7 @@ fn gives(what: &str, given: &[Array<f64>], make: &dyn Fn(&[Value]) -> Operation,
                 "the tape of {what} of {given:?}: {found:?} for {wanted:?}"
             );
         }
-        // Pivots are not recorded.
+        // Tapes do not contain pivoting.
         Err(e) => assert!(
             matches!(e, Unvalued::Operation("inverse_or_nan" | "determinant")),
             "{what}: {e}"
@@ -169,7 +170,7 @@ fn gives(what: &str, given: &[Array<f64>], make: &dyn Fn(&[Value]) -> Operation,
     }
 }
 
-/// Random operands of these shapes, and what is wanted of them.
+/// Random operands of these shapes, and the expected result.
 fn drawn(
     source: &mut Source,
     word: &str,
@@ -220,7 +221,7 @@ fn number(x: f64) -> SMatrix<f64, 1, 1> {
     SMatrix::repeat(x)
 }
 
-/// Operations on square matrices and vectors of one size, and with others of 1 to 6 columns.
+/// Operations on square matrices and vectors of one size, and with matrices of 1 to 6 columns.
 macro_rules! of_size {
     ($source:ident, $($n:literal)*) => { $(
         one::<$n, $n, $n, $n>(&mut $source, Single::Neg, |a| -a);
@@ -426,7 +427,7 @@ fn what_does_not_fit_is_no_line() {
         assert!(kernel.push(operation.clone()).is_err(), "{operation:?}");
     }
     assert_eq!(kernel.lines().len(), 2);
-    // A value of a longer kernel is later than every line of `kernel`.
+    // A value of a longer kernel comes after every line of `kernel`.
     let mut longer = kernel.clone();
     let product = longer
         .push(Operation::Two(Pair::Mul, a, v))

@@ -1,5 +1,5 @@
-//! Solvers of the Moser-Veselov equation for any left factor in two to eight dimensions: residuals up
-//! to the exact bound, refusals beyond it, agreement with each other, other scalars.
+//! Solvers of the Moser-Veselov equation for any left factor in two to eight dimensions: residuals up to the exact bound, errors
+//! beyond it, agreement with each other, other scalars.
 
 use super::common::Random;
 use clebsch::groups::Part;
@@ -9,7 +9,7 @@ use clebsch::solvers::Method;
 use clebsch::solvers::left_factor::{LeftFactor, LeftFactorError, Refusal, davenport};
 use clebsch::{DoubleDouble, Dual, Group, Lanes, Orthogonal, Poinsot, Real, Rotation};
 
-/// A residual of entries of size 2: eight products and their sum.
+/// A residual with entries of size 2: eight products and their sum.
 const ROUNDING: f64 = 1e-14;
 
 fn skew<const N: usize>(random: &mut Random) -> SMatrix<f64, N, N> {
@@ -22,7 +22,7 @@ fn rotation<const N: usize>(random: &mut Random) -> Orthogonal<N> {
     Orthogonal::identity().retract(&list).retract(&list)
 }
 
-/// Diagonal, turned symmetric and turned nonsymmetric factors in turn, eigenvalues in (0.2, 2.2).
+/// Diagonal, rotated symmetric and rotated nonsymmetric factors in turn, with eigenvalues in (0.2, 2.2).
 fn matrix<const N: usize>(random: &mut Random, case: usize) -> SMatrix<f64, N, N> {
     let diagonal = SMatrix::from_diagonal(&clebsch::nalgebra::SVector::from_fn(|_, _| {
         0.2 + 2.0 * random.unit()
@@ -50,7 +50,7 @@ fn residual<T: Real, const N: usize>(
         .fold(0.0, clebsch::scalar::larger)
 }
 
-/// Random factors and momenta at this fraction of the exact bound.
+/// Random factors, and momenta at this fraction of the exact bound.
 fn at_fraction<const N: usize>(
     fraction: f64,
     count: usize,
@@ -103,14 +103,14 @@ fn lie_newton_solves_to_rounding_up_to_the_bound() {
         for fraction in [0.0, 1e-3, 0.05, 0.3, 0.6, 0.9, 0.95] {
             of_size!(n, solves(fraction, ROUNDING));
         }
-        // The root is double at the bound; the residual is not the worse for it.
+        // At the bound the root is double, but the residual does not grow.
         for fraction in [0.999, 1.0 - 1e-6] {
             of_size!(n, solves(fraction, ROUNDING));
         }
     });
 }
 
-/// The symmetric part is iterated down to a hundredth; below it, Newton alone.
+/// The iteration for the symmetric part works down to a hundredth; below that, only Newton's method.
 #[test]
 fn nearly_flat_factors_are_solved_to_rounding() {
     let mut random = Random(77);
@@ -144,7 +144,7 @@ fn refuses<const N: usize>() {
             .largest_step
             .expect("searched");
         assert!((largest / h - 1.0 + 1e-6).abs() < 1e-9, "{largest}");
-        // That step is solved.
+        // The suggested step size works.
         assert!(
             factor
                 .solve(&(v * (largest / h)), Method::LieNewton)
@@ -158,7 +158,7 @@ fn beyond_the_bound_every_solver_refuses_with_its_ratio() {
     sizes(|n| of_size!(n, refuses()));
 }
 
-/// A momentum in one plane of one lane is too large: plane and lane are named.
+/// The momentum in one plane of one lane is too large; the error names plane and lane.
 #[test]
 fn refusals_name_the_plane_and_the_lane() {
     let four = LeftFactor::new(SMatrix::<f64, 4, 4>::from_diagonal(
@@ -190,7 +190,7 @@ fn refusals_name_the_plane_and_the_lane() {
         .expect_err("too fast");
     assert_eq!((e.fastest, e.lane), (Part::Axis(1), 2), "{e}");
     assert!(e.to_string().starts_with("lane 3: "), "{e}");
-    // Within the bound nothing is refused.
+    // Within the bound the solver succeeds.
     assert!(davenport(&c.map(wide), &v.map(|x| x * wide(0.01))).is_ok());
 }
 
@@ -222,8 +222,8 @@ fn agree<const N: usize>(fraction: f64, allowed: f64) {
 #[test]
 fn solvers_agree() {
     sizes(|n| {
-        // The eigenvalue problems lose the condition of the invariant subspace, which grows towards
-        // the bound as the inverse root of the distance.
+        // The eigenvalue problems lose digits by the condition number of the invariant subspace, which grows towards the bound like
+        // the inverse square root of the distance.
         of_size!(n, agree(0.05, 2e-13));
         of_size!(n, agree(0.3, 2e-13));
         of_size!(n, agree(0.9, 2e-12));
@@ -273,7 +273,7 @@ fn the_bound_is_that_of_space_where_both_are_known() {
 
 #[test]
 fn a_single_plane_turns_by_the_arc_sine() {
-    // Two axes turn as one: (c1 + c2) sin(theta) = v.
+    // Rotation in one plane: (c1 + c2) sin(theta) = v.
     let c = SMatrix::<f64, 5, 5>::from_diagonal(&[0.4, 1.1, 0.7, 1.9, 1.3].into());
     let factor = LeftFactor::new(c).expect("positive");
     let mut v = SMatrix::<f64, 5, 5>::zeros();
@@ -309,7 +309,7 @@ fn what_is_no_left_factor_is_refused() {
         .solve(&v, Method::LieNewton)
         .expect("within the bound");
     assert!(residual(&flat, &omega, &v) < ROUNDING);
-    // Its inverse does not exist.
+    // The factor is singular.
     let error = factor.solve(&v, Method::Sign).expect_err("singular");
     assert_eq!(error.refusal, Refusal::DoesNotApply);
     let flatter = SMatrix::<f64, 4, 4>::from_diagonal(&[1.0, 2.0, 0.0, 0.0].into());
@@ -341,7 +341,7 @@ fn other_scalars() {
             let left = residual(&wide.matrix(), &fine, &v.map(DoubleDouble::from));
             assert!(left < 1e-27, "{method} {left:e}");
         }
-        // Lanes: a multiple of the momentum in each.
+        // Lanes with different multiples of the momentum.
         let lanes = LeftFactor::new(c.map(|x| Lanes([x; 3]))).expect("positive");
         let momenta = v.map(|x| Lanes([x, 0.5 * x, -x]));
         let three = lanes
@@ -356,7 +356,7 @@ fn other_scalars() {
                 &momenta
             ) < ROUNDING
         );
-        // Derivatives along a change of momentum and factor, by central differences.
+        // Derivatives along a variation of momentum and factor, against central differences.
         let (dv, dc) = (skew::<4>(&mut random), skew::<4>(&mut random) * 0.3);
         let dual = |x: f64, dx: f64| Dual::<1> {
             real: x,
@@ -376,7 +376,7 @@ fn other_scalars() {
         };
         let t = 1e-5;
         let difference = (at(t) - at(-t)) / (2.0 * t);
-        // Differences are good to t^2 and rounding over t.
+        // Differences have an error of t^2 plus rounding over t.
         assert!((derivative - difference).amax() < 1e-8);
     }
 }
@@ -415,7 +415,7 @@ fn a_turned_body_is_solved_by_vectors_too() {
     }
 }
 
-/// Whether bodies that are solved side by side turn as each by itself, to the last bit, or are refused alike.
+/// Checks that bodies solved side by side rotate like each body alone, bit for bit, or fail alike.
 fn side_by_side<T: Real>(factor: &LeftFactor<3, T>, momenta: &[Vector3<T>; 5], method: Method) {
     let each = momenta.map(|v| factor.rotation(&v, method));
     let refused = each.iter().find_map(|one| one.err());
@@ -433,7 +433,7 @@ fn bodies_that_are_alike_turn_as_each_by_itself() {
         let c: Matrix3<f64> = matrix::<3>(&mut random, case);
         let factor = LeftFactor::new(c).expect("positive");
         let lanes = LeftFactor::new(c.map(Lanes::<2>::from_f64)).expect("positive");
-        // From what one iteration solves to what nothing does.
+        // From momenta that one iteration solves to momenta without a solution.
         for size in [1e-3, 0.1, 0.5, 1.0, 4.0] {
             let momenta = [(); 5].map(|()| Vector3::from_fn(|_, _| size * random.symmetric()));
             for method in Method::ALL {
@@ -468,7 +468,7 @@ fn planes_without_mass_are_refused_with_the_reason() {
             let list = masses.iter().take(count);
             list.map(|a| a * a.transpose()).sum()
         };
-        // Two masses leave a plane without inertia, three a line, which turns with the others.
+        // Two masses leave a plane without inertia; three leave a line, which rotates with the others.
         let error = LeftFactor::new(moments(2)).expect_err("no inertia in a plane");
         assert!(
             matches!(error, LeftFactorError::NotPositive { .. }),

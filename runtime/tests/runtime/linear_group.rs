@@ -1,5 +1,5 @@
-//! Where the equations of a step are linear in the velocity there is no fold: on GL(n), however
-//! close to singular the configuration is, a step is made, or leaves the group.
+//! If the equations of a step are linear in the velocity, folds do not occur. On GL(n), however close to singular the configuration
+//! is, a step succeeds or leaves the group.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(non_snake_case)]
@@ -21,7 +21,7 @@ clebsch::model! {
 }
 use deforming::{Deforming, DeformingInitial, DeformingParameters};
 
-/// A random matrix with entries between -1 and 1.
+/// A random matrix with entries in (-1, 1).
 fn matrix(random: &mut Random) -> Matrix2<f64> {
     Matrix2::from_fn(|_, _| random.symmetric())
 }

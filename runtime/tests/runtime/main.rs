@@ -1,5 +1,5 @@
-//! Scalars, groups, solvers, orders, the integration loop, and models of every group that are solved by Newton's method. One
-//! binary, since linking is most of what a test costs.
+//! Scalars, groups, solvers, orders, the integration loop, and models on every group that use Newton's method. All tests share one
+//! binary, because linking dominates the build time of a test.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables)]

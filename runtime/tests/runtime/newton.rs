@@ -1,5 +1,4 @@
-//! Newton's method on groups: solves what the closed forms solve, on every scalar, and says why
-//! when it cannot.
+//! Newton's method on groups: solves the problems with closed forms, for every scalar, and reports why it fails.
 
 use super::common::{Random, lift, lift_matrix};
 use clebsch::groups::Part;
@@ -166,7 +165,7 @@ fn failures_carry_numbers() {
     assert_eq!((stuck.worst.part, stuck.residual), (Part::Axis(2), 1e-3));
 }
 
-/// A residual that never falls below so many roundings of its terms.
+/// A residual that never falls below this number of rounding errors of its terms.
 fn noisy(roundings: f64) -> Result<Solved<Rotation>, NewtonError> {
     let sign = core::cell::Cell::new(1.0);
     solve(
@@ -182,7 +181,7 @@ fn noisy(roundings: f64) -> Result<Solved<Rotation>, NewtonError> {
 
 #[test]
 fn what_stagnates_above_rounding_is_no_solution() {
-    // Two evaluations differ by at most twice the bound of their rounding.
+    // Two evaluations differ by at most twice the rounding bound.
     for fine in [1.0, 10.0, 40.0] {
         assert!(noisy(fine).is_ok(), "{fine}");
     }

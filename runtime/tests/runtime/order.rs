@@ -1,5 +1,5 @@
-//! The orders of the free body's steps, measured by halving the step against the Taylor series of
-//! the exact motion, all in double-double; what a step of high order keeps, and what it does not.
+//! The orders of the free body's steps, measured by step halving against the Taylor series of the exact motion in double-double;
+//! and the properties that a high-order step conserves or not.
 
 use super::common::body;
 use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
@@ -8,10 +8,10 @@ use clebsch::{DoubleDouble, Dual, Poinsot, Real, Rotation, SpatialMomentum};
 
 type Quad = DoubleDouble;
 
-/// Terms of the series.
+/// Number of terms of the series.
 const TERMS: usize = 28;
 
-/// Momentum in the body, and attitude.
+/// Body momentum and attitude.
 #[derive(Clone, Copy)]
 struct Motion {
     momentum: Vector3<Quad>,
@@ -67,7 +67,7 @@ fn taylor(inverse: &Matrix3<Quad>, start: Motion, h: f64) -> Motion {
     }
 }
 
-/// The larger of the errors of momentum and attitude after `time` in `steps` steps.
+/// The larger of the errors of momentum and attitude after `time`, with `steps` steps.
 fn error(body: &Poinsot<Quad>, mu: Vector3<f64>, time: f64, steps: u32, order: Order) -> f64 {
     let inverse = clebsch::linalg::inverse(&body.inertia()).expect("regular");
     let mut exact = Motion {
@@ -114,7 +114,7 @@ fn every_order_is_measured() {
             let [coarse, fine] = [64, 128].map(|steps| error(&body, mu, 8.0, steps, order));
             let measured = (coarse / fine).log2();
             println!("{moments:?} order {order}: {measured:.3} ({coarse:.1e}, {fine:.1e})");
-            // Far above the 1e-30 of the arithmetic, near enough to the limit of small steps.
+            // Far above the 1e-30 of the arithmetic, and close to the limit of small steps.
             assert!(fine > 1e-26, "{fine:e}");
             let nominal = f64::from(order.number());
             assert!((measured - nominal).abs() < 0.15, "{order}: {measured}");
@@ -122,8 +122,8 @@ fn every_order_is_measured() {
     }
 }
 
-/// How far the step is from symplectic: the largest entry of `D^T W' D - W`, with `W` the canonical
-/// form on the attitudes and momenta, both seen from the body.
+/// The symplectic defect of a step: the largest entry of `D^T W' D - W`, with the canonical form `W` on attitudes and momenta, both
+/// in the body frame.
 fn symplectic_defect(h: f64, order: Order, compensated: bool) -> f64 {
     type D6 = Dual<6>;
     let body = body([3.5, 2.5, 2.0], Vector3::new(0.4, -0.9, 0.3));
@@ -168,7 +168,7 @@ fn symplectic_defect(h: f64, order: Order, compensated: bool) -> f64 {
 
 #[test]
 fn only_order_two_is_symplectic_and_the_defect_is_that_of_the_order() {
-    // A few roundings in each of some tens of operations.
+    // A few rounding errors in each of several tens of operations.
     assert!(symplectic_defect(0.4, Order::Two, false) < 1e-14);
     for order in [Order::Four, Order::Six, Order::Eight] {
         let [coarse, fine] = [0.8, 0.4].map(|h| symplectic_defect(h, order, false));
@@ -184,7 +184,7 @@ fn only_order_two_is_symplectic_and_the_defect_is_that_of_the_order() {
             symplectic_defect(h, Order::Ten, false)
         );
     }
-    // What is left of order ten at a moderate step is rounding.
+    // At a moderate step size, order ten has only rounding error.
     assert!(symplectic_defect(0.1, Order::Ten, false) < 1e-14);
 }
 
@@ -202,7 +202,7 @@ fn compensation_leaves_the_defect_of_order_ten() {
         assert!(coarse < 0.1 * plain, "{order}: {coarse:e} of {plain:e}");
         assert!(symplectic_defect(0.1, order, true) < 1e-14);
     }
-    // Nothing is missing at order two.
+    // At order two, compensation changes nothing.
     assert!(symplectic_defect(0.4, Order::Two, true) < 1e-14);
 }
 
@@ -226,7 +226,7 @@ fn a_compensated_step_has_its_order_and_can_be_undone() {
             }
             (attitude, free)
         };
-        // What the turns add up to falls as the error does.
+        // The accumulated compensating rotations decrease like the error.
         let apart = |count: u32| {
             let ((a, _), (b, _)) = (end(count, false), end(count, true));
             (a.matrix() - b.matrix()).amax()
@@ -275,7 +275,7 @@ fn refusals_name_a_step_that_works() {
             "order {order}: {largest}"
         );
     }
-    // The plain step fails at 1 sharp, where the others, whose moments differ, go on.
+    // The plain step fails at exactly 1; higher orders continue, because their modified moments differ.
     let start = |order| Free::start_of_order(&body, &attitude, &momentum, 1.0, order);
     assert!(start(Order::Two).is_err());
     assert!(Order::ALL[1..].iter().all(|order| start(*order).is_ok()));
@@ -304,7 +304,7 @@ fn a_million_steps_of_every_order_keep_what_is_kept() {
             }
         }
         println!("order {order}: {worst:.1e}");
-        // As at order two: 64 steps of unprojected rounding.
+        // As at order two: 64 steps of rounding without projection.
         assert!(worst < 1e-14, "order {order}: {worst:e}");
     }
 }

@@ -1,8 +1,8 @@
-//! Implicit steps return the principal root, the end of the curve that leads from rest to the
-//! momenta, or refuse: judged on random problems against a continuation in independent code.
+//! Implicit steps return the principal root, the end of the curve from zero velocity to the momenta, or fail. Random problems are
+//! compared with a continuation in independent code.
 //!
-//! 1000 problems of each model; `PRINCIPAL_PROBLEMS=5000 cargo test --profile quick -p clebsch --test
-//! runtime principal` judges 100000 in all.
+//! 1000 problems for each model; `PRINCIPAL_PROBLEMS=5000 cargo test --profile quick -p clebsch --test runtime principal` tests
+//! 100000 in all.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(
@@ -26,17 +26,17 @@ use oracle::{Curve, follow};
 use stated::*;
 use std::cell::Cell;
 
-/// Problems of each model.
+/// Problems per model.
 fn problems() -> u64 {
     let asked = std::env::var("PRINCIPAL_PROBLEMS").ok();
     asked.and_then(|n| n.parse().ok()).unwrap_or(1000)
 }
 
-/// Where the smallest singular value is below this, the fold is closer than 1e-6: it falls as the
-/// root of the distance.
+/// If the smallest singular value is below this, the fold is closer than 1e-6, because the value falls like the square root of the
+/// distance.
 const AT_A_FOLD: f64 = 3e-3;
 
-/// Roots that agree: the tangent of the oracle is a difference, the roots are solved to 1e-8 there.
+/// Tolerance for equal roots: the oracle's Jacobian is a finite difference, and it solves roots to 1e-8.
 const SAME: f64 = 1e-5;
 
 #[derive(Debug, Default)]
@@ -54,7 +54,7 @@ fn judge<J: Judged>(name: &str, unit: &DVector<f64>) {
     let mut tally = Tally::default();
     for problem in 0..problems() {
         let p = J::draw(&mut random);
-        // From small steps to about twice what can be solved.
+        // From small step sizes to about twice the solvable ones.
         let h = p.unit * 10.0_f64.powf(random.symmetric() * 0.9 - 0.3);
         let here = (p.state)(1.0);
         let curve = At::<J> {
@@ -64,7 +64,7 @@ fn judge<J: Judged>(name: &str, unit: &DVector<f64>) {
         };
         let step = |part: f64| {
             let state = (p.state)(part);
-            // Within a search no other step is looked for, which takes a hundred times as long.
+            // Inside a search, a failed step does not start another search, which would take a hundred times as long.
             let next = Cell::new(None);
             let _ = largest_step(1.0, |_| {
                 if let Ok(mut work) = p.model.workspace(&state, h) {
@@ -81,8 +81,7 @@ fn judge<J: Judged>(name: &str, unit: &DVector<f64>) {
         let goal = match &found {
             Some(velocity) => curve.value(velocity),
             None => {
-                // The equations are the momenta up to a constant and the sign, which steps of
-                // small momenta show.
+                // The equations equal the momenta up to a constant and a sign, which steps with small momenta determine.
                 let parts = [0.01, 0.02];
                 let [Some(one), Some(two)] = parts.map(step) else {
                     tally.unknown += 1;
@@ -129,10 +128,10 @@ fn judge<J: Judged>(name: &str, unit: &DVector<f64>) {
         }
     }
     println!("{name}: {tally:?}");
-    // Never another root. A proof that fails close to the edge of the domain refuses now and then what has an end.
+    // Never another root. Close to the edge of the domain, a proof occasionally fails for a solvable step.
     assert_eq!(tally.other, 0, "{name}");
     assert!(tally.needless * 100 <= problems(), "{name}: {tally:?}");
-    // Both answers occur, and a third of the problems at least is judged: the ellipsoid is given many that leave its domain.
+    // Both outcomes occur, and at least a third of the problems count: many problems of the ellipsoid leave its domain.
     assert!(
         tally.made * 5 > problems() && tally.refused * 50 > problems(),
         "{name}: {tally:?}"
@@ -143,7 +142,7 @@ fn judge<J: Judged>(name: &str, unit: &DVector<f64>) {
     );
 }
 
-/// All coordinates are of the order of one.
+/// All coordinates are of order one.
 fn even<J: Judged>() -> DVector<f64> {
     DVector::from_element(J::DIMENSION, 1.0)
 }
@@ -180,7 +179,7 @@ judges! {
     random_9: Judged9;
 }
 
-/// At node 804 the equations have a root at 178.6 degrees beside the near one.
+/// At node 804 the equations have a second root at 178.6 degrees.
 #[test]
 fn a_sinking_body_never_jumps() {
     let diagonal = |a, b, c| Matrix3::from_diagonal(&Vector3::new(a, b, c));
@@ -212,7 +211,7 @@ fn a_sinking_body_never_jumps() {
     assert!(turned.len() > 804, "{refused}");
     assert!((turned[804] - 16.6).abs() < 0.1, "{}", turned[804]);
     assert!(turned.iter().all(|angle| *angle < 60.0));
-    // The step offered is taken.
+    // The suggested step size works.
     let clebsch::StepCause::Newton(e) = refused.cause else {
         panic!("{refused}");
     };

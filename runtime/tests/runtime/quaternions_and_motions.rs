@@ -1,5 +1,4 @@
-//! SU(2) and SE(3): the laws of their matrices, of the coordinates of their Lie algebras and of the
-//! covectors they carry.
+//! SU(2) and SE(3): the laws of their matrices, of the coordinates of their Lie algebras and of their action on covectors.
 
 use super::common::Random;
 use clebsch::linalg::{
@@ -8,7 +7,7 @@ use clebsch::linalg::{
 use clebsch::nalgebra::{Matrix3, Matrix4, SVector, Vector3};
 use clebsch::{Coadjoint, Group, NotARigidMotion, RigidMotion, UnitQuaternion};
 
-/// Sixteen entries, each with some four roundings of numbers of size 1, in Frobenius norm.
+/// Sixteen entries, each with about four rounding errors of numbers of order 1, in the Frobenius norm.
 const ROUNDING: f64 = 8e-15;
 
 fn quaternion(random: &mut Random) -> UnitQuaternion {
@@ -22,7 +21,7 @@ fn motion(random: &mut Random) -> RigidMotion {
     }
 }
 
-/// Associativity, neutral element, inverses and the retraction, on matrices.
+/// Checks associativity, the neutral element, inverses and the retraction, on matrices.
 fn conforms<G: Group<f64>>(mut pick: impl FnMut() -> G, matrix: impl Fn(&G) -> Matrix4<f64>) {
     let apart = |a: &G, b: &G| (matrix(a) - matrix(b)).norm();
     for _ in 0..200 {
@@ -55,7 +54,7 @@ fn coordinates_are_angular_and_linear_velocities() {
     let mut random = Random(33);
     let one = Matrix4::identity();
     for _ in 0..20 {
-        // Half the quaternion turns space with the angular velocity itself.
+        // A quaternion rotates space by twice its own angle, so coordinates are angular velocities.
         let w = random.vector() * 1e-5;
         let moved = UnitQuaternion::identity().retract(w.as_slice());
         let first = one + pure_quaternion(&w) * 0.5;
@@ -82,7 +81,7 @@ fn quaternions_read_from_matrices_what_they_are() {
         assert!((quaternion_real(&m) - w).abs() < ROUNDING);
         assert!((quaternion_imaginary(&m) - Vector3::new(x, y, z)).norm() < ROUNDING);
         assert!((quaternion_rotation(&m) - q.rotation().matrix()).norm() < ROUNDING);
-        // The rotation is the conjugation; the opposite covers the same one and is another element.
+        // The rotation is the conjugation. The opposite quaternion gives the same rotation but is a different element.
         let v = random.vector();
         let conjugated = quaternion_imaginary(&(m * pure_quaternion(&v) * m.transpose()));
         assert!((conjugated - q.rotation().rotate(&v)).norm() < ROUNDING);

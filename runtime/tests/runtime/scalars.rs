@@ -1,4 +1,4 @@
-//! The scalar types by themselves: functions, derivatives, reductions, rational powers.
+//! The scalar types on their own: functions, derivatives, reductions, rational powers.
 
 use clebsch::num_traits::{One, Zero};
 use clebsch::{DoubleDouble, Dual, Lanes, Real};
@@ -42,7 +42,7 @@ fn double_double_has_thirty_digits() {
     assert_eq!(dd(-1000.0).exp().value(), 0.0);
     assert_eq!((-dd(2.5)).abs(), dd(2.5));
     for i in -20..=20 {
-        // On both sides of where the series gives way to exponentials.
+        // On both sides of the switch between series and exponentials.
         let x = DoubleDouble::from_ratio(i, 13);
         let (sinh, cosh) = (x.sinh(), x.cosh());
         assert!(off(sinh + cosh, x.exp()) < 1e-30);
@@ -54,7 +54,7 @@ fn double_double_has_thirty_digits() {
     assert!(dd(f64::NAN).tanh().value().is_nan());
 }
 
-/// Every function of a dual number against the central difference quotient in double-double.
+/// Every function of a dual number, against the central difference quotient in double-double.
 #[test]
 fn dual_numbers_follow_the_chain_rule() {
     fn all<T: Real>(x: T) -> [T; 19] {
@@ -179,12 +179,12 @@ fn rational_powers() {
     assert_eq!(2.0.powr(i64::MIN, i64::MIN), 2.0);
 }
 
-/// The length of what is zero: no change where nothing changes, no derivative where something does.
+/// The root of zero: zero derivative if the argument does not vary, no derivative if it varies.
 #[test]
 fn the_root_of_zero_has_a_change_only_where_nothing_changes() {
     let still = Dual::<2>::constant(0.0).sqrt();
     assert_eq!((still.real, still.dual), (0.0, [0.0; 2]));
-    // The length of a vector that stays zero along one direction and leaves it along the other.
+    // The length of a vector that stays zero along one direction and changes along the other.
     let x = Dual {
         real: 0.0,
         dual: [0.0, 1.0],
@@ -195,7 +195,7 @@ fn the_root_of_zero_has_a_change_only_where_nothing_changes() {
     assert_eq!((grows.real, grows.dual[0]), (0.0, 0.0));
     assert_eq!(grows.dual[1], f64::INFINITY);
     assert!(!grows.is_finite());
-    // Away from zero it is the chain rule, and below zero nothing.
+    // Away from zero, the chain rule applies; below zero, the root is NaN.
     let four = Dual {
         real: 4.0,
         dual: [1.0, 0.0],

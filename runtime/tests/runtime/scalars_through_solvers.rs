@@ -1,5 +1,5 @@
-//! The solvers on every scalar: lanes equal single runs, duals equal difference quotients taken in
-//! double-double, double-double solves to its own precision.
+//! The solvers with every scalar: lanes equal single runs, duals equal difference quotients in double-double, and double-double
+//! solves to its own precision.
 
 use super::common::{Random, dd, lift, lift_matrix, residual};
 use clebsch::nalgebra::{Matrix3, Vector3};
@@ -11,7 +11,7 @@ fn case_at(random: &mut Random, case: u64, fraction: f64) -> (Matrix3<f64>, Vect
     let j = random.poinsot(case);
     let direction = random.vector();
     let body = Poinsot::new(j).expect("a body");
-    // The matrix as validated is symmetric to the last bit, as double-double wants it.
+    // The validated matrix is exactly symmetric, as double-double requires.
     (
         *body.matrix(),
         direction * (fraction / reach(&body, &direction)),
@@ -30,8 +30,7 @@ fn entries(j: &Matrix3<f64>) -> [f64; 9] {
 fn lanes_agree_with_single_runs() {
     let mut random = Random(11);
     for group in 0..200 {
-        // All lanes diagonal or all not, as one branch serves all; steps from tiny to near the
-        // bound side by side.
+        // All lanes are diagonal or none, because they share a branch; step sizes from tiny to near the bound side by side.
         let fractions =
             std::array::from_fn(|n| [0.01, 0.3, 0.95, 0.999_999][(n + group as usize) % 4]);
         let cases: [(Matrix3<f64>, Vector3<f64>); 4] =
@@ -44,8 +43,8 @@ fn lanes_agree_with_single_runs() {
             let single = Poinsot::new(*j).expect("a body");
             let alone = forced(&single, h_n).expect("solvable").quaternion();
             for (a, b) in together.iter().zip(alone) {
-                // Lanes share the scale of the units and the slowest lane's method; towards the
-                // double root at the bound the root (not the residual) loses digits.
+                // Lanes share the scale of the units and the method of the slowest lane. Towards the double root at the bound, the
+                // root (not the residual) loses digits.
                 let allowed = 4e-15 / (1.0 - fractions[n]).sqrt();
                 assert!((a.0[n] - b).abs() < allowed, "group {group}, lane {n}");
             }
@@ -67,7 +66,7 @@ fn lanes_of_one_body_are_bit_equal_to_single_runs() {
         let body = Poinsot::new(j).expect("a body");
         let momenta: [Vector3<f64>; 8] = std::array::from_fn(|_| {
             let direction = random.vector();
-            // Moderate steps, which one iteration solves in every lane.
+            // Moderate step sizes, which one iteration solves in every lane.
             direction * (0.03 / reach(&body, &direction))
         });
         let wide = Poinsot::new(lift_matrix::<Lanes<8>>(&j)).expect("bodies");
@@ -124,8 +123,8 @@ fn double_double_solves_to_its_own_precision() {
     }
 }
 
-/// Derivatives of the quaternion with respect to `h N` (0..3) and to symmetric changes of the
-/// diagonal of `J` (3..6), against central differences in double-double.
+/// Derivatives of the quaternion with respect to `h N` (0..3) and to symmetric variations of the diagonal of `J` (3..6), against
+/// central differences in double-double.
 #[test]
 fn dual_derivatives_of_the_forced_solver() {
     let mut random = Random(14);
@@ -157,8 +156,8 @@ fn dual_derivatives_of_the_forced_solver() {
             for k in 0..4 {
                 let quotient = ((plus[k] - minus[k]) / (step + step)).value();
                 let error = (dual[k].dual[seed] - quotient).abs();
-                // Near the bound derivatives grow as 1/sqrt(1 - fraction), their errors as its
-                // cube. The eigenvalues of J, down to 1e-3 here, divide too.
+                // Near the bound, derivatives grow as 1/sqrt(1 - fraction) and their errors as its cube. The eigenvalues of J, down
+                // to 1e-3 here, also divide.
                 let allowed = 1e-14 / (1.0 - fraction).powf(1.5) * (1.0 + quotient.abs()).powi(2);
                 assert!(
                     error < allowed,
@@ -196,7 +195,7 @@ fn dual_derivatives_of_a_free_trajectory_across_a_projection() {
         let (plus, minus) = (moved(dd(1.0)), moved(dd(-1.0)));
         for k in 0..7 {
             let quotient = ((plus[k] - minus[k]) / (step + step)).value();
-            // Rounding of 70 steps, whose derivatives grow linearly in time.
+            // Rounding error of 70 steps, whose derivatives grow linearly in time.
             assert!((dual[k].dual[seed] - quotient).abs() < 2e-13, "{k} {seed}");
         }
     }
@@ -229,7 +228,7 @@ fn many_steps_at_once_are_the_same_steps() {
         let mut single = Free::start(&body, &start, &momentum, 1.0).expect("slow enough");
         let (mut batch, mut whole) = (single, single);
         let (mut one, mut many, mut once) = (start, start, start);
-        // Across several projections, in uneven portions.
+        // Across several projections, in portions of different lengths.
         let mut done = 0;
         for count in counts {
             for _ in 0..count {
@@ -238,14 +237,14 @@ fn many_steps_at_once_are_the_same_steps() {
             batch
                 .follow_many(&mut many, &momentum, count)
                 .expect("free");
-            // Two ways to the same numbers: each step differs by a few roundings, which add up.
+            // Two computations of the same numbers: each step differs by a few rounding errors, which add up.
             done += count;
             let bound = 8.0 * f64::EPSILON * done as f64;
             let apart = distance(&one, &many);
             assert!(apart <= bound, "case {case}, {done}: {apart:e}");
             let apart = (single.body_momentum().0 - batch.body_momentum().0).norm();
             assert!(apart <= bound * m.norm(), "case {case}, {done}: {apart:e}");
-            // The momentum seen from space stays, whatever the angle about it.
+            // The spatial momentum is constant, whatever the angle about it.
             let seen = batch.body_momentum().to_space(&many);
             let apart = (seen.0 - m).norm();
             assert!(
@@ -253,13 +252,13 @@ fn many_steps_at_once_are_the_same_steps() {
                 "case {case}, {done}: {apart:e}"
             );
         }
-        // At once it is the same to the last bit.
+        // In a single call, the result is bitwise identical.
         whole
             .follow_many(&mut once, &momentum, counts.iter().sum())
             .expect("free");
         assert_eq!(once.quaternion(), many.quaternion(), "case {case}");
         assert_eq!(whole, batch);
-        // Single steps in between are followed.
+        // The batch also follows single steps in between.
         for _ in 0..5 {
             batch.step(&mut many).expect("free");
         }
@@ -273,7 +272,7 @@ fn many_steps_at_once_are_the_same_steps() {
     }
 }
 
-/// The largest difference of two quaternions, one of which may have the other sign.
+/// The largest difference of two quaternions, up to sign.
 fn distance(a: &Rotation, b: &Rotation) -> f64 {
     let (a, b) = (a.quaternion(), b.quaternion());
     let worst = |sign: f64| {

@@ -1,8 +1,8 @@
-//! Kinetic energies that are of higher order in the difference from rest, at steps at which that is
-//! far below rounding of the velocity's matrix: turns about a principal axis, for which momentum and
-//! angle follow from one another in closed form.
+//! Kinetic energies with terms of higher order in the deviation from zero velocity, at step sizes where these terms are far below
+//! the rounding of the velocity matrix. The test uses rotations about a principal axis, for which momentum and angle determine each
+//! other in closed form.
 
-// The fields of the models are those of the papers.
+// Field names follow the papers.
 #![allow(non_snake_case)]
 
 use clebsch::nalgebra::{Matrix3, SVector, Vector3};
@@ -52,7 +52,7 @@ fn moments() -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::new(0.7, 0.8, 0.3))
 }
 
-/// The momentum of a turn about the third axis by `θ` in a step: that of the body, and of the quartic term
+/// The momentum of a rotation about the third axis by `θ` per step: the body's part, plus the part of the quartic term
 /// `(k/h³) (2 - 2 cos θ)²`.
 fn momentum(θ: f64, h: f64) -> f64 {
     let half = (θ / 2.0).sin();
@@ -60,18 +60,18 @@ fn momentum(θ: f64, h: f64) -> f64 {
     inertia * θ.sin() / h + 16.0 * K * half * half * θ.sin() / h.powi(3)
 }
 
-/// The same of a quaternion, for `(64 k/h³) (1 - cos θ/2)²`.
+/// The same for a quaternion, with `(64 k/h³) (1 - cos θ/2)²`.
 fn momentum_of_quaternion(θ: f64, h: f64) -> f64 {
     let quarter = (θ / 4.0).sin();
     let inertia = moments().m11 + moments().m22;
     inertia * θ.sin() / h + 128.0 * K * quarter * quarter * (θ / 2.0).sin() / h.powi(3)
 }
 
-/// Steps from one that turns far to ones at which `1 - cos θ` is zero in doubles.
+/// Step sizes from a large rotation down to rotations for which `1 - cos θ` is zero in doubles.
 const STEPS: [f64; 8] = [0.5, 1e-2, 1e-4, 1e-6, 1e-7, 1e-8, 1e-9, 1e-11];
 
-/// The angle of a turn about the third axis is within a few roundings of what it should be; those of the
-/// momentum and of the solution are among them.
+/// Checks that the rotation angle about the third axis is correct to a few rounding errors, including those of the momentum and the
+/// solution.
 fn close(what: &str, found: f64, θ: f64) {
     let apart = (found / θ - 1.0).abs();
     assert!(

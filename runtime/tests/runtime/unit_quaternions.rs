@@ -1,5 +1,5 @@
-//! The equation in unit quaternions: its residual from small to the longest steps, in every scalar; refusals; and
-//! agreement with the Moser-Veselov equation, which it is for `β = 0`.
+//! The equation in unit quaternions: its residual from small to the largest step sizes, for every scalar; errors; and agreement
+//! with the Moser-Veselov equation, its special case `β = 0`.
 
 use super::common::{Random, largest, lift, lift_matrix};
 use clebsch::nalgebra::{Matrix3, Vector3};
@@ -24,8 +24,8 @@ fn residual<T: Real>(a: &Matrix3<f64>, real: f64, q: &UnitQuaternion<T>, n: &Vec
     largest(&(image * w + v.cross(&image) + v * T::from_f64(real) - n * T::from_f64(0.5)))
 }
 
-/// A random inertia with moments from 1 up to `spread`, on axes of its own in two cases of three, and a `β`: none, of
-/// the size of the moments, and much larger.
+/// A random inertia with moments from 1 to `spread`, with rotated axes in two of three cases. `β` is zero, of the size of the
+/// moments, or much larger.
 fn random_body(random: &mut Random, case: u64) -> (Matrix3<f64>, f64) {
     let spread: f64 = [1.0, 3.0, 30.0][(case % 3) as usize];
     let moments = Vector3::from_fn(|_, _| spread.powf(random.unit()));
@@ -44,7 +44,7 @@ fn random_body(random: &mut Random, case: u64) -> (Matrix3<f64>, f64) {
     (inertia - Matrix3::from_diagonal_element(real), real)
 }
 
-/// The largest part of `n` that can be solved for, by bisection between 0 and 1e3.
+/// The largest solvable multiple of `n`, by bisection between 0 and 1e3.
 fn bound(a: &Matrix3<f64>, real: f64, n: &Vector3<f64>) -> f64 {
     let (mut low, mut high) = (0.0, 1e3);
     for _ in 0..60 {
@@ -63,7 +63,7 @@ fn residual_is_rounding_up_to_the_bound() {
     let (mut worst, mut wide): (f64, f64) = (0.0, 0.0);
     for case in 0..600 {
         let (a, real) = random_body(&mut random, case);
-        // Terms of the equation.
+        // The size of the terms of the equation.
         let scale = a.amax() + real.abs() + 1.0;
         let direction = random.vector().normalize();
         let most = bound(&a, real, &direction).min(100.0);
@@ -81,9 +81,9 @@ fn residual_is_rounding_up_to_the_bound() {
         }
     }
     println!("{worst:e}, double-double {wide:e}");
-    // A dozen roundings of terms of that size.
+    // A dozen rounding errors of terms of that size.
     assert!(worst < 4e-15, "{worst:e}");
-    // The same of the wider type, whose divisions and roots round a few times.
+    // The same for double-double, whose divisions and roots have a few rounding errors.
     assert!(wide < 1e-29, "{wide:e}");
 }
 
@@ -93,7 +93,7 @@ fn the_solution_grows_out_of_the_neutral_element() {
     for case in 0..200 {
         let (a, real) = random_body(&mut random, case);
         let direction = random.vector().normalize();
-        // Bodies of a large `β` may turn on and on; the jumps below are measured against 400 steps.
+        // Bodies with a large `β` may rotate without limit; the jumps below are measured with 400 steps.
         let most = bound(&a, real, &direction).min(6.0);
         let mut last = [1.0, 0.0, 0.0, 0.0];
         for i in 1..400 {
@@ -104,7 +104,7 @@ fn the_solution_grows_out_of_the_neutral_element() {
                 .zip(q)
                 .map(|(x, y)| (x - y).abs())
                 .fold(0.0, clebsch::scalar::larger);
-            // Of 400 steps along one branch none is that long; another branch is of order one away.
+            // Along one branch, none of the 400 steps jumps that far; another branch is at a distance of order one.
             assert!(jump < 0.2, "case {case}, {i}: {jump}");
             last = q;
         }
@@ -125,7 +125,7 @@ fn without_the_number_it_is_the_equation_of_moser_and_veselov() {
             let ours = solved(&a, 0.0, &n).expect("inside the bound").components();
             let other = forced(&body, &n).expect("inside the bound").quaternion();
             for (x, y) in ours.iter().zip(other) {
-                // Rounding, over the distance to the bound, where the root is double; flat bodies come near 1e-13.
+                // Rounding error divided by the distance to the bound, where the root is double; flat bodies come near 1e-13.
                 let allowed = 1e-13 / (1.0 - fraction).sqrt();
                 assert!((x - y).abs() < allowed, "case {case}, {fraction}: {x} {y}");
             }
@@ -154,7 +154,7 @@ fn a_refusal_tells_the_step_that_can_be_made() {
             continue;
         }
         let push = random.vector() * 0.05;
-        // A torque at the node makes the momentum depend on the step.
+        // With a torque at the node, the momentum depends on the step size.
         for torque in [Vector3::zeros(), push] {
             let n = |h: f64| direction + torque * h;
             let h = 2.0 * most + 1.0;
@@ -201,7 +201,7 @@ fn bodies_without_positive_inertia_are_refused() {
         text(-0.5)
     );
     assert!(text(f64::NAN).contains("entry (1, 1)"));
-    // A small difference of large numbers is as symmetric as those are.
+    // A small difference of large numbers is symmetric only to the rounding of these numbers.
     let rounded = Matrix3::new(0.0, 1e-15, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     assert!(QuaternionBody::new("A", rounded, 1.0).is_ok());
     assert!(QuaternionBody::new("A", rounded * 1e6, 1.0).is_err());
@@ -223,7 +223,7 @@ fn a_free_step_keeps_both_momenta_one() {
         let mut q = UnitQuaternion::identity();
         let mut edge = Edge::new(space, space);
         for _ in 0..2000 {
-            // Elsewhere on its way the body may turn faster than where it begins.
+            // Later in the motion, the body may rotate faster than at the start.
             let Ok((next, following)) = edge.free_in_quaternions(&body, h, &q) else {
                 break;
             };
@@ -237,7 +237,7 @@ fn a_free_step_keeps_both_momenta_one() {
         }
     }
     println!("{worst:e}, without the change {before:e}");
-    // A few roundings of a momentum of length one, however many steps were made.
+    // A few rounding errors of a momentum of length one, for any number of steps.
     assert!(worst < 2e-14 && before > 0.1, "{worst:e} {before:e}");
 }
 
@@ -263,7 +263,7 @@ fn lanes_are_bodies_alone_and_derivatives_are_exact() {
             let n = direction * size;
             let seeded = Vector3::from_fn(|i, _| Dual::<3>::variable(n[i], i));
             let q = solved(&a, real, &seeded).expect("inside the bound");
-            // Magnitude covers the derivatives of the residual.
+            // `magnitude` includes the derivatives of the residual.
             let off = residual(&a, real, &q, &seeded);
             assert!(
                 off < 1e-13 * (a.amax() + real.abs() + 1.0),

@@ -1,5 +1,5 @@
-//! Equations solved by Newton's method are each measured in their own scale: bodies of very different
-//! mass and size side by side, and the same problem in other units of length, mass and time.
+//! Newton's method measures each equation on its own scale: bodies of very different mass and size in one model, and the same
+//! problem in other units of length, mass and time.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(non_snake_case, reason = "as in the papers")]
@@ -11,7 +11,7 @@ use clebsch::integrate::Model;
 use clebsch::nalgebra::{Matrix3, SVector, Vector3, Vector4};
 use clebsch::{BodyImpulse, BodyMomentum, BodyMomentumMatrix, Linear, RigidMotion, UnitQuaternion};
 
-/// How many base units go into one of each.
+/// The number of base units in each unit.
 #[derive(Clone, Copy)]
 struct Units {
     length: f64,
@@ -26,7 +26,7 @@ const BASE: Units = Units {
 };
 
 impl Units {
-    /// What a quantity of this dimension is multiplied by.
+    /// The factor of a quantity with this dimension.
     fn of(self, mass: i32, length: i32, time: i32) -> f64 {
         self.mass.powi(mass) * self.length.powi(length) * self.time.powi(time)
     }
@@ -41,7 +41,7 @@ impl Units {
     }
 }
 
-/// What one step makes of a random state, in base units.
+/// One step from a random state, as numbers in base units.
 macro_rules! stepped {
     ($model:expr, $initial:expr, $h:expr, |$state:ident| $numbers:expr) => {{
         let (model, h) = ($model.expect("valid"), $h);
@@ -70,7 +70,7 @@ fn motion_numbers(g: RigidMotion, m: SVector<f64, 6>, u: Units) -> Vec<f64> {
     all
 }
 
-/// Two bodies with a joint, the second and the joint lighter by a factor.
+/// Two bodies with a joint; the second body and the joint are lighter by a factor.
 fn pair(r: &mut Random, u: Units, lighter: f64) -> Vec<f64> {
     let eps = between(r, 0.1, 0.5) * lighter;
     let arms = [(); 2].map(|()| vector(r, 0.7));
@@ -130,7 +130,7 @@ fn body_in_fluid(r: &mut Random, u: Units, smaller: f64) -> Vec<f64> {
     })
 }
 
-/// Three bodies with springs, the inertia of the third smaller by a factor.
+/// Three bodies with springs; the inertia of the third is smaller by a factor.
 fn springs(r: &mut Random, u: Units, thinner: f64) -> Vec<f64> {
     let j = [1.0, 1.0, thinner].map(|s| positive(r) * s * u.inertia());
     let [a, b] = [(); 2].map(|()| vector(r, 0.5));
@@ -164,7 +164,7 @@ fn springs(r: &mut Random, u: Units, thinner: f64) -> Vec<f64> {
     .concat())
 }
 
-/// An ellipsoid of changing shape; its matrix is a pure number.
+/// A deformable ellipsoid, whose matrix is dimensionless.
 fn ellipsoid(r: &mut Random, u: Units, _: f64) -> Vec<f64> {
     let shape = Matrix3::identity() + positive(r) * 0.3;
     let model = Ellipsoid::new(EllipsoidParameters {
@@ -219,7 +219,7 @@ fn bits(numbers: &[f64]) -> Vec<u64> {
     numbers.iter().map(|x| x.to_bits()).collect()
 }
 
-/// No step is refused, however small one body is beside another.
+/// Every step succeeds, however small one body is.
 #[test]
 fn bodies_of_very_different_sizes_are_solved_together() {
     for (name, step) in &ALL[..3] {
@@ -252,8 +252,7 @@ fn units_that_are_powers_of_four_give_the_same_bits() {
     }
 }
 
-/// Data are rounded in the other units, a few times each, and steps of at most a third of a radian
-/// magnify that by no more than ten.
+/// Data have a few rounding errors in the other units, and steps of at most a third of a radian amplify these at most tenfold.
 const SAME: f64 = 2e-14;
 
 #[test]
@@ -277,7 +276,7 @@ fn other_units_give_the_same_step() {
                 assert!(fine, "{name} {problem}: {x} {y}");
                 worst = worst.max(off);
             }
-            // Another problem is another step: the test can fail.
+            // A different problem gives a different step, so the test can fail.
             assert_ne!(bits(&one), bits(&step(&mut again, others, 0.1)));
             let _ = step(&mut random, BASE, 0.1);
         }

@@ -1,5 +1,4 @@
-//! Chapter 2 and its appendix on rotations. Takes random points; gives the printed form and the right
-//! one to the judge.
+//! Errata of chapter 2 and its appendix on rotations. At random points, gives the printed and the correct form to `judge`.
 
 use super::{
     Matrix, Vector, ad_star, bracket, id, inner, judge, length, minus, residual, size, skew, sym,
@@ -65,7 +64,7 @@ fn two_121_holds_for_the_gradient_of_the_free_body_alone() {
     let moved = |w: &Matrix, v: &Matrix| size(&(*v - *w * *v * w.transpose()));
     judge("(2.121)", |s| {
         let w: Matrix = s.orthogonal();
-        // Of a general symmetric gradient against sym(ω), which commutes with ω.
+        // A general symmetric gradient against sym(ω), which commutes with ω.
         (moved(&w, &s.symmetric()), moved(&w, &sym(&w)))
     });
 }
@@ -88,7 +87,7 @@ fn two_128_is_the_dual_action() {
 
 #[test]
 fn remark_2_6_the_norm_of_the_momentum_is_no_casimir() {
-    // {J, m_j} = [ê_j, J], {m_i, m_j} = (m × ...): what a Casimir leaves alone.
+    // {J, m_j} = [ê_j, J], {m_i, m_j} = (m × ...): the flow of the momentum, which preserves a Casimir.
     judge("|m| as a Casimir", |s| {
         let (j, m): (Matrix, Vector) = (s.symmetric(), s.vector());
         let of_norm = bracket(&hat(&m), &j).scaled(2.0);
@@ -105,7 +104,7 @@ fn two_145_the_velocity_acts_from_the_right() {
     judge("(2.145)", |s| {
         let (p, here, w) = (s.matrix(), s.orthogonal(), s.orthogonal());
         let next = here * w;
-        // The spatial momentum skew(P Λᵀ) is kept (2.83).
+        // The spatial momentum skew(P Λᵀ) is conserved (2.83).
         let momentum = |p: &Matrix, g: &Matrix| skew(&(*p * g.transpose()));
         let before = momentum(&p, &here);
         let printed = momentum(&(w * p), &next);
@@ -196,7 +195,7 @@ fn two_165_and_two_166_the_matrix_of_the_vector_form_stands_under_the_trace() {
 
 #[test]
 fn two_147ff_the_inertia_of_a_body_off_its_joint_grows() {
-    // Kinetic energy of the point mass at d that turns with velocity ω: ε |ω × d|²/2.
+    // Kinetic energy of the point mass at d that rotates with velocity ω: ε |ω × d|²/2.
     judge("modified inertia", |s| {
         let (eps, d, w): (f64, Vector, Vector) = (s.between(0.5, 1.0), s.vector(), s.vector());
         let moved = cross(&w, &d);
@@ -214,7 +213,7 @@ fn two_171_has_the_sign_of_the_multiplier_reversed() {
     judge("(2.171)", |s| {
         let (here, next): (Matrix, Matrix) = (s.matrix(), s.matrix());
         let (w, change): ([Matrix; 2], Matrix) = (from_fn(|_| s.orthogonal()), s.matrix());
-        // Terms of the multiplier at node k on both edges, along a change of Λ_k.
+        // The terms of the multiplier at node k on both edges, along a variation of Λ_k.
         let slope = inner(&here, &change) - inner(&next, &(w[0].transpose() * change * w[1]));
         let carried = w[0] * next * w[1].transpose();
         let printed = inner(&(carried - here), &change);
@@ -223,7 +222,7 @@ fn two_171_has_the_sign_of_the_multiplier_reversed() {
     });
 }
 
-/// The thesis's quantities of the coupled bodies on one edge: momenta and `Λ ∇ℓᵀ`, `Λᵀ ∇ℓ`.
+/// The thesis's quantities of the coupled bodies on one edge: momenta, `Λ ∇ℓᵀ` and `Λᵀ ∇ℓ`.
 fn coupled_edge(
     system: &CoupledBodies<true>,
     tail: &[Matrix; 2],
@@ -244,7 +243,7 @@ fn coupled_edge(
     (w, momentum, forces)
 }
 
-/// How far the law (2.184) with a weight of its last term is from the oracle.
+/// The distance of the law (2.184), with a weight on its last term, from the oracle.
 fn coupled_law(s: &mut Source, weight: f64, vector_form: bool) -> f64 {
     let system = CoupledBodies::<true>::random(s);
     let nodes: [[Matrix; 2]; 3] = from_fn(|_| CoupledBodies::<true>::node(s));
@@ -252,7 +251,7 @@ fn coupled_law(s: &mut Source, weight: f64, vector_form: bool) -> f64 {
     let (eps, [d1, d2]) = (system.reduced_mass, system.arms);
     let factors = |w: &[Matrix; 2], r: &Matrix| {
         if vector_form {
-            // (2.172), (2.175) as printed.
+            // (2.172) and (2.175) as printed.
             let a = hat(&d1).transpose() * *r * hat(&d2);
             let gradient =
                 hat(&d1) * (id() - w[0]) * (id() - w[1].transpose()) * hat(&d2).transpose();
@@ -305,7 +304,7 @@ fn two_178_has_the_actions_of_both_bodies_exchanged() {
     judge("(2.178)", |s| {
         let (g, relative): (Matrix, Matrix) = (s.matrix(), s.orthogonal());
         let zeta: Matrix = s.skew();
-        // The first body's part of (2.180), with 2 skew and so(3) paired by half the trace.
+        // The first body's part of (2.180), with 2 skew and with the pairing of so(3) by half the trace.
         let map = inner(&(relative * g.transpose()), &zeta);
         let printed = inner(&g, &(relative * zeta));
         let right = inner(&g, &(zeta * relative).scaled(-1.0));
@@ -329,7 +328,7 @@ fn tables_a_1_and_a_2_have_the_momentum_map_transposed() {
 fn appendix_a_3_divides_by_the_old_tensor() {
     judge("A.3, step 6", |s| {
         let (w, j): (Matrix, Matrix) = (s.orthogonal(), s.positive());
-        // S + A is ω times the tensor before the step.
+        // S + A equals ω times the tensor before the step.
         let (x, next) = (w * j, w * j * w.transpose());
         let off = |candidate: Matrix| size(&(candidate - w));
         (off(x * next.inverse()), off(x * j.inverse()))
@@ -375,14 +374,14 @@ fn two_27_the_matrix_of_second_moments_is_no_inertia_matrix() {
 fn appendix_a_3_formula_for_the_velocity() {
     judge("(A.3)", |s| {
         let (w, j): (Matrix, Matrix) = (s.orthogonal(), s.positive());
-        // In the sign of the thesis; S is the symmetric part of Ω I.
+        // With the sign of the thesis; S is the symmetric part of Ω I.
         let (m, symmetric) = (j * w.transpose() - w * j, sym(&(w * j)));
         let printed = j.inverse() * (symmetric - m);
         let right = (symmetric - m.scaled(0.5)) * j.inverse();
         (size(&(printed - w)), size(&(right - w)))
     });
     judge("(A.2), second line", |s| {
-        // Each momentum is that of its own body plus its coupling.
+        // Each momentum is the momentum of its own body plus its coupling.
         let (w, j, coupled): ([Matrix; 2], [Matrix; 2], Matrix) = (
             from_fn(|_| s.orthogonal()),
             from_fn(|_| s.positive()),

@@ -1,5 +1,4 @@
-//! Chapter 3, ellipsoids on GL(n). Takes random points; gives the printed form and the right one to
-//! the judge.
+//! Errata of chapter 3, ellipsoids on GL(n). At random points, gives the printed and the correct form to `judge`.
 
 use super::{Matrix, ad_star, id, inner, judge, size};
 use clebsch_oracle::oracle::action::elastic::entries;
@@ -74,8 +73,8 @@ fn after_three_20_the_metric_of_space_by_that_of_the_body() {
     });
 }
 
-/// `tr(C0 (Q' - Q) I0 (Q' - Q)ᵀ)/2 - weight tr(K C)` with `C = Qᵀ C0 Q` at the start of the edge: the
-/// scale of the thesis, where the square of the step is in the weight.
+/// `tr(C0 (Q' - Q) I0 (Q' - Q)ᵀ)/2 - weight tr(K C)` with `C = Qᵀ C0 Q` at the start of the edge, in the scale of the thesis:
+/// `weight` contains the square of the step size.
 struct Ellipsoid {
     metric: Matrix,
     inertia: Matrix,
@@ -93,7 +92,7 @@ impl DiscreteAction<3, 1> for Ellipsoid {
     }
 }
 
-/// How far the printed law and the right one are from the variation of the action.
+/// The distances of the printed and the correct law from the variation of the action.
 fn ellipsoid_laws(s: &mut Source, weight: f64) -> (f64, f64) {
     let stress: Matrix = s.symmetric();
     let body = Ellipsoid {

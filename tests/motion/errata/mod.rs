@@ -1,7 +1,6 @@
-//! What the thesis prints wrongly, each with the right form beside it: the right one holds, the
-//! printed one does not. Takes random points that solve nothing; the judge is the variation of the
-//! unreduced action, a directional derivative, or what a rotation or a bracket must keep. The list is
-//! `docs/errata.md`; its Lagrangian and momenta are -h times ours.
+//! Misprints of the thesis, each with the correct form: the correct form holds and the printed form fails. Points are random and
+//! solve nothing. The reference is the variation of the unreduced action, a directional derivative, or an invariance of a rotation
+//! or a bracket. `docs/errata.md` lists the errata. The thesis's Lagrangian and momenta are -h times those of clebsch.
 
 mod bodies;
 mod ellipsoids;
@@ -18,18 +17,18 @@ use std::array::from_fn;
 type Matrix = Square<f64, 3>;
 type Vector = [f64; 3];
 
-/// Numbers of order one, a hundred roundings.
+/// A hundred rounding errors of numbers of order one.
 const ROUNDING: f64 = 1e-12;
-/// A printed form that is wrong is wrong by a number of order one.
+/// The error of a wrong printed form is of order one.
 const VISIBLE: f64 = 1e-3;
-/// Draws; at every one the right form must hold, at every one the printed one must fail.
+/// Number of draws. The correct form must hold, and the printed form must fail, at every draw.
 const DRAWS: u64 = 50;
 
 fn inner(a: &Matrix, b: &Matrix) -> f64 {
     (a.transpose() * *b).trace()
 }
 
-/// `(A - Aᵀ)/2`, as the thesis uses it.
+/// `(A - Aᵀ)/2`, the convention of the thesis.
 fn skew(a: &Matrix) -> Matrix {
     (*a - a.transpose()).scaled(0.5)
 }
@@ -59,12 +58,12 @@ fn minus(a: &Vector, b: &Vector) -> Vector {
     from_fn(|i| a[i] - b[i])
 }
 
-/// Judges a printed and a right form by how far each is off, at every draw.
+/// Compares the errors of the printed and the correct form at every draw.
 fn judge(what: &str, off: impl FnMut(&mut Source) -> (f64, f64)) {
     judge_within(ROUNDING, what, off);
 }
 
-/// The same where the right form is found by differences.
+/// Like `judge`, with a larger tolerance for correct forms computed by finite differences.
 fn judge_within(tolerance: f64, what: &str, mut off: impl FnMut(&mut Source) -> (f64, f64)) {
     for seed in 1..=DRAWS {
         let (printed, right) = off(&mut Source::seeded(seed));
@@ -83,7 +82,7 @@ fn id() -> Matrix {
     Square::identity()
 }
 
-/// The oracle's residual at the middle one of three nodes.
+/// The oracle's residual at the middle of three nodes.
 fn residual<const G: usize>(
     action: &impl DiscreteAction<3, G>,
     nodes: &[[Matrix; G]; 3],

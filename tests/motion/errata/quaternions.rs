@@ -1,5 +1,5 @@
-//! Section 2.9 and table A.6: SU(2) and quaternions. Takes random points; complex 2 x 2 matrices are
-//! written out, so that nothing here knows how the runtime keeps a quaternion.
+//! Errata of section 2.9 and table A.6: SU(2) and quaternions. Points are random. Complex 2 x 2 matrices are written out, so that
+//! the test does not depend on the quaternion layout of the runtime.
 
 use super::{Vector, judge, judge_within, length, minus};
 use clebsch_oracle::oracle::points::Source;
@@ -91,7 +91,7 @@ fn of_vector(v: &Vector) -> Quaternion {
     [0.0, v[0], v[1], v[2]]
 }
 
-/// The matrix of (2.189) with its lower left entry.
+/// The matrix of (2.189) with this lower left entry.
 fn spin([w, x, y, z]: &Quaternion, lower_left: Complex) -> Spin {
     [[[*w, -*z], [-*y, -*x]], [lower_left, [*w, *z]]]
 }
@@ -103,7 +103,7 @@ fn two_189_is_not_unitary() {
         let off = |u: Spin| apart(&product(&u, &dagger(&u)), &identity());
         (off(spin(&q, [q[2], q[1]])), off(spin(&q, [q[2], -q[1]])))
     });
-    // With the right entry it takes products to products.
+    // With the correct entry it is a homomorphism.
     for seed in 1..=super::DRAWS {
         let mut s = Source::seeded(seed);
         let (p, q) = (unit(&mut s), unit(&mut s));
@@ -128,7 +128,7 @@ fn two_190_reverses_the_bracket() {
 
 #[test]
 fn two_193_has_the_kinetic_energy_with_the_wrong_sign_and_factor() {
-    // Differences over a step of 1e-3: its square is what is left.
+    // Finite differences with step 1e-3: the remaining error is its square.
     judge_within(1e-5, "(2.193)", |s| {
         let moments: Vector = from_fn(|_| s.between(1.5, 3.0));
         let w: Vector = from_fn(|_| s.between(0.3, 1.0));
@@ -140,7 +140,7 @@ fn two_193_has_the_kinetic_energy_with_the_wrong_sign_and_factor() {
             let squares = (0..3).map(|i| (1.0 - moments[i]) * q[i] * q[i]);
             2.0 * cos + factor * squares.sum::<f64>()
         };
-        // 2 - h² ω·I ω/4: what the action of a body is, up to a factor.
+        // 2 - h² ω·I ω/4: the action of a body, up to a factor.
         let energy: f64 = (0..3).map(|i| moments[i] * w[i] * w[i]).sum();
         let off = |value: f64| ((value - 2.0) / (h * h) + 0.25 * energy).abs();
         (off(shape(-2.0)), off(shape(1.0)))
@@ -164,7 +164,7 @@ fn two_194_turns_about_the_first_axis() {
 fn two_201_the_coadjoint_action_is_that_of_the_velocity() {
     judge("(2.201)", |s| {
         let (q, w, m) = (unit(s), unit(s), s.vector());
-        // The spatial momentum is kept: the body momentum is q* m q at either end.
+        // The spatial momentum is conserved: the body momentum is q* m q at either end.
         let seen =
             |q: &Quaternion| imaginary(&hamilton(&hamilton(&conjugate(q), &of_vector(&m)), q));
         let (before, after) = (seen(&q), seen(&hamilton(&q, &w)));
@@ -183,8 +183,8 @@ fn table_a_6_the_gradient_does_not_give_the_momentum() {
         let (h, c) = (s.between(0.1, 0.5), 1.0);
         let moments: Vector = from_fn(|_| s.between(1.5, 3.0));
         let (w, xi) = (unit(s), s.vector());
-        // L = -(4 c/h) re W + (2/h) im W·(I - c) im W, quadratic in W: the central difference along
-        // δW = -ξ W/2, a turn of the tail, is exact.
+        // L = -(4 c/h) re W + (2/h) im W·(I - c) im W, quadratic in W: the central difference along δW = -ξ W/2, a rotation at the
+        // start of the edge, is exact.
         let action = |w: &Quaternion| {
             let squares = (0..3).map(|i| (moments[i] - c) * w[i + 1] * w[i + 1]);
             (-4.0 * c * w[0] + 2.0 * squares.sum::<f64>()) / h
@@ -203,7 +203,7 @@ fn table_a_6_the_gradient_does_not_give_the_momentum() {
             (moments[1] - c) * w[2],
             (moments[2] - c) * w[3],
         ];
-        // N = vec(A W*)/2 with A = ∇L = (4/h) times what stands here.
+        // N = vec(A W*)/2 with A = ∇L, and ∇L is (4/h) times the expression here.
         (momentum(printed, 2.0 / h), momentum(right, 2.0 / h))
     });
 }
@@ -214,7 +214,7 @@ fn two_204_the_fibration_is_of_the_attitude_not_of_the_multiplier() {
         let (attitude, radius) = (unit(s), s.between(1.5, 2.5));
         let [a, b] = [unit(s), unit(s)].map(|z| z.map(|x| radius * x));
         let m: Vector = s.vector();
-        // A fibration sends the whole sphere to one sphere.
+        // A fibration maps the whole sphere to one sphere.
         let printed = |z: &Quaternion| {
             let v = imaginary(&hamilton(&conjugate(&attitude), z));
             dot(&v, &v).sqrt()
@@ -229,7 +229,7 @@ fn two_204_the_fibration_is_of_the_attitude_not_of_the_multiplier() {
             (right(&a) - right(&b)).abs(),
         )
     });
-    // Its fibres are circles: q and exp(θ m) q have one image.
+    // Its fibres are circles: q and exp(θ m) q have the same image.
     let mut s = Source::seeded(3);
     let (q, m): (Quaternion, Vector) = (unit(&mut s), s.vector());
     let size = dot(&m, &m).sqrt();

@@ -1,5 +1,5 @@
-//! What the thesis says of orders and of the symplectic form of whole steps. Takes random motions;
-//! the judge is the order at which an error falls, or the two-form of a map by dual numbers.
+//! Errata on orders and on the symplectic form of whole steps. Motions are random. The reference is the measured order of an error,
+//! or the two-form of a map with dual numbers.
 
 use super::{Matrix, Vector, judge, size, skew};
 use crate::seeded::Seeded;
@@ -15,7 +15,7 @@ fn rotation(v: &Vector) -> Matrix {
     Square::from_entries(|i, j| r[(i, j)])
 }
 
-/// The power of the step with which an error falls.
+/// The order of an error in the step size.
 fn order(error: impl Fn(f64) -> f64) -> f64 {
     let (h, half) = (0.02, 0.01);
     (error(h) / error(half)).log2()
@@ -25,17 +25,17 @@ fn order(error: impl Fn(f64) -> f64) -> f64 {
 fn section_2_2_1_the_velocity_of_a_step_is_of_first_order() {
     judge("Ω = 1 + Ω Δt to second order", |s| {
         let (a, b): (Vector, Vector) = (s.vector(), s.vector());
-        // Λ(t) = exp(t a) exp(t² b), whose velocity in the body is exp(-t² b) a + 2 t b.
+        // Λ(t) = exp(t a) exp(t² b), with body velocity exp(-t² b) a + 2 t b.
         let at = |t: f64| rotation(&a.map(|x| t * x)) * rotation(&b.map(|x| t * t * x));
         let t = 0.4;
         let back = rotation(&b.map(|x| -t * t * x)).apply(&a);
         let velocity: Vector = from_fn(|i| back[i] + 2.0 * t * b[i]);
         let edge = |h: f64| at(t - 0.5 * h).transpose() * at(t + 0.5 * h);
         let id = Square::identity();
-        // Less its value: the whole of Ω, and its skew part alone.
+        // The error of the whole of Ω, and of its skew part alone.
         let whole = |h: f64| size(&((edge(h) - id).scaled(1.0 / h) - hat(&velocity)));
         let part = |h: f64| size(&(skew(&edge(h)).scaled(1.0 / h) - hat(&velocity)));
-        // By how much each misses the second order: by one, and by less than a tenth.
+        // 1 if the order is not 2 to within 0.1, otherwise 0.
         let missing = |order: f64| if (order - 2.0).abs() < 0.1 { 0.0 } else { 1.0 };
         (missing(order(whole)), missing(order(part)))
     });
@@ -63,7 +63,7 @@ fn appendix_a_4_the_coupling_is_of_the_order_of_the_rest() {
     });
 }
 
-/// How far a step of (Λ, μ) is from symplectic.
+/// The symplectic defect of a step of (Λ, μ).
 fn off(
     step: impl Fn(Rotation<Seeded>, Vector3<Seeded>) -> (Matrix3<Seeded>, Vector3<Seeded>),
     mu: &Vector,
@@ -85,9 +85,8 @@ fn off(
 
 #[test]
 fn two_63_holds_the_velocity_fixed_and_would_prove_too_much() {
-    // The printed proof differentiates Λ Ω and P Ω with Ω held fixed. It would make every step
-    // symplectic that turns both by a rotation made from the momentum; one is only if that rotation
-    // solves the equation of the action.
+    // The printed proof differentiates Λ Ω and P Ω with Ω held fixed. That would make every step symplectic that rotates both by a
+    // function of the momentum. The step is symplectic only if the rotation solves the equation of the action.
     judge("(2.63)", |s| {
         let mu: Vector = from_fn(|_| s.between(0.3, 1.0));
         let second = [
@@ -101,7 +100,7 @@ fn two_63_holds_the_velocity_fixed_and_would_prove_too_much() {
         };
         let printed = off(
             |r, m| {
-                // A rotation by the velocity that the moments of inertia give, exact to first order.
+                // A rotation by the velocity from the moments of inertia, exact to first order.
                 let all: f64 = second.iter().sum();
                 let velocity = Vector3::from_fn(|i, _| m[i] * h / Dual::constant(all - second[i]));
                 turned(r, Rotation::exp(&velocity), m)

@@ -1,5 +1,4 @@
-//! Appendix C, particles of shallow water. Takes random points; gives the printed form and the right
-//! one to the judge.
+//! Errata of appendix C, particles of shallow water. At random points, gives the printed and the correct form to `judge`.
 
 use super::judge;
 use clebsch_oracle::oracle::points::Source;

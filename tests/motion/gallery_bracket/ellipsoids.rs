@@ -1,4 +1,4 @@
-//! Ellipsoids on GL(n): how they are started and stepped. Takes a case and random points; gives both nodes.
+//! Ellipsoids on GL(n): starts a case at a random point, steps once, and returns both nodes.
 
 use super::{Step, length, number, quantity};
 use crate::seeded::Seeded;
@@ -7,7 +7,7 @@ use clebsch::{BodyMomentumMatrix, Dual, Linear, SpatialMomentumMatrix};
 use clebsch_models::Case;
 use clebsch_oracle::physics::draws::Draws;
 
-/// A symmetric matrix near the identity with independent changes from seed `first` on.
+/// A symmetric matrix near the identity with independent variations from seed `first`.
 fn near_identity<const N: usize>(draws: &mut Draws, first: usize) -> SMatrix<Seeded, N, N> {
     let mut out = SMatrix::<Seeded, N, N>::repeat(Dual::constant(0.0));
     let upper = (0..N).flat_map(|i| (i..N).map(move |j| (i, j)));
@@ -19,13 +19,13 @@ fn near_identity<const N: usize>(draws: &mut Draws, first: usize) -> SMatrix<See
     out
 }
 
-/// `(A + A^T)/2`, symmetric to the last bit.
+/// `(A + A^T)/2`, exactly symmetric.
 fn symmetric<const N: usize>(a: SMatrix<Seeded, N, N>) -> SMatrix<Seeded, N, N> {
     (a + a.transpose()) * Dual::constant(0.5)
 }
 
-/// Defines how an ellipsoid is started: its advected matrix has independent changes, and the parameter that gives it is
-/// chosen accordingly by `$chosen`, (C0, I0) from the inverse of the placement and the advected matrix.
+/// Defines the start of an ellipsoid. Its advected matrix varies independently; `$chosen` computes the parameter, (C0, I0), from
+/// the inverse placement and the advected matrix.
 macro_rules! ellipsoid {
     ($name:ident, $of_size:ident, $module:ident, $model:ident, $parameters:ident, $initial:ident,
      $momentum:ident, $kind:ident, $advected:ident, $chosen:expr) => {

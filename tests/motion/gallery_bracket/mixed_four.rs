@@ -1,4 +1,4 @@
-//! Four groups together: how they are started and stepped. Takes a case and random points; gives both nodes.
+//! Four groups together: starts a case at a random point, steps once, and returns both nodes.
 
 use super::{Node, Step, attitude, column, length, matrix, number, quantity, seeded};
 use crate::seeded::Seeded;

@@ -1,4 +1,4 @@
-//! Points in space: how they are started and stepped. Takes a case and random points; gives both nodes.
+//! Points in space: starts a case at a random point, steps once, and returns both nodes.
 
 use super::{Node, Step, column, length, number, quantity, vector};
 use crate::seeded::Seeded;
@@ -6,7 +6,7 @@ use clebsch::{Additive, FieldMomentum};
 use clebsch_models::Case;
 use clebsch_oracle::physics::draws::Draws;
 
-/// Starts the model of a point, steps once, and gives both nodes.
+/// Starts a model of a point, steps once, and returns both nodes.
 macro_rules! point_stepped {
     ($model:ident, $parameters:expr, $initial:ident, $case:expr, $draws:expr, $warp:expr) => {{
         let (momentum, place) = (vector($draws, 0), vector($draws, 3));

@@ -1,4 +1,4 @@
-//! Ellipsoids on GL(n): one step, symplectic. Takes a case and random states; gives the defect.
+//! Ellipsoids on GL(n): the symplectic defect of one step of a case at a random state.
 
 use super::number;
 use crate::seeded::Seeded;
@@ -8,14 +8,14 @@ use clebsch_models::Case;
 use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::symplectic::defect_on_group;
 
-/// Defines how an ellipsoid is started: at the placement of the case, changed a little, with any small momentum, which the
-/// body sees and which `$seen` shows the model.
+/// Defines the start of an ellipsoid: near the placement of the case, with any small body momentum, which `$seen` converts to the
+/// momentum of the model.
 macro_rules! ellipsoid {
     ($name:ident, $of_size:ident, $module:ident, $model:ident, $parameters:ident, $initial:ident,
      $momentum:ident, $seen:expr) => {
         fn $of_size<const N: usize>(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
             use clebsch_models::$module::*;
-            // The changes of the placement, then those of the momentum.
+            // The first seeds vary the placement, the others the momentum.
             let seeds = 2 * N * N;
             let square = |values: &[f64]| -> SMatrix<Seeded, N, N> {
                 SMatrix::from_fn(|r, c| Dual::constant(values[N * r + c]))

@@ -1,4 +1,4 @@
-//! Four groups together: one step, symplectic on their product. Takes a case and random states; gives the defect.
+//! Four groups together: the symplectic defect of one step on their product, for a case at a random state.
 
 use super::Turn;
 use crate::seeded::Seeded;
@@ -29,7 +29,7 @@ fn along_mixed(mu: &[f64], a: usize, b: usize) -> f64 {
 
 pub(super) fn mixed_four(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     use clebsch_models::mixed_four::*;
-    // Fifteen changes of the elements, then fifteen of the momenta.
+    // Fifteen variations of the elements, then fifteen of the momenta.
     let seeds = 30;
     let numbers =
         |values: &[f64]| -> Vec<Seeded> { values.iter().map(|x| Dual::constant(*x)).collect() };
@@ -61,7 +61,7 @@ pub(super) fn mixed_four(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
         rotation: Rotation::from_quaternion(own).expect("a unit quaternion"),
         translation: Vector3::from_column_slice(&numbers(&draws.direction())),
     };
-    // To first order this is the exponential.
+    // This equals the exponential to first order.
     let motion = own
         * RigidMotion {
             rotation: Rotation::exp(&change(3)),

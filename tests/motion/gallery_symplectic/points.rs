@@ -1,4 +1,4 @@
-//! Points in space: one step, symplectic. Takes a case and random states; gives the defect.
+//! Points in space: the symplectic defect of one step of a case at a random state.
 
 use super::{column, number, values};
 use crate::seeded::Seeded;
@@ -9,7 +9,7 @@ use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::measure::worse;
 use clebsch_oracle::physics::symplectic::defect_on_group;
 
-/// A place at distance one from the origin and a momentum, with independent changes.
+/// A position at distance one from the origin and a momentum, with independent variations.
 fn point(draws: &mut Draws) -> (Vector3<Seeded>, Vector3<Seeded>) {
     let (place, momentum) = (draws.direction(), draws.direction());
     (
@@ -18,7 +18,7 @@ fn point(draws: &mut Draws) -> (Vector3<Seeded>, Vector3<Seeded>) {
     )
 }
 
-/// Starts the model of a point, steps once, and gives the defect.
+/// Starts a model of a point, steps once, and returns the defect.
 macro_rules! point_stepped {
     ($model:ident, $parameters:expr, $initial:ident, $place:expr, $momentum:expr, $h:expr) => {{
         let model = $model::new($parameters).expect("parameters of a case");

@@ -1,5 +1,5 @@
-//! The action of two edges and its derivatives, by dual numbers: sums over sites are typed by hand, and
-//! nothing here is known to the engine.
+//! The action of two edges and its derivatives by dual numbers. Sums over sites are written by hand and share nothing with the
+//! engine.
 
 use super::models::Line;
 use clebsch::nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -8,10 +8,10 @@ use clebsch::{Dual, Real};
 /// A number with one derivative.
 pub type D = Dual<1>;
 
-/// Numbers and attitudes at one node.
+/// Field values and attitudes at one node.
 #[derive(Clone, Debug)]
 pub struct Configuration<T> {
-    /// Fields, component after component.
+    /// Fields, component by component.
     pub x: Vec<T>,
     /// Rotations, body to space.
     pub r: Vec<Matrix3<T>>,
@@ -39,7 +39,7 @@ pub fn imaginary<T: Real>([_, x, y, z]: [T; 4]) -> Vector3<T> {
     Vector3::new(x, y, z)
 }
 
-/// `q* v q`: a vector of space seen from the body.
+/// `q* v q`: the body components of a spatial vector.
 pub fn seen_from_body<T: Real>(q: [T; 4], v: &Vector3<T>) -> Vector3<T> {
     let v = [T::zero(), v[0], v[1], v[2]];
     imaginary(hamilton(hamilton(conjugate(q), v), q))
@@ -60,7 +60,7 @@ impl Configuration<f64> {
         }
     }
 
-    /// One number or one turn about a body axis as the variable.
+    /// With one field component, or one rotation about a body axis, as the variable.
     pub fn varied(&self, at: usize) -> Configuration<D> {
         let mut out = self.lifted();
         if at < self.x.len() {
@@ -69,7 +69,7 @@ impl Configuration<f64> {
         }
         let (i, axis) = ((at - self.x.len()) / 3, (at - self.x.len()) % 3);
         if let Some(i) = i.checked_sub(self.r.len()) {
-            // The coordinates of the algebra are those of the angular velocity: half a quaternion.
+            // The coordinates of the algebra are angular velocity, which is half a quaternion.
             let mut turn = [1.0, 0.0, 0.0, 0.0].map(D::constant);
             turn[axis + 1] = D::variable(0.0, 0) * D::constant(0.5);
             out.q[i] = hamilton(out.q[i], turn);
@@ -83,7 +83,7 @@ impl Configuration<f64> {
         out
     }
 
-    /// How many derivatives there are.
+    /// The number of derivatives.
     pub fn coordinates(&self) -> usize {
         self.x.len() + 3 * (self.r.len() + self.q.len())
     }
@@ -94,13 +94,13 @@ pub fn trace<T: Real>(a: &Matrix3<T>, b: &Matrix3<T>) -> T {
     (a * b).trace()
 }
 
-/// The largest derivative of the action of two edges at the middle one of three configurations, less what
-/// the rounding of places by two units leaves in a velocity, of the largest derivative of one edge.
+/// The largest derivative of the action of two edges at the middle of three configurations, relative to the largest derivative of
+/// one edge. Subtracts the velocity error from two rounding errors of positions.
 pub fn stationarity(line: &dyn Line, nodes: &[Configuration<f64>; 3]) -> f64 {
     stationarity_weighed(line, &line.weights(), nodes)
 }
 
-/// The same with other weights of its terms.
+/// Like `stationarity`, with other weights of the terms.
 pub fn stationarity_weighed(
     line: &dyn Line,
     weights: &[f64],
@@ -133,8 +133,7 @@ pub fn stationarity_weighed(
     (worst - rounded).max(0.0) / scale
 }
 
-/// A covector less the combination of the derivatives of constraints that is nearest to it: what reactions cannot
-/// balance.
+/// A covector minus its projection onto the constraint gradients: the part that constraint forces cannot balance.
 pub fn without_reactions(line: &dyn Line, q: &Configuration<f64>, of: &[f64]) -> Vec<f64> {
     let free: Vec<usize> = (0..q.coordinates()).filter(|at| !line.held(*at)).collect();
     let columns = free.iter().map(|at| line.constraints(&q.varied(*at)));
@@ -143,14 +142,14 @@ pub fn without_reactions(line: &dyn Line, q: &Configuration<f64>, of: &[f64]) ->
     let all = DMatrix::from_fn(free.len(), count, |i, j| columns[i][j].dual[0]);
     let mut left = DVector::from_iterator(free.len(), free.iter().map(|at| of[*at]));
     let basis = all.qr().q();
-    // Twice, so that rounding of the first is taken away.
+    // A second projection removes the rounding error of the first.
     for _ in 0..2 {
         left -= &basis * (basis.transpose() * &left);
     }
     left.iter().copied().collect()
 }
 
-/// By how much the largest constraint differs between two configurations.
+/// The largest difference of a constraint value between two configurations.
 pub fn off_constraints(line: &dyn Line, a: &Configuration<f64>, b: &Configuration<f64>) -> f64 {
     let (a, b) = (line.constraints(&a.lifted()), line.constraints(&b.lifted()));
     clebsch::scalar::largest(a.iter().zip(&b).map(|(x, y)| (x.value() - y.value()).abs()))

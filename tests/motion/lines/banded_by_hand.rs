@@ -1,6 +1,6 @@
-//! Lattices whose sites are found together, against the same schemes written by hand: bodies joined by their velocities and
-//! the inextensible rod, from random states, with parameters that vary from site to site where the model has them, at every
-//! end and around rings. Takes seeds; a datum that is changed by a millionth is seen.
+//! Chains whose sites are coupled, against the same schemes written by hand: bodies coupled through their velocities, and the
+//! inextensible rod. States are random, parameters vary from site to site if the model has such parameters, and tests cover all
+//! ends and rings. A test checks that the comparison detects a relative change of 1e-6 in a datum.
 
 use super::models::Random;
 use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
@@ -14,21 +14,22 @@ use clebsch_models::lattices::{coupled_body_chain::*, kirchhoff_rod::*};
 
 const SIZES: [usize; 5] = [2, 3, 5, 12, 50];
 
-/// Constraints and momenta are solved until what is left is at most 32 roundings of the terms of an equation. A constraint has
-/// two places: 64 roundings of the largest, which either may leave with its own sign. Arithmetic adds a few.
+/// Tolerance in rounding errors. Constraints and momenta are solved to 32 rounding errors of the terms of an equation. A constraint
+/// contains two positions, so each solution may be off by 64 rounding errors of the largest position, with either sign. Arithmetic
+/// adds a few.
 const ROUNDINGS: f64 = 128.0;
 
-/// By what share data are mistaken.
+/// Relative size of a planted mistake.
 const SHARE: f64 = 1e-6;
 
-/// By what share they are changed to measure how rounding is magnified: far above it, and so small that two segments which are
-/// nearly in line answer in proportion.
+/// Relative change of the data to measure the amplification of rounding: far above rounding, and small enough that two nearly
+/// collinear segments still respond linearly.
 const SMALL_SHARE: f64 = 1e-9;
 
-/// So often, since signs may cancel.
+/// Number of draws, because changes of opposite sign may cancel.
 const DRAWS: u64 = 3;
 
-/// What is compared, each kind with its own size.
+/// The compared values; each kind has its own scale.
 type Seen = Vec<Vec<f64>>;
 
 fn apart(a: &[f64], b: &[f64]) -> f64 {
@@ -38,14 +39,14 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 
 /// A lattice with its data.
 trait Case: Sized {
-    /// Kinds of data, those of the state first.
+    /// Kinds of data; kinds of the state come first.
     const KINDS: usize;
-    /// Of them, those that a step takes as they are, by which rounding is magnified.
+    /// The kinds that a step uses directly and whose rounding errors it amplifies.
     const ROUNDED: usize;
     fn name(&self) -> String;
-    /// One kind of datum changed by a share of its size, up or down at random.
+    /// One kind of datum changed by a fraction of its size, up or down at random.
     fn nudged(&self, kind: usize, share: f64, draw: u64) -> Self;
-    /// Whether it has this kind.
+    /// Whether the case has this kind.
     fn has(&self, _kind: usize) -> bool {
         true
     }
@@ -53,7 +54,7 @@ trait Case: Sized {
     fn generated(&self, steps: usize) -> Seen;
 }
 
-/// Largest differences that rounding makes, of each kind of what is seen.
+/// Largest differences from rounding, for each kind of compared value.
 fn bounds<C: Case>(case: &C, own: &Seen, steps: usize) -> Vec<f64> {
     let mut magnified: Vec<f64> = own
         .iter()
@@ -69,12 +70,12 @@ fn bounds<C: Case>(case: &C, own: &Seen, steps: usize) -> Vec<f64> {
             *all += clebsch::scalar::largest(each);
         }
     }
-    // A rounding of each step is magnified by no more than those that follow it.
+    // Steps amplify the rounding error of one step at most by the factor of the remaining steps.
     let each = ROUNDINGS * f64::EPSILON * steps as f64;
     magnified.iter().map(|x| x * each).collect()
 }
 
-/// How far both are apart, in bounds.
+/// The largest difference in units of the bounds.
 fn off(bounds: &[f64], a: &Seen, b: &Seen) -> f64 {
     let pairs = bounds.iter().zip(a.iter().zip(b));
     clebsch::scalar::largest(pairs.map(|(bound, (a, b))| apart(a, b) / bound))
@@ -87,7 +88,7 @@ fn agrees<C: Case>(case: &C, steps: usize) {
     assert!(off < 1.0, "{}, {steps} steps: {off:e}", case.name());
 }
 
-/// Ten bounds are what is left between the two and the mistake.
+/// A planted mistake must exceed the bounds by a factor of ten.
 fn mistakes_are_seen<C: Case>(case: &C) {
     let own = case.by_hand(1);
     let (bounds, generated) = (bounds(case, &own, 1), case.generated(1));
@@ -97,7 +98,7 @@ fn mistakes_are_seen<C: Case>(case: &C) {
     }
 }
 
-/// Changes data by a share of their size, up or down at random.
+/// Changes data by a fraction of their size, up or down at random.
 struct Nudge(f64, Random);
 
 impl Nudge {
@@ -159,7 +160,7 @@ fn numbers<'a>(all: impl IntoIterator<Item = &'a SMatrix<f64, 3, 1>>) -> Vec<f64
     all.into_iter().flat_map(|x| x.data.0[0]).collect()
 }
 
-/// Bodies joined by their velocities.
+/// Bodies coupled through their velocities.
 #[derive(Clone)]
 struct Row {
     seed: u64,
@@ -269,7 +270,7 @@ struct Rod {
     h: f64,
 }
 
-/// How a rod is held: both ends by their numbers, or a ring.
+/// The ends of a rod: a constraint number for each end, or a ring.
 type Held = Option<(usize, usize)>;
 
 impl Rod {
@@ -325,7 +326,7 @@ impl Rod {
             mu,
             h,
         };
-        // Momenta along the constraints, which the emitted stepper asks for.
+        // Tangent momenta, which the emitted stepper requires.
         let along = drawn.started();
         let turns = along.attitudes().iter();
         let mu = turns.zip(along.spatial_momenta());
@@ -462,7 +463,7 @@ impl Case for Rod {
     }
 }
 
-/// Every way to hold a rod.
+/// Every combination of ends of a rod, and the ring.
 fn all_ends() -> impl Iterator<Item = Held> {
     let open = (0..9).map(|ends| Some((ends / 3, ends % 3)));
     open.chain([None])

@@ -1,4 +1,4 @@
-//! Runs of chapters 4 and 5 of the thesis, with data that are consistent: energies, potential vorticity, orders.
+//! Runs of chapters 4 and 5 of the thesis with consistent data: energies, potential vorticity, orders.
 
 use clebsch::mesh::Domain;
 use clebsch::mesh::placement::{self, Jitter};
@@ -14,7 +14,7 @@ fn one(x: f64) -> SMatrix<f64, 1, 1> {
     SMatrix::repeat(x)
 }
 
-/// Experiment 1 of section 4.8: a bump of mass on a ring, at rest, with f = 2 pi and wave speed 2 pi.
+/// Experiment 1 of section 4.8: a bump of mass on a ring, initially at rest, with f = 2 pi and wave speed 2 pi.
 struct Bump {
     model: ShallowWater1D,
     mass: Vec<f64>,
@@ -40,7 +40,7 @@ impl Bump {
         Self { model, mass, x }
     }
 
-    /// At rest: the momentum across is that of the frame.
+    /// At rest, the transverse momentum is the momentum of the rotating frame.
     fn start(&self, dt: f64) -> (ShallowWater1DState, ShallowWater1DWorkspace) {
         let across = self.mass.iter().zip(&self.x).map(|(m, x)| one(m * TAU * x));
         let initial = ShallowWater1DInitial {
@@ -52,15 +52,14 @@ impl Bump {
         self.model.start(initial, dt).expect("starts")
     }
 
-    /// By how much particles of odd and of even number have moved apart, in units of their distance: no depth changes where
-    /// those move against these.
+    /// The relative displacement of odd and even particles, in units of their spacing. This mode does not change the depth.
     fn odd_from_even(&self, state: &ShallowWater1DState) -> f64 {
         let moved = state.X().iter().zip(&self.x).enumerate();
         let each = moved.map(|(i, (x, x0))| (x[0] - x0) * if i % 2 == 0 { -1.0 } else { 1.0 });
         2.0 * each.sum::<f64>() / TAU
     }
 
-    /// The mean distance of the energy from that of the start, up to time 20.
+    /// The mean absolute energy error up to time 20.
     fn energy_error(&self, dt: f64) -> f64 {
         let (mut state, mut work) = self.start(dt);
         let first = self.model.energy(&state);
@@ -77,7 +76,7 @@ impl Bump {
 #[test]
 fn energy_errors_of_shallow_water_on_a_ring_are_those_of_an_independent_program() {
     let bump = Bump::new();
-    // Another program's numbers, with four digits; its means are over the same nodes up to the first.
+    // Values of an independent program, to four digits; its means cover the same nodes except the first.
     let known = [
         (0.0125, 7.735e-4),
         (0.01, 4.837e-4),
@@ -91,7 +90,7 @@ fn energy_errors_of_shallow_water_on_a_ring_are_those_of_an_independent_program(
             "dt = {dt}: {found:e} for {known:e}"
         );
     }
-    // Twice the step, four times the error; the longest step is near its limit 2 dx/c = 0.0156.
+    // Doubling the step size quadruples the error. The largest step size is near the stability limit 2 dx/c = 0.0156.
     for pair in found[1..].windows(2) {
         let order = (pair[0] / pair[1]).log2();
         assert!((order - 2.0).abs() < 0.05, "{order}");
@@ -102,7 +101,7 @@ fn energy_errors_of_shallow_water_on_a_ring_are_those_of_an_independent_program(
 fn over_a_million_steps_potential_vorticity_is_constant_and_the_energy_does_not_drift() {
     let bump = Bump::new();
     let (mut state, mut work) = bump.start(0.01);
-    // q = (zeta + f)/h with zeta = dV/dX: the momentum across by mass is V + f X.
+    // q = (zeta + f)/h with zeta = dV/dX: the transverse momentum per mass is V + f X.
     let vorticity = |s: &ShallowWater1DState, a: usize| {
         let c = |i: usize| s.momentum_Y()[i][0] / bump.mass[i];
         (c(a + 1) - c(a - 1)) / (2.0 * bump.mass[a])
@@ -121,22 +120,21 @@ fn over_a_million_steps_potential_vorticity_is_constant_and_the_energy_does_not_
             apart = largest([apart, bump.odd_from_even(&state)]);
         }
     }
-    // Momenta across are cyclic: carried, to the last bit.
+    // The transverse momenta are cyclic and exactly conserved.
     let after: Vec<f64> = (1..CELLS - 1).map(|a| vorticity(&state, a)).collect();
     assert_eq!(first, after);
-    // 8.9e-6; means of tenths go from -4.1e-6 to -4.9e-6.
+    // Measured: 8.9e-6. Means over tenths of the run range from -4.1e-6 to -4.9e-6.
     assert!(worst < 2e-5, "{worst:e}");
-    // Only rotation, as a spring of the frequency f, resists the motion of odd particles against even ones: 1.5e-3.
+    // Only rotation, as a spring of frequency f, opposes the relative motion of odd and even particles. Measured: 1.5e-3.
     assert!(apart < 1e-2, "{apart:e}");
-    // The motion thermalises: means wander within the error of the step, 5e-4 of 125.
+    // The motion thermalises: means wander within the step error, 5e-4 of 125.
     let (low, high) = tenths
         .iter()
         .fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(*x), b.max(*x)));
     assert!(high - low < 2e-6, "{tenths:?}");
 }
 
-/// A bump of mass on a line between walls, at rest: the largest relative error of the energy, and the means of its
-/// quarters.
+/// A bump of mass between walls, initially at rest: the largest relative energy error, and the means over quarters of the run.
 fn line_between_walls(c0: f64, a0: f64, steps: usize) -> (f64, [f64; 4]) {
     let (count, cells) = (256, 63);
     let dx = TAU / cells as f64;
@@ -179,10 +177,10 @@ fn line_between_walls(c0: f64, a0: f64, steps: usize) -> (f64, [f64; 4]) {
 
 #[test]
 fn particles_on_a_grid_between_walls_keep_their_energy() {
-    // The error grows with the square of the bump; an independent program has 1.2e-8 at a tenth.
+    // The error grows with the square of the bump height. An independent program gives 1.2e-8 at height 0.1.
     let (worst, quarters) = line_between_walls(1.0, 0.2, 100_000);
     assert!(worst < 1e-7, "{worst:e}");
-    // A drift would make the means of quarters grow as 1, 3, 5, 7.
+    // With a drift, the means of the quarters would grow as 1, 3, 5, 7.
     let last = quarters[3] / quarters[0];
     assert!((0.7..1.3).contains(&last), "{quarters:?}");
     let (small, _) = line_between_walls(1.0, 0.1, 20_000);
@@ -190,7 +188,7 @@ fn particles_on_a_grid_between_walls_keep_their_energy() {
     assert!((3.0..5.0).contains(&ratio), "{ratio}");
 }
 
-/// Two vortices in a rotating channel: the largest relative error of the energy up to time 3, and the kinetic part.
+/// Two vortices in a rotating channel: the largest relative energy error up to time 3, and the fraction of kinetic energy.
 fn channel(dt: f64) -> (f64, f64) {
     let (along, cells) = (128, 63);
     let (count, length, f) = (along * along, TAU, TAU);
@@ -213,7 +211,7 @@ fn channel(dt: f64) -> (f64, f64) {
         .iter()
         .map(|x| length * length / count as f64 * depth(x))
         .collect();
-    // In balance: f V is the gradient of the depth, times the square of the wave speed, turned.
+    // Geostrophic balance: f V is the rotated depth gradient times the square of the wave speed.
     let momentum = x.iter().zip(&m).map(|(x, m)| {
         let slope = centres.iter().fold(Vector2::zeros(), |g, (s, c)| {
             g - (x - c) * (4.0 * s * bump(x, c))
@@ -249,7 +247,7 @@ fn channel(dt: f64) -> (f64, f64) {
     let mut worst = 0.0_f64;
     for k in 0..(3.0 / dt) as usize {
         model.step(&mut state, &mut work).expect("steps");
-        // At equal times, whatever the step.
+        // Samples at the same times for any step size.
         if (k + 1) % (0.1 / dt).round() as usize == 0 {
             worst = worst.max((model.energy(&state) - first).abs());
         }
@@ -266,8 +264,7 @@ fn vortices_in_a_rotating_channel_keep_their_energy_to_second_order() {
     assert!((order - 2.0).abs() < 0.15, "{order}");
 }
 
-/// Without a bottom only the rotation acts on all particles together: the sum of their kinetic momenta turns by
-/// 2 atan(f dt/2) in a step.
+/// Without topography, only rotation acts on the total: the sum of the kinetic momenta rotates by 2 atan(f dt/2) per step.
 #[test]
 fn the_total_kinetic_momentum_turns_by_the_angle_of_a_centred_rotation() {
     let (side, f, dt) = (12, 3.0, 0.02);
@@ -314,7 +311,7 @@ fn the_total_kinetic_momentum_turns_by_the_angle_of_a_centred_rotation() {
         cos * first[0] + sin * first[1],
         cos * first[1] - sin * first[0],
     );
-    // Roundings of 144 momenta in 200 steps, of terms of the size of the momentum of the frame.
+    // Rounding of 144 momenta over 200 steps; the terms have the size of the momentum of the rotating frame.
     let off = (total(&state) - turned).norm() / first.norm();
     assert!(off < 1e-12, "{off:e}");
 }

@@ -1,5 +1,5 @@
-//! The eigenvalues of Flaschka's matrix, constants of Toda's ring: along steps they swing with the square of the step and
-//! do not drift.
+//! The eigenvalues of Flaschka's matrix are constants of Toda's ring. Along discrete steps they oscillate with an amplitude of
+//! order h^2 and do not drift.
 
 use clebsch::nalgebra::{DMatrix, SMatrix};
 use clebsch::scalar::largest;
@@ -7,7 +7,7 @@ use clebsch_models::lattices::toda_chain::*;
 
 const SITES: usize = 9;
 
-/// Its eigenvalues in order, for masses and springs of one.
+/// The sorted eigenvalues for unit masses and springs.
 fn eigenvalues(state: &TodaChainState, length: f64) -> Vec<f64> {
     let q: Vec<f64> = state.q().iter().map(|q| q[0]).collect();
     let mut lax = DMatrix::zeros(SITES, SITES);
@@ -61,7 +61,7 @@ fn changes(h: f64, steps: usize, spring: f64) -> [f64; 2] {
 #[test]
 fn flaschkas_eigenvalues_swing_with_the_square_of_the_step_and_do_not_drift() {
     let [early, late] = changes(0.04, 40_000, 1.0);
-    // What is modulated slowly may swing a little more in the second half; a drift would double it.
+    // A slow modulation may raise the second half slightly; a drift would double it.
     assert!(late < 1.3 * early, "{early:e} {late:e}");
     let [half, _] = changes(0.02, 80_000, 1.0);
     let order = (early / half).log2();
@@ -69,7 +69,7 @@ fn flaschkas_eigenvalues_swing_with_the_square_of_the_step_and_do_not_drift() {
         (order - 2.0).abs() < 0.15,
         "{early:e} {half:e}: order {order}"
     );
-    // Of springs twice as hard they are no constants.
+    // For springs twice as stiff, the eigenvalues of this matrix are not constants.
     let [other, _] = changes(0.04, 2_000, 2.0);
     assert!(other > 30.0 * early, "{early:e} {other:e}");
 }

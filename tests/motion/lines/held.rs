@@ -1,5 +1,5 @@
-//! Constraints that are held along lines: what is refused and where, what is conserved, the symplectic form on the
-//! constraints.
+//! Enforced constraints along chains: rejected starts and their sites, conserved quantities, and the symplectic form on the
+//! constraint set.
 
 use super::models::{Chain, Ends, Kirchhoff, Random, Wide};
 use clebsch::Real;
@@ -9,7 +9,7 @@ use clebsch::{BodyMomentum, Rotation, Snapshot, StepCause};
 use clebsch_models::lattices::hanging_chain::*;
 use clebsch_models::lattices::kirchhoff_rod::*;
 
-/// What is told of a start at a site.
+/// The site that the error of a start names.
 fn at_site(told: &LineError) -> usize {
     match told {
         LineError::Site { at, .. } | LineError::Step { at, .. } => at.site,
@@ -59,7 +59,7 @@ fn constraints_that_follow_from_others_are_refused() {
     };
     let told = ring.start(initial, 0.01).expect_err("one distance twice");
     assert!(told.to_string().contains("not determined"), "{told}");
-    // A closed chain of links that lie on one line, and one that is taut between two held beads.
+    // A closed chain with collinear links, and a taut chain between two fixed beads.
     for (n, ends) in [
         (4, HangingChainEnds::Ring),
         (
@@ -97,7 +97,7 @@ fn constraints_that_follow_from_others_are_refused() {
             .expect_err("they lie on one line");
         assert!(told.to_string().contains("not determined"), "{told}");
     }
-    // One section between held places; a ring of one section.
+    // One section between fixed positions, and a ring of one section.
     for ends in [Ends::Open(1, 1), Ends::Ring] {
         let rod = Kirchhoff { n: 1, ends };
         let told = rod
@@ -151,7 +151,7 @@ fn a_free_rod_keeps_its_momenta_its_constraints_and_its_energy() {
         ends: Ends::Open(0, 0),
     };
     let mut initial = rod.initial(5);
-    // The momenta of its velocities, with these masses and moments.
+    // The momenta of these velocities, with these masses and moments.
     let turning = Matrix3::from_diagonal(&Vector3::new(0.9, 0.8, 0.7)) * 0.5;
     let mut r = Random::new(9);
     let mut v = r.vector() * 0.3;
@@ -184,9 +184,9 @@ fn a_free_rod_keeps_its_momenta_its_constraints_and_its_energy() {
             *worst = worst.max(off);
         }
     }
-    // Random walks of 1e4 steps of roundings of momenta up to ten and of places up to a hundred.
+    // Random walks of 1e4 rounding errors, for momenta up to ten and positions up to a hundred.
     assert!(worst[0] < 2e-12 && worst[1] < 1e-10, "{worst:?}");
-    // The root of a sum over twenty segments of thirty-two roundings of places up to sixty.
+    // Twenty segments, each with thirty-two rounding errors of positions up to sixty; the total grows like the square root.
     assert!(worst[2] < 2e-11 && worst[3] < 1e-12, "{worst:?}");
     assert!(worst[4] < 5e-3, "{worst:?}");
     assert!(state.n().len() == n && state.n().iter().all(|n| n.norm() > 1e-6));
@@ -208,7 +208,7 @@ fn a_held_state_is_kept_with_its_multipliers() {
     assert!(again == state);
 }
 
-/// The tension of a chain at rest is the weight below.
+/// At equilibrium, the tension in a hanging chain equals the weight below.
 #[test]
 fn multipliers_are_forces() {
     let (n, a) = (10, 0.3);
@@ -231,7 +231,7 @@ fn multipliers_are_forces() {
     let (mut state, mut work) = chain.start(initial, 0.01).expect("starts");
     chain.step(&mut state, &mut work).expect("steps");
     for (i, λ) in state.λ().iter().enumerate() {
-        // The derivative of the squared length is twice the link.
+        // The gradient of the squared length is twice the link vector.
         let (tension, weight) = (-2.0 * λ[0] * a, 0.2 * 9.0 * (n - i) as f64);
         assert!(
             (tension - weight).abs() < 1e-12 * weight,
@@ -240,7 +240,8 @@ fn multipliers_are_forces() {
     }
 }
 
-/// The form `dx ^ dp` of two beads and their link, drawn back to ten numbers that the link leaves free, before and after.
+/// The form `dx ^ dp` of two beads and their link, pulled back to the ten coordinates of the constraint set, before and after a
+/// run.
 #[test]
 fn the_symplectic_form_on_the_constraints_is_kept() {
     let k = Wide::constant;
@@ -296,15 +297,15 @@ fn the_symplectic_form_on_the_constraints_is_kept() {
     let (before, after) = (form(&begin), form(&[x[0], x[1], p[0], p[1]]));
     let off = (after - before).amax() / before.amax();
     assert!(off < 1e-13, "{off:e}");
-    // Not because nothing moves.
+    // The chain has moved.
     assert!((x[0] - begin[0]).map(|x| x.value()).amax() > 0.05);
-    // Half the reactions of a step less are no longer a step of an action.
+    // A momentum with an additional impulse along the link breaks the form.
     let pushed = p[1] + (x[1] - x[0]) * (x[1] - x[0]).dot(&p[0]) * k(1e-3);
     let wrong = form(&[x[0], x[1], p[0], pushed]);
     assert!((wrong - before).amax() / before.amax() > 1e-5);
 }
 
-/// Many sites: what is held of each, and the work of one for all.
+/// Many sites: every constraint holds, with one shared workspace.
 #[test]
 fn long_lines_are_held() {
     let n = 20_000;
@@ -323,6 +324,6 @@ fn long_lines_are_held() {
         assert!(off < 32.0 * f64::EPSILON * size, "{off:e} of {size:e}");
         state
     };
-    // Threads change no bit.
+    // The number of threads does not change a bit.
     assert!(start(1) == start(3));
 }

@@ -1,11 +1,10 @@
-//! What a line keeps: the symplectic form by the tangent map, momenta, the energy within a bound; and
-//! the way back.
+//! Conservation along chains: the symplectic form by the tangent map, momenta, bounded energy, and reversibility.
 
 use super::action::{momenta, off_constraints, without_reactions};
 use super::models::{self, Linked, Quartic, Random, Wide};
 use clebsch::nalgebra::SMatrix;
 
-/// By how much the tangent map of a chain of six numbers changes `dq ^ dp`, of its largest entry squared.
+/// The change of `dq ^ dp` under the tangent map of a chain with six coordinates, relative to the square of its largest entry.
 fn change_of_the_form(moved: impl Fn(Vec<Wide>, Vec<Wide>) -> [Vec<Wide>; 2]) -> f64 {
     let mut r = Random::new(5);
     let mut list = |from: usize| -> Vec<Wide> {
@@ -29,7 +28,7 @@ fn change_of_the_form(moved: impl Fn(Vec<Wide>, Vec<Wide>) -> [Vec<Wide>; 2]) ->
 fn sites_that_newtons_method_solves_keep_the_symplectic_form() {
     for (n, ends) in [(6, 0), (5, 1)] {
         let (linked, quartic) = (Linked { n, ends }, Quartic { n, ends });
-        // Sums of some twenty products.
+        // Sums of about twenty products.
         let off = change_of_the_form(|q, p| linked.moved(q, p));
         assert!(off < 1e-14, "linked, ends {ends}: {off:e}");
         let off = change_of_the_form(|q, p| quartic.moved(q, p));
@@ -45,7 +44,7 @@ fn given_momenta_are_those_of_the_action() {
             let (derived, given) = (momenta(line.as_ref(), [&a, &b]), line.given(2));
             let scale = given.iter().fold(1e-300_f64, |m, p| m.max(p.abs()));
             if !line.constraints(&a.lifted()).is_empty() {
-                // The step leaves with the reactions of its node.
+                // The momentum after the step includes the constraint forces of its node.
                 let off: Vec<f64> = derived.iter().zip(&given).map(|(p, q)| p - q).collect();
                 let left = without_reactions(line.as_ref(), &a, &off);
                 let off = clebsch::scalar::largest(left.into_iter().map(f64::abs));
@@ -55,7 +54,7 @@ fn given_momenta_are_those_of_the_action() {
             for (at, (p, q)) in derived.iter().zip(&given).enumerate() {
                 if !line.held(at) {
                     let off = (p - q).abs() / scale;
-                    // One division by the step of differences of places of order one.
+                    // Differences of positions of order one, divided by the step size.
                     assert!(off < 1e-11, "{}: {p} for {q} at {at}", line.name());
                 }
             }
@@ -70,7 +69,7 @@ fn what_is_held_is_held_to_rounding() {
             let [a, b, c] = line.three(3);
             for after in [&b, &c] {
                 let off = off_constraints(line.as_ref(), &a, after);
-                // Thirty-two roundings of terms up to the length of the line.
+                // Thirty-two rounding errors of terms up to the length of the chain.
                 assert!(off < 1e-12, "{}: {off:e}", line.name());
             }
         }
@@ -81,12 +80,12 @@ fn what_is_held_is_held_to_rounding() {
 fn the_way_back_is_the_way() {
     for line in models::all(5) {
         let off = line.there_and_back(200);
-        // Two hundred steps there and back, each rounded to a few units.
+        // Two hundred steps forward and back, each with a few rounding errors.
         assert!(off < 1e-11, "{}: {off:e}", line.name());
     }
 }
 
-/// Long, since every line takes up to 20000 steps.
+/// Slow: every chain takes up to 20000 steps.
 #[test]
 fn energies_stay_within_a_bound_and_totals_to_rounding() {
     for line in models::all(12) {
@@ -97,7 +96,7 @@ fn energies_stay_within_a_bound_and_totals_to_rounding() {
             "{}: energy {energy:e}",
             line.name()
         );
-        // A random walk of 2e4 roundings of 1e-16.
+        // A random walk of 2e4 rounding errors of 1e-16.
         assert!(total < 2e-13, "{}: total {total:e}", line.name());
     }
 }

@@ -1,5 +1,5 @@
-//! The equatorial Rossby soliton of Boyd (J. Phys. Oceanogr. 10, 1980, 1699-1717) between walls: particles on a grid
-//! whose Coriolis parameter is the distance from the equator.
+//! The equatorial Rossby soliton of Boyd (J. Phys. Oceanogr. 10, 1980, 1699-1717) between walls: particle-mesh shallow water with
+//! the Coriolis parameter equal to the distance from the equator.
 
 use clebsch::mesh::{Domain, Wall};
 use clebsch::nalgebra::SMatrix;
@@ -24,10 +24,10 @@ clebsch::model! {
 
 const LENGTHS: [f64; 2] = [48.0, 16.0];
 
-/// The parameter of Boyd's soliton: its length is 1/B.
+/// The parameter of Boyd's soliton; its length is 1/B.
 const B: f64 = 0.394;
 
-/// Depth and velocity of the soliton at time 0, to lowest order.
+/// Depth and velocity of the soliton at time 0, to leading order.
 fn soliton(x: f64, y: f64) -> (f64, [f64; 2]) {
     let (x, y) = (x - LENGTHS[0] / 2.0, y - LENGTHS[1] / 2.0);
     let phi = 0.771 * B * B / (B * x).cosh().powi(2);
@@ -38,7 +38,7 @@ fn soliton(x: f64, y: f64) -> (f64, [f64; 2]) {
     (depth, [along, 2.0 * y * slope * across])
 }
 
-/// Where the depth summed across the channel is largest, by a parabola through three nodes.
+/// The position of the largest depth summed across the channel, by a parabola through three nodes.
 fn crest(smooth: &[f64], n: [usize; 2]) -> f64 {
     let summed: Vec<f64> = smooth
         .chunks(n[1] + 1)
@@ -55,8 +55,8 @@ fn crest(smooth: &[f64], n: [usize; 2]) -> f64 {
     (top as f64 + 0.5 * (a - c) / (a - 2.0 * b + c)) * LENGTHS[0] / n[0] as f64
 }
 
-/// The speed westwards from time 8 to 20 and the drift of the energy, with this many cells and particles to a unit of length
-/// and a smoothing length of one cell.
+/// The westward speed from time 8 to 20 and the energy drift, with this many cells and particles per unit length and a smoothing
+/// length of one cell.
 fn run(cells: usize, across: usize) -> (f64, f64) {
     let n = [48 * cells, 16 * cells];
     let sites = [48 * across, 16 * across];
@@ -108,8 +108,8 @@ fn run(cells: usize, across: usize) -> (f64, f64) {
     ((crests[0] - crests[1]) / (120.0 * h), drift)
 }
 
-/// Measured: 0.363 with a smoothing length of 1/2, 0.380 with 1/4, where 0.395 is published. Smoothing slows waves by the
-/// square of its length; the rest is what the data of lowest order shed.
+/// Measured speeds: 0.363 with a smoothing length of 1/2 and 0.380 with 1/4; the published value is 0.395. Smoothing slows waves in
+/// proportion to the square of its length. The rest comes from waves that the leading-order initial data shed.
 #[test]
 fn the_equatorial_soliton_travels_west_at_its_published_speed() {
     let published = 1.0 / 3.0 + 0.395 * B * B;
@@ -118,7 +118,7 @@ fn the_equatorial_soliton_travels_west_at_its_published_speed() {
     let [far, near] = [coarse, fine].map(|speed| (speed / published - 1.0).abs());
     assert!(near < 0.05, "{fine} for {published}");
     assert!(near < 0.6 * far, "{coarse}, {fine} for {published}");
-    // Waves that do not feel their amplitude travel at 1/3.
+    // Linear waves travel at 1/3.
     assert!(fine > 0.36, "{fine}");
     assert!(drift < 1e-7, "{drift:e}");
 }

@@ -1,5 +1,5 @@
-//! Lines in unit quaternions: the symplectic form, momenta, the rod beside the one in rotations, signs that are given
-//! in any way.
+//! Chains in unit quaternions: the symplectic form, momenta, comparison with the rod in rotations, and the choice of quaternion
+//! signs.
 
 use super::models::{Held, QRod, Random, Rod, Spins, TwistedSpinsOf, turn};
 use clebsch::nalgebra::{DMatrix, Matrix3, Vector3};
@@ -8,15 +8,15 @@ use clebsch_models::lattices::coupled_tops::*;
 use clebsch_models::lattices::geometrically_exact_rod::*;
 use clebsch_models::lattices::quaternion_rod::*;
 
-/// A number with derivatives by the places, turns and momenta of five sections with their six nodes.
+/// A number with derivatives with respect to the positions, rotations and momenta of five sections and their six nodes.
 type Wide = Dual<66>;
 
 const SECTIONS: usize = 5;
 const NODES: usize = 6;
-/// Three coordinates of each.
+/// Three coordinates per node and section.
 const HALF: usize = 3 * (NODES + SECTIONS);
 
-/// The form at a state: `dx ^ dp` of places, and of turns and momenta seen from the body what the momentum adds.
+/// The form at a state: `dx ^ dp` of positions, and for rotations and body momenta the additional term in the momentum.
 fn form(momenta: &[Vector3<f64>]) -> DMatrix<f64> {
     let mut form = DMatrix::zeros(2 * HALF, 2 * HALF);
     for i in 0..HALF {
@@ -71,7 +71,7 @@ fn the_symplectic_form_is_kept() {
         for _ in 0..3 {
             model.step(&mut state, &mut work).expect("steps");
         }
-        // Coordinates of the end by those of the start.
+        // Final coordinates as functions of the initial ones.
         let mut map = DMatrix::zeros(2 * HALF, 2 * HALF);
         let mut put = |row: usize, v: &Vector3<Wide>| {
             for axis in 0..3 {
@@ -94,16 +94,16 @@ fn the_symplectic_form_is_kept() {
             after.push(m.0.map(|x| x.value()));
         }
         if nodes < NODES {
-            // A ring has a node less: its coordinates stay what they are.
+            // A ring has one node fewer; the map leaves the coordinates of the missing node unchanged.
             for i in 3 * nodes..3 * NODES {
                 (map[(i, i)], map[(HALF + i, HALF + i)]) = (1.0, 1.0);
             }
         }
         let (start, end) = (form(&before), form(&after));
         let off = (map.transpose() * &end * &map - &start).amax() / map.amax().powi(2);
-        // Sums of some sixty products.
+        // Sums of about sixty products.
         assert!(off < 1e-13, "ends {ends}: {off:e}");
-        // Without what the momentum adds to the form it is another one.
+        // Without the momentum term, the step does not preserve the form.
         let none = vec![Vector3::zeros(); SECTIONS];
         let (start, end) = (form(&none), form(&none));
         let off = (map.transpose() * &end * &map - &start).amax() / map.amax().powi(2);
@@ -144,13 +144,13 @@ fn a_free_rod_keeps_its_momenta_and_its_energy() {
             *worst = worst.max(off);
         }
     }
-    // Random walks of 1e4 steps of roundings of momenta up to one and of places up to a hundred.
+    // Random walks of 1e4 rounding errors, for momenta up to one and positions up to a hundred.
     assert!(worst[0] < 1e-12 && worst[1] < 1e-10, "{worst:?}");
     assert!(worst[2] < 5e-3, "{worst:?}");
 }
 
-/// With `2 u.K u` for `tr(K)/2 - K` in the place of the stiffness both rods are one: the imaginary part of half the
-/// angle squared is the trace of the whole.
+/// If the stiffness uses `2 u.K u` for `tr(K)/2 - K`, both rods are equal, because squaring the imaginary part of the half angle
+/// gives the trace term of the full angle.
 #[test]
 fn the_rod_in_quaternions_is_the_one_in_rotations() {
     let second = |m: Matrix3<f64>| Matrix3::identity() * (m.trace() / 2.0) - m;
@@ -189,13 +189,12 @@ fn the_rod_in_quaternions_is_the_one_in_rotations() {
         let momenta = a.body_momentum_q().zip(b.body_momentum_Λ());
         let momenta = momenta.map(|(x, y)| (x.0 - y.0).amax());
         let off = clebsch::scalar::largest(places.chain(turns).chain(momenta));
-        // Two hundred steps of a few roundings each, of numbers up to ten, which grow with the time.
+        // Two hundred steps with a few rounding errors each, in numbers up to ten that grow with time.
         assert!(off < 1e-11, "ends {ends}: {off:e}");
     }
 }
 
-/// A part of stiffness and inertia that goes by the real part changes what angles of the size of `e` do by `e` squared
-/// of it.
+/// Stiffness and inertia that use the real part change the response to angles of size `e` by a relative `e^2`.
 #[test]
 fn what_goes_by_the_real_part_differs_by_the_square_of_the_angles() {
     let n = 8;
@@ -270,7 +269,8 @@ fn signs_that_are_given_change_nothing_but_themselves() {
     }
 }
 
-/// Sections along a circle make one turn: a term that does not see the sign takes them, one that does refuses them.
+/// Sections along a circle rotate once around. A chain whose terms ignore the quaternion sign accepts this ring; a chain whose
+/// terms depend on the sign rejects it.
 #[test]
 fn a_ring_with_an_odd_number_of_turns_is_told_where_a_term_sees_it() {
     let n = 12;

@@ -1,5 +1,5 @@
-//! Particles between walls: steps that reach none make the action stationary; a reflection changes neither the kinetic
-//! energy nor the depth, and what lies too far beyond a wall is refused.
+//! Particles between walls. Steps that reach no wall make the action stationary; a reflection changes neither the kinetic energy
+//! nor the depth; a position too far beyond a wall is an error.
 
 use super::action::{stationarity, stationarity_weighed};
 use super::models::{Basin, Line, Plane};
@@ -33,7 +33,7 @@ fn steps_between_walls_make_the_action_stationary() {
 
 #[test]
 fn a_reflection_keeps_the_kinetic_energy_and_turns_the_velocity_across_the_wall() {
-    // Without mass no depth pushes: one free particle meets the wall.
+    // A massless particle produces no depth gradient, so one free particle reaches the wall.
     let line = Basin { n: 1 };
     let model = line.stepper();
     let mut initial = line.initial(0);
@@ -47,7 +47,7 @@ fn a_reflection_keeps_the_kinetic_energy_and_turns_the_velocity_across_the_wall(
     assert_eq!(work.reflections(), 1);
     let (after, _) = model.energies(&state);
     assert!(state.X()[0][0] > 0.0 && state.momentum_X()[0][0] > 0.0);
-    // A particle at the wall is pushed along by its own image: of the order of the step.
+    // At the wall, the particle's own image pushes it along the wall, with a displacement of the order of the step size.
     assert!((after - before).abs() < 0.2 * before, "{before} {after}");
     for _ in 0..2000 {
         model.step(&mut state, &mut work).expect("steps");
@@ -55,7 +55,7 @@ fn a_reflection_keeps_the_kinetic_energy_and_turns_the_velocity_across_the_wall(
     assert!(work.reflections() > 30, "{}", work.reflections());
     let off = (model.energy(&state) - energy).abs() / energy;
     assert!(off < 2e-2, "{off:e}");
-    // There and back through walls: images are exact, each rounding of two units.
+    // Forward and back through walls. Reflections are exact up to two rounding errors each.
     let mut back = model.workspace(&state, -h).expect("a step back");
     for _ in 0..2001 {
         model.step(&mut state, &mut back).expect("steps back");
@@ -83,7 +83,7 @@ fn between_walls_in_a_turning_frame_the_kinetic_velocity_is_turned() {
     model.step(&mut state, &mut work).expect("steps");
     assert_eq!(work.reflections(), 1);
     let velocity = (state.momentum_X()[0] - rest(&state.X()[0])) / m;
-    // Turned by f dt and mirrored; the depth pushes by a few times dt.
+    // The velocity is rotated by f dt and mirrored; the depth gradient adds a few times dt.
     assert!(
         (velocity[0] + 0.7).abs() < 0.1 && (velocity[1] - 0.2).abs() < 0.1,
         "{velocity}"

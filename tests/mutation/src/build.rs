@@ -1,4 +1,4 @@
-//! Builds the copy by cargo: which mutants the compiler refuses, and where the binaries of the tests are.
+//! Builds the copy with cargo, finds mutants that do not compile, and locates the test binaries.
 
 use crate::place;
 use crate::plant::Planted;
@@ -8,22 +8,22 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// A set of tests that judges mutants.
+/// A set of tests that runs against mutants.
 pub struct Judge {
-    /// What it is called in the verdicts.
+    /// Its name in the verdicts.
     pub name: &'static str,
-    /// The folders whose mutants it judges.
+    /// The folders whose mutants it tests.
     pub folders: &'static [&'static str],
-    /// The tests of the binary whose names begin so.
+    /// Only tests whose names start with this prefix.
     pub filter: &'static str,
-    /// What builds it.
+    /// The cargo arguments that build it.
     pub arguments: &'static [&'static str],
 }
 
 const ENGINE: &str = "macros/core/src";
 const RUNTIME: &str = "runtime/src";
 
-/// The judges, in the order in which they are asked: those near the code first, then the quickest that see much.
+/// The judges in the order of their runs: those close to the code first, then fast ones that detect much.
 pub const JUDGES: [Judge; 7] = [
     Judge {
         name: "unit tests",
@@ -84,7 +84,7 @@ pub const JUDGES: [Judge; 7] = [
     },
 ];
 
-/// With a mutant in every other line, code takes long to optimise.
+/// With a mutant in every other line, full optimisation takes long.
 const QUICKLY: &str = "profile.release.package.clebsch.opt-level=1";
 
 fn cargo(copy: &Path, arguments: &[&str]) -> Result<Vec<Value>, String> {
@@ -105,7 +105,7 @@ fn cargo(copy: &Path, arguments: &[&str]) -> Result<Vec<Value>, String> {
         .collect())
 }
 
-/// The mutants in whose expressions the compiler finds an error.
+/// The mutants whose expressions contain a compile error.
 pub fn refused(copy: &Path, planted: &Planted) -> Result<BTreeSet<usize>, String> {
     let mut refused = BTreeSet::new();
     for package in ["clebsch-core", "clebsch"] {
@@ -147,7 +147,7 @@ pub fn refused(copy: &Path, planted: &Planted) -> Result<BTreeSet<usize>, String
     Ok(refused)
 }
 
-/// Builds the tests and writes `tests.tsv`: the number of the judge, binary, directory it is run in.
+/// Builds the tests and writes `tests.tsv`: judge number, binary, working directory.
 pub fn tests(copy: &Path) -> Result<(), String> {
     let (mut out, mut known) = (String::new(), BTreeSet::new());
     for (number, judge) in JUDGES.iter().enumerate() {
@@ -161,7 +161,7 @@ pub fn tests(copy: &Path) -> Result<(), String> {
             };
             let manifest = message["manifest_path"].as_str().unwrap_or_default();
             let within = Path::new(manifest).parent().unwrap_or(copy);
-            // A binary that an earlier judge asks as a whole is not asked again.
+            // Skips a binary that an earlier judge runs completely.
             if known.insert((binary.to_owned(), judge.filter)) {
                 out.push_str(&format!("{number}\t{binary}\t{}\n", within.display()));
             }

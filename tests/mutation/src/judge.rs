@@ -1,5 +1,5 @@
-//! Asks one judge after the other about every mutant that none before has caught. Verdicts are appended to
-//! `verdicts.tsv` (number, judge, what it says, seconds), so that a run that was interrupted goes on.
+//! Runs the judges in turn on every mutant that no earlier judge has caught. Appends verdicts to `verdicts.tsv` (number, judge,
+//! result, seconds), so that an interrupted run can resume.
 
 use crate::place;
 use crate::runs::{Tests, judges};
@@ -10,11 +10,11 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-/// What is known of the mutants.
+/// The verdicts so far.
 struct Known {
-    /// Those that a judge has caught.
+    /// The caught mutants.
     caught: BTreeSet<usize>,
-    /// Which judge has been asked about which.
+    /// The pairs of mutant and judge that have a verdict.
     asked: BTreeSet<(usize, String)>,
 }
 
@@ -41,8 +41,7 @@ fn known() -> Known {
     known
 }
 
-/// Asks every judge, by its tests that take no longer than `longest`, about every mutant that is neither caught nor
-/// judged by it.
+/// Runs every judge, with its tests up to `longest`, on every mutant that is neither caught nor already tested by it.
 pub fn judge(jobs: usize, longest: Duration) -> Result<(), String> {
     let listed =
         fs::read_to_string(place().join("mutants.tsv")).map_err(|e| format!("mutants.tsv: {e}"))?;

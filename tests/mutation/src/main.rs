@@ -1,6 +1,6 @@
-//! Mutation testing of the engine and of the runtime. A copy of the workspace is written in which some
-//! hundred expressions have a second, wrong form, taken where `CLEBSCH_MUTANT` is their number; it is built
-//! once, and the tests are run for every mutant.
+//! Mutation testing of the engine and the runtime. A copy of the workspace contains several hundred expressions with a second,
+//! wrong form. The number in `CLEBSCH_MUTANT` selects which one is active. The copy is built once, and the tests run for every
+//! mutant.
 //!
 //! ```text
 //! cargo run --release --manifest-path tests/mutation/Cargo.toml -- plant --count 500
@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// Where the copy, the list of mutants and the verdicts are kept, below the folder of the workspace.
+/// The folder of the copy, the list of mutants and the verdicts, below the workspace.
 pub fn place() -> PathBuf {
     root().join("target/mutation")
 }
@@ -30,7 +30,7 @@ pub fn root() -> PathBuf {
     here.ancestors().nth(2).map_or(here.clone(), PathBuf::from)
 }
 
-/// What the command line gives behind a name.
+/// The number after an option on the command line.
 fn number(arguments: &[String], name: &str, otherwise: u64) -> Result<u64, String> {
     let Some(at) = arguments.iter().position(|a| a == name) else {
         return Ok(otherwise);

@@ -1,5 +1,4 @@
-//! Chooses sites by a seed, writes the copy of the workspace with both forms of each, and takes back those
-//! that do not compile.
+//! Chooses sites from a seed, writes the copy of the workspace with both forms of each, and removes mutants that do not compile.
 
 use crate::build;
 use crate::sites::{Site, sites};
@@ -10,28 +9,29 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The folders whose sources have mutants, with their share of the whole.
+/// The folders with mutants, and their percentage of the total.
 const FOLDERS: [(&str, usize); 2] = [("macros/core/src", 62), ("runtime/src", 38)];
 
-/// Rounds of taking back what does not compile: types, then borrows, then what both hid.
+/// Maximum number of rounds that remove mutants with compile errors: type errors first, then borrow errors, then errors that these
+/// hid.
 const ROUNDS: usize = 12;
 
-/// A mutant that is planted.
+/// A planted mutant.
 #[derive(Clone, Debug)]
 pub struct Mutant {
     /// Its number, from 1.
     pub number: usize,
-    /// The file, below the workspace.
+    /// The file, relative to the workspace.
     pub file: String,
-    /// Its line there.
+    /// Its line in the file.
     pub line: usize,
-    /// The expression and its second form.
+    /// The expression and its wrong form.
     pub site: Site,
     /// The unchanged expression.
     pub original: String,
 }
 
-/// Copies what git knows to `target/mutation/copy`.
+/// Copies the files that git tracks to `target/mutation/copy`.
 fn copy() -> Result<PathBuf, String> {
     let to = place().join("copy");
     let listed = Command::new("git")
@@ -50,7 +50,7 @@ fn copy() -> Result<PathBuf, String> {
     Ok(to)
 }
 
-/// Writes a file if it would change, so that nothing is built again that has not changed.
+/// Writes a file only if its content changes, so that cargo rebuilds nothing else.
 fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
     if fs::read(path).is_ok_and(|old| old == bytes) {
         return Ok(());
@@ -79,7 +79,7 @@ fn sources(folder: &Path, out: &mut Vec<PathBuf>) {
     }
 }
 
-/// A number from a seed and a place, the same on every machine (splitmix64 over its bytes).
+/// A hash of seed and location, the same on every machine (splitmix64 over the bytes).
 fn drawn(seed: u64, file: &str, at: usize, end: usize) -> u64 {
     let mut x = seed;
     let bytes = file.bytes().map(u64::from);
@@ -92,7 +92,7 @@ fn drawn(seed: u64, file: &str, at: usize, end: usize) -> u64 {
     x
 }
 
-/// The sites of a share, by the order of their numbers, none inside another.
+/// Chooses the sites of a folder in the order of their hashes; no site contains another.
 fn choose(folder: &str, count: usize, seed: u64) -> Result<Vec<Mutant>, String> {
     let mut files = Vec::new();
     sources(&root().join(folder), &mut files);
@@ -135,7 +135,7 @@ fn choose(folder: &str, count: usize, seed: u64) -> Result<Vec<Mutant>, String> 
     Ok(chosen)
 }
 
-/// The switch, at the end of a crate.
+/// The switch function, appended to a crate.
 const SWITCH: &str = "
 /// Whether this mutant is switched on.
 #[doc(hidden)]
@@ -146,7 +146,7 @@ pub fn mutant(number: u32) -> bool {
 }
 ";
 
-/// Where each mutant stands in the files of the copy.
+/// The byte range of each mutant in the files of the copy.
 pub type Planted = BTreeMap<String, Vec<(Range<usize>, usize)>>;
 
 /// Writes the files of the copy with these mutants.
@@ -193,7 +193,7 @@ pub fn plant(count: usize, seed: u64) -> Result<(), String> {
     let copy = copy()?;
     let mut mutants = Vec::new();
     for (folder, share) in FOLDERS {
-        // A sixth does not compile.
+        // About one sixth does not compile.
         mutants.extend(choose(folder, count * share * 6 / 500, seed)?);
     }
     for (i, m) in mutants.iter_mut().enumerate() {
@@ -218,7 +218,7 @@ pub fn plant(count: usize, seed: u64) -> Result<(), String> {
     ))
 }
 
-/// Writes `mutants.tsv`: number, file, line, what, expression, second form.
+/// Writes `mutants.tsv`: number, file, line, description, expression, wrong form.
 fn list(mutants: &[Mutant]) -> Result<(), String> {
     let short = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut out = String::new();

@@ -1,18 +1,18 @@
-//! The table of what was caught by which judges, and the list of survivors, on standard output in Markdown.
+//! Prints a table of caught mutants by judge, and the list of survivors, as Markdown on standard output.
 
 use crate::place;
 use crate::runs::judges;
 use std::collections::BTreeMap;
 use std::fs;
 
-/// What became of a mutant: the judge that caught it, and the seconds spent on it.
+/// The verdict on a mutant: the judge that caught it, and the seconds spent.
 #[derive(Default)]
 struct Verdict {
     by: Option<String>,
     seconds: f64,
 }
 
-/// The names of the judges, each once, in the order in which they are asked.
+/// The names of the judges, without duplicates, in the order of their runs.
 fn names() -> Vec<&'static str> {
     let mut names = Vec::new();
     for (_, judge) in judges() {
@@ -23,7 +23,7 @@ fn names() -> Vec<&'static str> {
     names
 }
 
-/// The folder of a source file, without what is below `src/` twice.
+/// The folder of a source file, up to one level below `src/`.
 fn folder(file: &str) -> String {
     let depth = if file.starts_with("macros") { 4 } else { 3 };
     let steps: Vec<&str> = file.split('/').collect();
@@ -47,7 +47,7 @@ fn table(title: &str, rows: &BTreeMap<String, Vec<usize>>) {
     println!();
 }
 
-/// Prints the result.
+/// Prints the report.
 pub fn report() -> Result<(), String> {
     let read =
         |name: &str| fs::read_to_string(place().join(name)).map_err(|e| format!("{name}: {e}"));

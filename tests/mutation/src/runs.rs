@@ -1,5 +1,5 @@
-//! The tests of a judge: each timed once without a mutant, then asked quickest first, since the first that
-//! fails decides. Clocks order the tests and bound the wait for one that hangs; they change no other verdict.
+//! The tests of a judge. Each test is timed once without a mutant; then the fastest run first, because the first failure decides.
+//! Times determine the order and the timeout, and no other verdict.
 
 use crate::build::{JUDGES, Judge};
 use crate::place;
@@ -7,23 +7,23 @@ use std::fs;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Tests quicker than this are asked together: a process costs as much as they do.
+/// Tests faster than this run together, because starting a process costs as much.
 const QUICK: Duration = Duration::from_millis(100);
 
-/// Tests of one binary that are asked by one process.
+/// Tests of one binary that run in one process.
 struct Group {
     binary: String,
     within: String,
     names: Vec<String>,
-    /// How long they may take: those that take much longer than without a mutant hang.
+    /// The timeout, a multiple of the time without a mutant.
     limit: Duration,
 }
 
-/// What tests say of a mutant.
+/// The result of the tests on a mutant.
 pub struct Said {
-    /// `passes`, `fails` or `hangs`, and the test if one was asked alone.
+    /// `passes`, `fails` or `hangs`, and the name of the test if it ran alone.
     pub how: String,
-    /// How long it took.
+    /// The time it took.
     pub took: Duration,
 }
 
@@ -62,11 +62,11 @@ fn command(binary: &str, within: &str) -> Command {
     command
 }
 
-/// The tests that judge, quickest first; those that fail without a mutant are left out, and told.
+/// The tests of a judge, fastest first. Tests that fail without a mutant are reported and left out.
 pub struct Tests(Vec<Group>);
 
 impl Tests {
-    /// Finds and times the tests of a judge; those that take longer than `longest` are left out.
+    /// Finds and times the tests of a judge, without those that take longer than `longest`.
     pub fn of(number: usize, judge: &Judge, longest: Duration) -> Result<Self, String> {
         let listed =
             fs::read_to_string(place().join("tests.tsv")).map_err(|e| format!("tests.tsv: {e}"))?;
@@ -137,12 +137,12 @@ impl Tests {
         Ok(Self(groups))
     }
 
-    /// Whether there are none.
+    /// Whether the judge has no tests.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Asks until one fails.
+    /// Runs tests until one fails.
     pub fn judge(&self, mutant: usize) -> Result<Said, String> {
         let mut spent = Duration::ZERO;
         for group in &self.0 {
@@ -166,7 +166,7 @@ impl Tests {
     }
 }
 
-/// The judges with their numbers.
+/// The judges with their indices.
 pub fn judges() -> impl Iterator<Item = (usize, &'static Judge)> {
     JUDGES.iter().enumerate()
 }

@@ -1,19 +1,19 @@
-//! Expressions of a source file that have a wrong second form of the same type: signs, orders of factors,
-//! comparisons, conditions, numbers, time levels, factors one half, transposes and inverses.
+//! Finds expressions of a source file that have a wrong form of the same type: signs, orders of factors, comparisons, conditions,
+//! numbers, time levels, factors of one half, transposes and inverses.
 
 use std::ops::Range;
 use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
 use syn::{BinOp, Expr, Lit, UnOp};
 
-/// An expression and what stands there instead.
+/// An expression and its replacement.
 #[derive(Clone, Debug)]
 pub struct Site {
-    /// Bytes of the file.
+    /// Byte range in the file.
     pub range: Range<usize>,
     /// The wrong form.
     pub instead: String,
-    /// What is changed, in words.
+    /// A description of the change.
     pub what: &'static str,
 }
 
@@ -22,7 +22,7 @@ struct Finder<'a> {
     sites: Vec<Site>,
 }
 
-/// All sites of a file, in order.
+/// All sites of a file, in order of position.
 pub fn sites(text: &str) -> Result<Vec<Site>, String> {
     let file = syn::parse_file(text).map_err(|e| e.to_string())?;
     let mut finder = Finder {
@@ -34,7 +34,7 @@ pub fn sites(text: &str) -> Result<Vec<Site>, String> {
     Ok(finder.sites)
 }
 
-/// Whether an item is compiled for tests alone.
+/// Whether an item is compiled only for tests.
 fn of_tests(attributes: &[syn::Attribute]) -> bool {
     attributes.iter().any(|a| {
         a.path().is_ident("test")
@@ -42,7 +42,7 @@ fn of_tests(attributes: &[syn::Attribute]) -> bool {
     })
 }
 
-/// The names of functions that are each other's mistake.
+/// Pairs of functions that are mistaken for each other.
 const TWINS: [(&str, &str, &str); 9] = [
     ("add", "sub", "a sum for a difference"),
     ("sub", "add", "a difference for a sum"),
@@ -55,7 +55,7 @@ const TWINS: [(&str, &str, &str); 9] = [
     ("is_body", "is_spatial", "the side"),
 ];
 
-/// Functions of one expression, whose value is taken for its argument.
+/// Functions of one argument; the mutant replaces the call by its argument.
 const LEFT_OUT: [(&str, &str); 4] = [
     ("neg", "a sign"),
     ("transpose", "a transpose"),
@@ -63,7 +63,7 @@ const LEFT_OUT: [(&str, &str); 4] = [
     ("inverse", "an inverse"),
 ];
 
-/// Functions whose two arguments are exchanged.
+/// Functions of two arguments; the mutant exchanges them.
 const EXCHANGED: [(&str, &str); 4] = [
     ("mul", "the order of factors"),
     ("cross", "the order of factors"),
@@ -71,7 +71,7 @@ const EXCHANGED: [(&str, &str); 4] = [
     ("ordered", "the order of factors"),
 ];
 
-/// Constants that are each other's mistake.
+/// Pairs of constants that are mistaken for each other.
 const CONSTANTS: [(&str, &str, &str); 5] = [
     ("HERE", "NEXT", "the time level"),
     ("NEXT", "HERE", "the time level"),
@@ -174,7 +174,7 @@ impl Finder<'_> {
 
     fn condition(&mut self, condition: &Expr) {
         let text = self.source(condition);
-        // Chains of `let` are no expressions.
+        // A `let` chain is not an expression.
         if !text.contains("let ") {
             self.push(condition, format!("!({text})"), "a condition");
         }
@@ -200,7 +200,7 @@ impl<'ast> Visit<'ast> for Finder<'_> {
         }
     }
 
-    // What is evaluated by the compiler has no environment.
+    // Constants are evaluated by the compiler, which has no environment variables.
     fn visit_item_const(&mut self, _: &'ast syn::ItemConst) {}
     fn visit_item_static(&mut self, _: &'ast syn::ItemStatic) {}
     fn visit_impl_item_const(&mut self, _: &'ast syn::ImplItemConst) {}

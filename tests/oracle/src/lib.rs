@@ -1,5 +1,5 @@
-//! What the test binaries share: an oracle that varies unreduced actions, steppers written by hand, reference states,
-//! and measurements of what the physics demands. Takes nothing from the engine or from emitted code.
+//! Shared by the test binaries: an oracle that varies unreduced actions, hand-written steppers, reference states, and measurements
+//! of physical laws. It uses nothing of the engine or of emitted code.
 
 pub use clebsch_comparisons::handwritten;
 pub mod oracle;

@@ -1,8 +1,8 @@
-//! Printed formulas read back and evaluated: plain text as cards, documents and rustdoc show it, with real subscripts
-//! and superscripts. Takes a formula and the values of its letters by their printed names; gives matrices. Reads what
-//! a reader sees: products from left to right, a superscript for what stands before it.
+//! Parses and evaluates printed formulas: plain text from cards, documents and rustdoc, with Unicode subscripts and superscripts.
+//! Takes a formula and the values of its symbols by their printed names, and returns matrices. It reads like a human reader:
+//! products from left to right, and a superscript applies to the preceding factor.
 
-/// A matrix of numbers, row by row; a number is one by one.
+/// A matrix of numbers, row by row; a scalar is 1 x 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Value {
     /// Rows.
@@ -24,7 +24,7 @@ impl Value {
         }
     }
 
-    /// A number.
+    /// A scalar.
     pub fn number(x: f64) -> Value {
         Value::new(1, 1, &[x])
     }
@@ -58,7 +58,7 @@ impl Value {
         Value::of(self.rows, b.cols, entry)
     }
 
-    /// A sum; `Id` stands for the identity of the size of the other summand.
+    /// A sum of two values of equal shape.
     fn plus(&self, b: &Value, sign: f64) -> Value {
         assert_eq!(
             (self.rows, self.cols),
@@ -76,8 +76,7 @@ impl Value {
         })
     }
 
-    /// Blocks beside and below one another, where a number 0 stands for zeros of any size: of `rows` and `cols` rows
-    /// and columns.
+    /// A block matrix from `parts`, with block heights `rows` and widths `cols`. A block 0 denotes a zero block of any size.
     fn blocks(parts: &[Vec<Value>], rows: &[usize], cols: &[usize]) -> Value {
         let (height, width) = (rows.iter().sum(), cols.iter().sum());
         let place = |sizes: &[usize], mut at: usize| {
@@ -106,7 +105,7 @@ impl Value {
         Value::of(self.cols, self.rows, |i, j| self.at(j, i))
     }
 
-    /// Inverse and determinant, by elimination with the largest pivot.
+    /// Inverse and determinant, by elimination with partial pivoting.
     pub fn inverted(&self) -> (Value, f64) {
         let n = self.rows;
         let mut rows: Vec<Vec<f64>> = (0..n)
@@ -153,7 +152,7 @@ fn hat(v: &[f64]) -> Value {
     )
 }
 
-/// The left multiplication by a quaternion.
+/// The left-multiplication matrix of a quaternion.
 pub fn quaternion([w, x, y, z]: [f64; 4]) -> Value {
     Value::new(
         4,
@@ -266,10 +265,10 @@ const FRACTIONS: [(char, f64, f64); 15] = [
     ('⅞', 7.0, 8.0),
 ];
 
-/// Values of letters by their printed names.
+/// Values of symbols by their printed names.
 pub type Letters<'a> = [(String, Value)];
 
-/// The value of a printed formula whose matrices beside a bare `Id` have this many rows.
+/// The value of a printed formula; a bare `Id` next to matrices has their number of rows.
 pub fn value(text: &str, letters: &Letters) -> Value {
     let mut reader = Reader {
         rest: text.trim(),
@@ -284,7 +283,7 @@ pub fn value(text: &str, letters: &Letters) -> Value {
     out.fixed()
 }
 
-/// A value, or a multiple of the identity whose size what stands beside it tells.
+/// A value, or a multiple of the identity whose size follows from the neighbouring term.
 #[derive(Clone, Debug)]
 enum Part {
     Known(Value),
@@ -435,7 +434,7 @@ impl Reader<'_> {
             return Part::Known(Value::number(inside.data[0].sqrt()));
         }
         if self.eat("|") {
-            // Where a factor is expected, a bar opens: the length of a vector, or a number without its sign.
+            // In factor position, a bar opens: the length of a vector, or the absolute value of a number.
             let inside = self.sum().fixed();
             assert!(self.eat("|"), "no bar closes before {:?}", self.rest);
             let square: f64 = inside.data.iter().map(|x| x * x).sum();
@@ -444,7 +443,7 @@ impl Reader<'_> {
         if self.eat("(") {
             let inside = self.sum();
             if self.eat(", ") {
-                // The angular and the linear part of a vector of six.
+                // The angular and the linear part of a vector with six components.
                 let parts = [vec![inside.fixed()], vec![self.sum().fixed()]];
                 assert!(self.eat(")"), "no bracket closes before {:?}", self.rest);
                 return Part::Known(Value::blocks(&parts, &[3, 3], &[1]));
@@ -482,7 +481,7 @@ impl Reader<'_> {
             self.rest = &self.rest[end..];
             return Part::Known(Value::number(number));
         }
-        // The longest name that fits: `J₁` before `J`.
+        // The longest matching name: `J₁` before `J`.
         let fits = self
             .letters
             .iter()
@@ -516,7 +515,7 @@ impl Reader<'_> {
         match (name, numbers.as_slice()) {
             ("Id", []) => Part::Identity(1.0),
             ("Id", [n]) => Part::Known(Value::of(*n, *n, |i, j| f64::from(u8::from(i == j)))),
-            // Puts three components into so many, from the given one on.
+            // Embeds three components into `n`, starting at index `from`.
             ("ι", [n, from]) => Part::Known(Value::of(*n, 3, |i, j| {
                 f64::from(u8::from(i + 1 == from + j))
             })),

@@ -1,14 +1,14 @@
-//! Reference states of rigid-body runs: 32 digits from tests/reference/generate.py, rounded to `f64` here.
-//! Gives attitudes (row-major matrices, body -> space) and body momenta at the nodes 1, 10, 100, 1000 of runs with
-//! h = 0.1, together with the data that start them; physical sign, moments I, Poinsot matrix J = tr(I)/2 Id - I.
+//! Reference states of rigid-body runs, from the 32 digits of tests/reference/generate.py rounded to `f64`. Gives attitudes
+//! (row-major matrices, body -> space) and body momenta at the nodes 1, 10, 100, 1000 of runs with h = 0.1, and their initial data.
+//! Physical sign, moments I, Poinsot matrix J = tr(I)/2 Id - I.
 
-/// Step length of every reference run.
+/// Step size of every reference run.
 pub const H: f64 = 0.1;
 
-/// Nodes at which states are recorded.
+/// Nodes with recorded states.
 pub const NODES: [u64; 4] = [1, 10, 100, 1000];
 
-/// Agreement asked for up to node 1000: rounding of a thousand steps, with a margin of about ten.
+/// Required agreement up to node 1000: the rounding error of a thousand steps, with a margin of about ten.
 pub const TOLERANCE: f64 = 1e-12;
 
 pub mod coupled_sym;
@@ -134,7 +134,7 @@ pub mod top_lagrange {
     /// Energy at node 0.
     pub const ENERGY_0: f64 = 1.3025;
 
-    /// Least and largest deviation of the energy over the run.
+    /// Smallest and largest deviation of the energy over the run.
     pub const ENERGY_DEVIATION: [f64; 2] = [-0.005190496768137998, 0.0];
 
     /// mu . Gamma, exactly conserved.
@@ -204,7 +204,7 @@ pub mod top_lagrange {
         [0.37174802542576774, -0.6801350522321518, 0.74],
     ];
 
-    /// gU seen from space.
+    /// gU in the spatial frame.
     pub const SPATIAL_ARM: [[f64; 3]; 4] = [
         [
             0.6012927518705735,

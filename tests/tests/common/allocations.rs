@@ -1,6 +1,6 @@
-//! Counts the allocations of a thread: the global allocator of this binary hands over to the system's.
+//! Counts the allocations of a thread, with a global allocator that delegates to the system allocator.
 
-// A global allocator is an unsafe trait; both methods only count and hand over to the system's.
+// `GlobalAlloc` is an unsafe trait; both methods count and delegate to the system allocator.
 #![allow(unsafe_code)]
 
 use std::alloc::{GlobalAlloc, Layout, System};

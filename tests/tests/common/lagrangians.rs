@@ -1,5 +1,5 @@
-//! Random Lagrangians on every group: the residual program, interpreted, against the variation of the unreduced action at
-//! random points that solve nothing, and every mutant of the program noticed at some of them.
+//! Random Lagrangians on every group. Compares the interpreted residual program with the variation of the unreduced action at
+//! random points that solve nothing, and checks that every mutant of the program disagrees at some of them.
 
 use super::mutants::{Judged, survivors};
 use super::oracle_bridge::{AGREEMENT, assignment};
@@ -12,10 +12,10 @@ use clebsch_oracle::sizes::MUTANT_POINTS;
 use std::array::from_fn;
 use std::panic::catch_unwind;
 
-/// Random points for every Lagrangian: three times as many as all mutants of all of them are noticed at.
+/// Random points per Lagrangian: three times the number that detects all mutants of all Lagrangians.
 const POINTS: usize = 3 * MUTANT_POINTS;
 
-/// A random point with what the oracle says about it.
+/// A random point with the oracle's variation.
 fn judged(model: &Model, source: &mut Source) -> Judged {
     let step = source.between(0.2, 1.0);
     let point = Point::draw(model, source, step);
@@ -27,7 +27,7 @@ fn judged(model: &Model, source: &mut Source) -> Judged {
     }
 }
 
-/// The worst disagreement of a Lagrangian, or what went wrong.
+/// The largest disagreement of a Lagrangian, or an error message.
 fn found(derivation: &Derivation, model: &Model, seed: u64) -> Result<f64, String> {
     let mut source = Source::seeded(seed ^ 0x5eed);
     let mut worst: f64 = 0.0;
@@ -52,7 +52,7 @@ fn found(derivation: &Derivation, model: &Model, seed: u64) -> Result<f64, Strin
     Ok(worst)
 }
 
-/// The number of mutants, all noticed, or what went wrong.
+/// The number of mutants, all detected, or an error message.
 fn mutated(derivation: &Derivation, model: &Model, seed: u64) -> Result<usize, String> {
     let mut source = Source::seeded(seed ^ 0xface);
     let points: Vec<Judged> = (0..MUTANT_POINTS)
@@ -65,12 +65,12 @@ fn mutated(derivation: &Derivation, model: &Model, seed: u64) -> Result<usize, S
     }
 }
 
-/// The worst disagreement of a model and the number of its mutants, or what went wrong.
+/// The largest disagreement of a model and the number of its mutants, or an error message.
 pub fn judge(model: &Model, seed: u64) -> Result<(f64, usize), String> {
     let derivation =
         derive_source(&model.text()).map_err(|errors| format!("is refused:\n{errors}"))?;
     let worst = found(&derivation, model, seed)?;
-    // Programs of rotations of other sizes than three have summands on which no component of the residual depends.
+    // For rotations in dimensions other than three, programs contain summands on which no residual component depends.
     match model
         .bodies
         .iter()
@@ -81,12 +81,12 @@ pub fn judge(model: &Model, seed: u64) -> Result<(f64, usize), String> {
     }
 }
 
-/// Fails if a Lagrangian of these seeds disagrees with the oracle, or one of its mutants does not.
+/// Fails if a Lagrangian of these seeds disagrees with the oracle, or if one of its mutants agrees.
 pub fn agree_and_their_mutants_do_not(seeds: impl Iterator<Item = u64>) {
     let mut failures = Vec::new();
     let (mut worst, mut count): (f64, usize) = (0.0, 0);
     for seed in seeds {
-        // A panic of one seed must not hide what is wrong with the others.
+        // A panic for one seed must not hide the failures of others.
         let failure = match catch_unwind(|| judge(&Model::of_seed(seed), seed)) {
             Ok(Ok((difference, mutants))) => {
                 worst = worse(worst, difference);

@@ -1,10 +1,9 @@
-//! Lattices against actions whose sums over sites are typed by hand, as loops with their own indices.
-//! Takes the derivation of a model with labels for chosen numbers of sites and ends; gives its momentum
-//! at either end of a step and its residual, at random fields that solve nothing, against the variation
-//! of the unreduced action by dual numbers. Then the typed action is changed by one sign or by one site
-//! of one range: every such change that moves the action must be seen.
+//! Chains against actions whose sums over sites are written by hand, as loops with their own indices. For given numbers of sites
+//! and ends, compares the derived momentum at either end of a step and the residual with the variation of the unreduced action by
+//! dual numbers, at random fields that solve nothing. Then changes the hand-written action by one sign, or one range by one site;
+//! the comparison must detect every such change that moves the action.
 
-// Loops over sites read as the sums they were typed from.
+// Loops over sites keep the shape of the sums.
 #![allow(clippy::needless_range_loop)]
 
 pub mod beam;
@@ -24,23 +23,22 @@ use clebsch_core::Derivation;
 use clebsch_core::lattice::Lattice;
 use clebsch_core::pipeline::{derive_lattice, parse_source, representative};
 
-/// Agreement asked of each component, relative to the largest summand of the variation of its own site.
-/// A summand is rounded to some 1e-15 of what it is made of; differences of places along a line of 50
-/// sites, exponentials and a few tens of summands lose three digits more, 1e-12 in all. What is wrong by
-/// a sign, a factor or a site is wrong in the first digits.
+/// Required agreement of each component, relative to the largest summand of the variation at its site. A summand has a relative
+/// rounding error of about 1e-15. Differences of positions along 50 sites, exponentials and a few tens of summands lose three more
+/// digits, 1e-12 in all. A wrong sign, factor or site changes the first digits.
 const AGREEMENT: f64 = 1e-10;
 
-/// How a line ends.
+/// The ends of a chain.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Ends {
     /// Closed to a ring.
     Ring,
-    /// These alternatives at the first and at the last site.
+    /// These alternatives at the first and the last site.
     Open(&'static str, &'static str),
 }
 
 impl Ends {
-    /// How many nodes a line of `segments` has.
+    /// The number of nodes for this number of segments.
     fn nodes(self, segments: usize) -> usize {
         match self {
             Ends::Ring => segments,
@@ -56,10 +54,10 @@ impl Ends {
     }
 }
 
-/// The natural ends of a line for which no other is stated.
+/// The natural ends of a chain, used if no others are stated.
 pub const FREE: Ends = Ends::Open("free", "free");
 
-/// Derives the model for so many sites of each label.
+/// Derives the model for the given number of sites of each label.
 pub fn derived(text: &str, counts: &[(&str, usize)], ends: Ends) -> Derivation {
     let model = parse_source(text).unwrap_or_else(|e| panic!("{text}\n{e}"));
     let lattice = Lattice::read(&model).unwrap_or_else(|e| panic!("{text}\n{e}"));

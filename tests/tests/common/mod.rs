@@ -1,5 +1,5 @@
-//! What the quick tests of derivations and those of many models share: the way from the oracle to the engine, typed
-//! actions of lines, and random models.
+//! Shared by the quick derivation tests and the tests of many models: the bridge from the oracle to the engine, hand-written
+//! actions of chains, and random models.
 
 pub mod lagrangians;
 pub mod lattices;

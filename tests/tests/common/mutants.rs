@@ -1,18 +1,17 @@
-//! Residual programs with one summand removed or flipped, judged at points of which the oracle knows the variation of the
-//! action.
+//! Residual programs with one summand removed or negated, compared with the oracle's variation of the action.
 
 use super::oracle_bridge::{AGREEMENT, assignment};
 use clebsch_core::Derivation;
 use clebsch_oracle::oracle::points::{Given, Variation};
 
-/// A point with what the oracle says about it.
+/// A point with the oracle's variation.
 pub struct Judged {
     pub given: Vec<Given>,
     pub step: (&'static str, f64),
     pub oracle: Variation,
 }
 
-/// The number of mutants, and what describes those that agree with the oracle everywhere.
+/// The number of mutants, and descriptions of those that agree with the oracle everywhere.
 pub fn survivors(derivation: &Derivation, points: &[Judged]) -> (usize, Vec<String>) {
     let mutants = derivation.mutations();
     let alive = mutants
@@ -20,7 +19,7 @@ pub fn survivors(derivation: &Derivation, points: &[Judged]) -> (usize, Vec<Stri
         .filter(|mutant| {
             points.iter().all(|point| {
                 let values = assignment(&point.given, point.step);
-                // A mutant that cannot be evaluated is noticed as well.
+                // A mutant that fails to evaluate counts as detected.
                 mutant
                     .residual(&values)
                     .is_ok_and(|residual| point.oracle.disagreement(&residual) <= AGREEMENT)

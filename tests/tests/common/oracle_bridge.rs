@@ -1,14 +1,14 @@
-//! Between the oracle and the engine: the only place where both are known.
-//! Takes the plain data of the oracle; gives assignments for the engine.
+//! The bridge between the oracle and the engine, and the only file that uses both. Converts the oracle's plain data to assignments
+//! of the engine.
 
 use clebsch_core::Assignment;
 use clebsch_oracle::oracle::points::Given;
 
-/// Agreement asked of a residual, relative to the sum of the sizes of its summands. Rounding leaves about
-/// 1e-14; inverses and quotients of random matrices lose some digits more.
+/// Required agreement of a residual, relative to the sum of its absolute summands. Rounding leaves about 1e-14; inverses and
+/// quotients of random matrices lose some more digits.
 pub const AGREEMENT: f64 = 1e-10;
 
-/// The values of the oracle as the engine takes them.
+/// The values of the oracle as an assignment of the engine.
 pub fn assignment(given: &[Given], step: (&str, f64)) -> Assignment {
     let mut assignment = Assignment::new();
     for value in given {

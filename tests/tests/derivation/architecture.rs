@@ -1,10 +1,10 @@
-//! The maps are true: every path that ARCHITECTURE.md, README.md and docs/errata.md name exists. And a rule that
-//! no compiler keeps: no largest deviation is folded by `f64::max`, which passes over a NaN.
+//! Checks that every path in ARCHITECTURE.md, README.md and docs/errata.md exists. Also enforces a rule that no compiler checks:
+//! code must not fold deviations with `f64::max`, which ignores NaN.
 
 use std::fs;
 use std::path::Path;
 
-/// Words in backticks that look like paths of the project.
+/// Words in backticks that look like paths of the repository.
 fn paths(text: &str) -> Vec<&str> {
     let quoted = text.split('`').skip(1).step_by(2);
     quoted
@@ -12,7 +12,7 @@ fn paths(text: &str) -> Vec<&str> {
         .collect()
 }
 
-/// Targets of links that stay inside the project.
+/// Targets of links inside the repository.
 fn links(text: &str) -> Vec<&str> {
     let targets = text.split("](").skip(1).filter_map(|t| t.split(')').next());
     targets.filter(|t| !t.contains("://")).collect()
@@ -54,7 +54,7 @@ fn no_nan_is_passed_over_when_deviations_are_folded() {
     let mut found = Vec::new();
     sources(&root, &mut found);
     assert!(found.len() > 300, "{} sources only", found.len());
-    // Put together here, so that this file is none of them.
+    // Assembled here, so that this file does not contain them.
     let folds = ["0.0", "0.0_f64", "0.0f64"].map(|from| format!("fold({from}, {})", "f64::max"));
     for path in found {
         let text = fs::read_to_string(&path).unwrap();
@@ -69,7 +69,7 @@ fn no_nan_is_passed_over_when_deviations_are_folded() {
     }
 }
 
-/// What names rigid motions of the plane in sources of the engine: its record, its line, its runtime type.
+/// Names of planar rigid motions in the engine's sources: its record, its table entry, its runtime type.
 const NAMES_OF_THE_PLANE: [&str; 5] = [
     "PlaneMotion",
     "PlaneImpulse",
@@ -95,7 +95,7 @@ fn the_engine_knows_the_motions_of_the_plane_by_their_record_alone() {
         }
     }
     knowing.sort();
-    // The record, and the table with its line.
+    // The record, and the table with its entry.
     assert_eq!(
         knowing,
         ["groups/mod.rs", "groups/plane_motions.rs"],

@@ -1,17 +1,17 @@
-//! What the gallery cites: every line of a model's table is printed, at equations that the model has, and nothing else is.
-//! At which equation a line stands is shown by the snapshots and by `generated/`.
+//! Citations of the gallery: the derivation prints every entry of a model's citation table, at equations of the model, and prints
+//! nothing else. Snapshots and `generated/` show at which equation an entry appears.
 
 use clebsch_core::document::{Citations, printed_telling};
 use clebsch_core::print::Format;
 use clebsch_core::{Derivation, derive_source};
 use std::collections::BTreeSet;
 
-/// The derivation with its paragraphs in one line each.
+/// The derivation with each paragraph on one line.
 fn text(d: &Derivation, citations: Citations) -> String {
     printed_telling(d, Format::Text, 1_000_000, citations, None)
 }
 
-/// What stands in brackets behind or below the equations of a text, as sources of equations do.
+/// The bracketed citations that follow or accompany equations in a text.
 fn sources(text: &str) -> BTreeSet<String> {
     let behind = text
         .split("[thesis ")

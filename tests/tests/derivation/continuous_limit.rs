@@ -1,7 +1,6 @@
-//! The continuous equations of motion against the discrete ones: along a smooth curve that solves
-//! nothing, the discrete balance over the step tends to the continuous one with the order of the
-//! scheme. Takes statements; measures the order from two steps, and shows that a changed equation
-//! is not the limit.
+//! The continuous equations of motion as the limit of the discrete ones. Along a smooth curve that solves nothing, the discrete
+//! balance over the step size tends to the continuous equation with the order of the scheme. Measures the order from two step
+//! sizes, and checks that a changed equation is not the limit.
 
 use clebsch_core::{Assignment, Derivation, derive_source};
 use clebsch_oracle::oracle::points::Source;
@@ -59,7 +58,7 @@ impl Matrix {
     }
 }
 
-/// One group of a model: its letters and what its elements are.
+/// One group of a model: its symbols and element type.
 #[derive(Clone, Copy)]
 struct Body {
     element: &'static str,
@@ -77,8 +76,8 @@ const fn rotation(element: &'static str, size: usize, spatial: bool) -> Body {
     }
 }
 
-/// A model, its groups, parameters (name, rows, columns, symmetric) and quantities carried without a
-/// definition, by what they are at a node.
+/// A model, its groups, parameters (name, rows, columns, symmetric), and advected quantities without a definition, with their
+/// values at a node.
 struct Case {
     text: &'static str,
     bodies: Vec<Body>,
@@ -127,7 +126,7 @@ impl Curve {
         }
     }
 
-    /// As the engine writes elements of the Lie algebra: the axial vector for SO(3).
+    /// In the engine's coordinates of the Lie algebra: the axial vector for SO(3).
     fn coordinates(&self, a: &Matrix) -> (usize, usize, Vec<f64>) {
         if self.body.orthogonal && self.body.size == 3 {
             (3, 1, vec![a.at(2, 1), a.at(0, 2), a.at(1, 0)])
@@ -143,7 +142,7 @@ fn parameters(case: &Case, source: &mut Source) -> Vec<(&'static str, usize, usi
             .map(|_| source.between(-1.0, 1.0))
             .collect();
         if *symmetric {
-            // Positive, so that determinants of what is carried have logarithms.
+            // Positive definite, so that determinants of advected quantities have logarithms.
             let a = Matrix(*rows, data);
             let positive = a.times(&a.transposed()).plus(&Matrix::identity(*rows));
             data = positive.1;
@@ -153,7 +152,7 @@ fn parameters(case: &Case, source: &mut Source) -> Vec<(&'static str, usize, usi
     case.parameters.iter().map(draw).collect()
 }
 
-/// The discrete balance over the step, and the continuous one.
+/// The discrete balance over the step size, and the continuous one.
 struct Balances {
     discrete: Vec<f64>,
     continuous: Vec<f64>,
@@ -309,7 +308,7 @@ fn cases() -> Vec<Case> {
             parameters: vec![("C0", 3, 3, true), ("I0", 3, 3, true)],
             carried: vec![],
         },
-        // A potential of the element itself, and a term linear in the velocity.
+        // A potential of the element, and a term linear in the velocity.
         Case {
             text: "model Driven { param J, K: Sym<3>; param u, z: Vec<3>;
                 group Λ: SO<3> velocity Ω; constraint next(Λ) = Λ*Ω;
@@ -341,10 +340,10 @@ fn the_balance_over_the_step_tends_to_the_continuous_equations() {
             };
             let (coarse, fine) = (gap(2e-2), gap(1e-2));
             let order = (coarse / fine).log2();
-            // The residual is a difference of momenta of size 1/h over h: 1e-16/h² is 1e-12.
+            // The residual is a difference of momenta of size 1/h, divided by h; its rounding error is 1e-16/h², or 1e-12.
             println!("{order:.3} {fine:e}");
             assert!(d.reversible, "{}", case.text);
-            // A term of fourth order that happens to be large bends the slope by less than this.
+            // A large fourth-order term changes the slope by less than this.
             assert!((order - 2.0).abs() < 0.1, "{}: order {order}", case.text);
         }
     }
@@ -354,8 +353,7 @@ fn the_balance_over_the_step_tends_to_the_continuous_equations() {
 fn another_equation_is_not_the_limit() {
     for case in cases() {
         let d = derivation(&case);
-        // Doubled accelerations stand for a factor of the momentum, a curve of another seed for
-        // any other mistake.
+        // A curve with another seed, and the equation with the opposite sign, must not be the limit.
         let here = balances(&d, &case, 1e-3, 1);
         let there = balances(&d, &case, 1e-3, 2);
         let right = largest_gap(&here.discrete, &here.continuous);

@@ -1,6 +1,5 @@
-//! What Newton's method is given: momenta written by parts, and their tangent in closed form,
-//! against the momenta as derived and their directional derivatives. Takes models of every group
-//! of space; a tangent with one block turned fails.
+//! The input of Newton's method: momenta in components of the velocities, and their Jacobian in closed form, against the derived
+//! momenta and their directional derivatives. Covers models on every spatial group; a Jacobian with one transposed block fails.
 
 use clebsch_core::check::spec::Side;
 use clebsch_core::derive::parts::{Parts, Velocity};
@@ -15,7 +14,7 @@ use clebsch_core::{Derivation, derive_source};
 use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::measure::worse;
 
-/// Each a statement whose velocities are coupled, not linear in them, or of another group.
+/// Statements with coupled velocities, nonlinear in the velocity, or on another group.
 const MODELS: [(&str, &str); 6] = [
     (
         "two joined bodies",
@@ -67,7 +66,7 @@ const MODELS: [(&str, &str); 6] = [
     ),
 ];
 
-/// Momenta by the outgoing edge, its end written by its start and the velocities.
+/// Momenta on the outgoing edge, with its end expressed by its start and the velocities.
 fn momenta(d: &Derivation) -> Vec<Expr> {
     let forward = d.spec.end_of_edge();
     let list = d.balances.iter();
@@ -105,8 +104,7 @@ impl Point {
         [0, 1, 2, 3].map(|i| q[i] / length)
     }
 
-    /// Gives every letter at the node and its edge a value of its structure, and the parts of the
-    /// velocities theirs.
+    /// Gives every symbol at the node and its edge a random value of its structure, and assigns the velocity components.
     fn draw(&mut self, d: &Derivation, parts: &Parts) {
         let s = &d.letters.symbols;
         for id in s.ids() {
@@ -166,7 +164,7 @@ impl Point {
     }
 }
 
-/// The largest difference of two matrices, over the larger of one and their size.
+/// The largest difference of two matrices, relative to their size or one, whichever is larger.
 fn difference(a: &Matrix, b: &Matrix) -> f64 {
     assert_eq!((a.rows, a.cols), (b.rows, b.cols));
     let pairs = a.data.iter().zip(&b.data);
@@ -175,8 +173,7 @@ fn difference(a: &Matrix, b: &Matrix) -> f64 {
     worst / size
 }
 
-/// What a model gives Newton's method, checked at random points: the worst difference of momenta
-/// and of tangents; `flaw` is done to the tangent first.
+/// Checks momenta and Jacobian at random points; returns the largest difference of each. `flaw` modifies the Jacobian first.
 fn worst(source: &str, flaw: fn(Expr) -> Expr) -> [f64; 2] {
     let d = derive_source(source).expect("a model");
     let parts = Parts::of(&d.spec, &d.letters).expect("groups of space");
@@ -253,7 +250,7 @@ fn worst(source: &str, flaw: fn(Expr) -> Expr) -> [f64; 2] {
     worst
 }
 
-/// Products of up to ten factors below two, some hundred of them: a few hundred roundings.
+/// Several hundred products of up to ten factors below two: a few hundred rounding errors.
 const ROUNDING: f64 = 1e-13;
 
 #[test]

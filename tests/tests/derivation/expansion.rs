@@ -1,11 +1,11 @@
-//! The work of an expansion, counted in allocations: a property of the code that no other load of the machine
-//! changes. Its time, in an engine built as rustc builds it for the macro, is `expansion` of `benches/`.
+//! Measures the work of a macro expansion in allocations, which do not depend on the load of the machine. The benchmark `expansion`
+//! in `benches/` measures its time, in an engine built as rustc builds it for the macro.
 
 use super::allocations::allocations;
 use clebsch_core::pipeline::expand;
 
-/// Allocations allowed for every model of the gallery: above what the 33 ms of the largest can hold,
-/// and far below what one superlinear pass would make of it.
+/// Limit on allocations for every gallery model: above the expansion of the largest, which takes 33 ms, and far below the cost of
+/// one superlinear pass.
 const BUDGET: u64 = 2_000_000;
 
 #[test]
@@ -15,7 +15,7 @@ fn every_model_of_the_gallery_expands_within_a_budget_of_work() {
         let mut expanded = String::new();
         let count = allocations(|| expanded = expand(tokens).to_string());
         println!("{}: {count} allocations", entry.card.kebab);
-        // The stepper, not an error message in its place.
+        // The output is the stepper and not an error message.
         assert!(
             expanded.contains(":: clebsch :: stepper !"),
             "{}",

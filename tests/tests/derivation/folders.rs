@@ -1,9 +1,10 @@
-//! The folders of `cli/src` import one way: each only from folders before it in [`ORDER`], so that no circle joins two of them.
+//! Checks the import order of the folders in `cli/src`: each folder imports only from folders before it in [`ORDER`], so that
+//! imports are acyclic.
 
 use std::fs;
 use std::path::Path;
 
-/// The folders of the command, each after those that it may import from.
+/// The folders of the command, each after the folders from which it may import.
 const ORDER: [&str; 14] = [
     "words",
     "terminal",
@@ -73,7 +74,7 @@ fn wrong_imports_are_seen() {
     assert_eq!(of("page/a.rs", tests), 0);
 }
 
-/// The modules of the crate that a file names, after `crate::` or where `super::` climbs up to the crate.
+/// The modules of the crate that a file imports, by `crate::` or by `super::` up to the crate root.
 fn imported(file: &str, text: &str) -> Vec<String> {
     let names = file.strip_suffix(".rs").unwrap_or(file).split('/');
     let depth = names.filter(|name| *name != "mod").count();
@@ -101,7 +102,7 @@ fn imported(file: &str, text: &str) -> Vec<String> {
     out
 }
 
-/// Why a file of a folder may not import from a module of the crate, and what to do.
+/// Why a file of a folder may not import from a module, and what to do.
 fn refusal(file: &str, folder: &str, imported: &str) -> Option<String> {
     let place = |name: &str| ORDER.iter().position(|own| *own == name);
     match place(imported) {

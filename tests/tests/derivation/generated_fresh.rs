@@ -1,5 +1,5 @@
-//! What is committed under `generated/` is what the engine gives for the gallery today, byte for
-//! byte, and nothing else; the text a macro keeps of its model derives to the same model.
+//! Checks that `generated/` equals the engine's current output for the gallery, byte for byte and without extra files, and that the
+//! source text that a macro stores derives the same model.
 
 use clebsch_cli::generated;
 use clebsch_core::{derive_source, document};

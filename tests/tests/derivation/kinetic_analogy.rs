@@ -1,13 +1,13 @@
-//! Kirchhoff's kinetic analogy: the rod at rest and Lagrange's top have one derivation under the
-//! dictionary of thesis 3.3 (moment and momentum, force and vertical, arc length and time). Takes the
-//! shipped rod and the statement of the gallery's top; everything from the variations on is compared.
+//! Kirchhoff's kinetic analogy: the static rod and Lagrange's top have the same derivation under the dictionary of thesis 3.3
+//! (moment and momentum, force and vertical, arc length and time). Compares the gallery's rod with the gallery's top, from the
+//! variations on.
 
 use clebsch_core::print::Format;
 use clebsch_core::{derive_source, document};
 
 const ROD: &str = include_str!("../../../models/elastic/kirchhoff-static.clebsch");
 
-/// The gallery's heavy top with its letters replaced by those of the rod.
+/// The gallery's heavy top with the symbols of the rod.
 fn top() -> String {
     let top = clebsch_models::find("heavy-top").expect("in the gallery");
     let mut text = top.card.source.replace('Γ', "ν");
@@ -25,7 +25,7 @@ fn top() -> String {
     text
 }
 
-/// What is derived from a statement, from the variations on.
+/// The derivation of a statement, from the variations on.
 fn derived(text: &str) -> String {
     let derivation = derive_source(text).unwrap_or_else(|e| panic!("{text}\n{e}"));
     let printed = document::printed(&derivation, Format::Text);
@@ -42,7 +42,7 @@ fn a_rod_at_rest_is_lagranges_top() {
     assert!(rod.contains("momentum E3: μ_k·E₃ (exact: Noether"), "{rod}");
 }
 
-/// A force of the other sign, or a section that bends more easily one way, is another system.
+/// A force of the opposite sign, or a section with unequal bending stiffness, is a different system.
 #[test]
 fn another_rod_is_not() {
     let top = derived(&top());

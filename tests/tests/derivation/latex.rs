@@ -1,6 +1,6 @@
-//! Printed LaTeX that a compiler would take, as far as its structure goes: braces and dollars pair,
-//! environments and `\\left` nest, every row of an alignment has its mark, and only known commands
-//! occur. Takes the derivations of the gallery and some models that print what those do not.
+//! Checks the structure of printed LaTeX: braces and dollars match, environments and `\\left` nest, every row of an alignment has
+//! its mark, and only known commands occur. Covers the derivations of the gallery, and extra models for output that the gallery
+//! does not produce.
 
 use clebsch_core::document::{Citations, printed_telling};
 use clebsch_core::print::{Format, Style};
@@ -15,7 +15,7 @@ fn latex(text: &str, citations: Citations) -> String {
     printed_telling(&derive(text), Format::Latex, columns, citations, None)
 }
 
-/// Commands of LaTeX and amsmath that may occur.
+/// Permitted commands of LaTeX and amsmath.
 const COMMANDS: &[&str] = &[
     "Big",
     "Biggl",
@@ -127,15 +127,15 @@ const COMMANDS: &[&str] = &[
     "zeta",
 ];
 
-/// What mathematics stands in.
+/// Delimiters of mathematics.
 const MATHEMATICS: [&str; 6] = ["$", "\\[", "equation", "gather", "align", "align*"];
 
-/// What is wrong with a piece of LaTeX, if anything.
+/// The first error in a piece of LaTeX, if any.
 fn fault(text: &str) -> Option<String> {
     let characters: Vec<char> = text.chars().collect();
-    // Open groups: a brace, a dollar, an environment, a `\left`.
+    // Open groups: a brace, a dollar, an environment, or a `\left`.
     let mut open: Vec<String> = Vec::new();
-    // Alignments, and the marks in the present row of each; the rows of a matrix have any number.
+    // Open alignments, and the number of marks in the current row; matrix rows may have any number.
     let mut rows: Vec<(String, usize)> = Vec::new();
     let (mut i, mut line) = (0, 1);
     let close = |open: &mut Vec<String>, wanted: &str, line: usize| match open.pop() {
@@ -176,7 +176,7 @@ fn fault(text: &str) -> Option<String> {
                 }
                 let command: String = characters[start..i].iter().collect();
                 if command.is_empty() {
-                    // An escaped sign, a space, or the end of a row.
+                    // An escaped character, a space, or the end of a row.
                     let sign = characters.get(i).copied().unwrap_or(' ');
                     i += 1;
                     match sign {
@@ -234,7 +234,7 @@ fn fault(text: &str) -> Option<String> {
                     _ => {}
                 }
             }
-            // LaTeX reads UTF-8: names of people keep their accents.
+            // LaTeX reads UTF-8, so names may contain accents.
             c if !c.is_ascii() && c != 'é' => {
                 return Some(format!("line {line}: {c} is no ASCII"));
             }
@@ -244,7 +244,7 @@ fn fault(text: &str) -> Option<String> {
     open.pop().map(|o| format!("{o} is never closed"))
 }
 
-/// Models by name, with what is cited of them.
+/// Models by name, with their citations.
 fn documents() -> Vec<(String, String, Citations)> {
     let gallery = clebsch_models::gallery();
     let mut all: Vec<(String, String, Citations)> = gallery
@@ -313,7 +313,7 @@ fn faults_are_noticed() {
         ("\\operatorname", "\\operator"),
         ("\\Lambda", "Λ"),
     ] {
-        // What stands in the comments at the top does not matter.
+        // Skips the comments at the top.
         let (comments, body) = right.split_at(right.find("\\section").expect("a section"));
         let wrong = format!("{comments}{}", body.replacen(from, to, 1));
         assert_ne!(wrong, right, "{from} does not occur");

@@ -1,5 +1,4 @@
-//! Lines and rings of a few sites, all kinds of them, against actions typed by hand; longer ones are those of
-//! `tests/tests/many_models/`.
+//! Short chains and rings of all kinds against hand-written actions; `tests/tests/many_models/` tests longer ones.
 
 use super::common::lattices::{
     Ends, FREE, beam, body_chain, held, hoop, rod, scalars, sets, shallow_water, tops,

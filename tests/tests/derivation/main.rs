@@ -1,9 +1,9 @@
-//! What the engine derives, prints and refuses: against the oracle, against snapshots, against files of the repository.
-//! One binary, since linking is most of what a test costs.
+//! Tests of derivation, printing and rejection of models: against the oracle, snapshots, and files of the repository. All tests
+//! share one binary, because linking dominates the build time of a test.
 
 // Models are stated in Greek letters, as in the papers.
 #![allow(mixed_script_confusables, confusable_idents)]
-// Some models are of first order or without a limit on purpose, of which the macro warns by this lint.
+// Some models are deliberately of first order or lack a small-step limit; the macro warns about these with this lint.
 #![allow(deprecated)]
 
 #[path = "../common/allocations.rs"]

@@ -1,4 +1,5 @@
-//! Statements whose sums over sites were once other than meant, each against the action typed by hand.
+//! Regression tests: statements whose sums over sites were once derived with a different meaning, each against a hand-written
+//! action.
 
 use super::common::lattices::compare::agrees;
 use super::common::lattices::sum::{Bodies, Kind, Sum, Typed, around, number};
@@ -6,19 +7,19 @@ use super::common::lattices::{FREE, derived};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 
-/// A factor before a sum, one of whose terms holds neighbours only.
+/// A factor in front of a sum in which one term contains only neighbours.
 const FACTORED: &str = "model Factored {
     label i in 0..N; param a, b: Real; field u: Real at nodes;
     lagrangian = (next(u) - u)^2/(2*h) - h*(a*u^2/2 + b*next(u, i)*prev(u, i));
 }";
 
-/// The same, multiplied out.
+/// The same action, expanded.
 const MULTIPLIED: &str = "model Multiplied {
     label i in 0..N; param a, b: Real; field u: Real at nodes;
     lagrangian = (next(u) - u)^2/(2*h) - h*a*u^2/2 - h*b*next(u, i)*prev(u, i);
 }";
 
-/// A parameter of an end that is called like one of the sites.
+/// An end parameter and a site parameter with the same name.
 const CALLED_ALIKE: &str = "model CalledAlike {
     label i in 0..N; param a: Real at nodes; param b: Real; field u: Real at nodes;
     lagrangian = (next(u) - u)^2/(2*h) - h*a*u^2/2 - h*b*next(u, i)*prev(u, i);

@@ -1,6 +1,5 @@
-//! Mutation of residual programs: every summand is needed, with its sign.
-//! Takes each program with one summand removed or flipped; gives a disagreement with the oracle at some
-//! random point for every one of them. The mutant that nothing notices would be a term nobody tests.
+//! Mutation of residual programs: every summand and its sign matter. Removes or negates one summand of a program at a time; each
+//! mutant must disagree with the oracle at some random point. A surviving mutant would be an untested term.
 
 use super::common::mutants::{Judged, survivors};
 use super::common::oracle_bridge::{AGREEMENT, assignment};
@@ -51,7 +50,7 @@ fn every_mutant_is_noticed<const G: usize, S: Stated<3, G>>(least: usize) {
     );
 }
 
-// At least: two summands of a difference of transports, each removed and flipped; a torque more for the top.
+// Minimum counts: two summands of a transport difference, each removed and negated; the top has an additional torque.
 
 #[test]
 fn free_body() {

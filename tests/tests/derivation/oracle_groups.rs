@@ -1,5 +1,5 @@
-//! Groups other than SO(3) against the variation of unreduced actions, at random points that solve nothing: the models
-//! of the gallery. Actions of the wrong side are refused.
+//! Gallery models on groups other than SO(3) against the variation of unreduced actions, at random points that solve nothing. The
+//! engine must reject actions on the wrong side.
 
 use super::common::oracle_bridge::{AGREEMENT, assignment};
 use clebsch_core::{Derivation, derive_source};
@@ -15,12 +15,12 @@ use std::array::from_fn;
 /// Three nodes of a configuration.
 type Nodes<const N: usize> = [[Square<f64, N>; 1]; 3];
 
-/// The derivation of what must not be refused.
+/// The derivation of an admissible model.
 fn derived(text: &str) -> Derivation {
     derive_source(text).unwrap_or_else(|errors| panic!("{text}\nis refused:\n{errors}"))
 }
 
-/// The worst disagreement over some points.
+/// The largest disagreement over several points.
 fn worst<const N: usize, A: DiscreteAction<N, 1>>(
     d: &Derivation,
     source: &mut Source,
@@ -116,7 +116,7 @@ fn actions_of_the_wrong_side_are_refused() {
         motions("V*G", "Vec<4>", "V*a"),
         motions("G*V", "Mat<4>", "V^-1*a*V"),
         plane("G*V", "Vec<2>", "rot(V)^T*a"),
-        // Turns of the plane commute: both ways round are actions.
+        // Planar rotations commute, so both sides are valid actions.
         plane("G*V", "Vec<2>", "rot(V)*a"),
         plane("V*G", "Vec<2>", "rot(V)*a"),
         plane("G*V", "Vec<3>", "V^-1*a"),

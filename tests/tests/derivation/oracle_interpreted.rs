@@ -1,6 +1,6 @@
-//! The engine's residual program, interpreted, against the variation of the unreduced action.
-//! Takes hand-typed systems and a few random Lagrangians at random points that solve nothing; gives agreement
-//! to 1e-10 relative to the sum of the sizes of the summands.
+//! The engine's residual program, interpreted, against the variation of the unreduced action. Covers hand-written systems and a few
+//! random Lagrangians at random points that solve nothing; requires agreement to 1e-10, relative to the sum of the absolute
+//! summands.
 
 use super::common::lagrangians::{agree_and_their_mutants_do_not, judge};
 use super::common::oracle_bridge::{AGREEMENT, assignment};
@@ -132,13 +132,13 @@ fn ellipsoid_spatial() {
     agrees::<3, 1, EllipsoidSpatial>(&entries());
 }
 
-/// One model of every group and product of groups; more are those of `tests/tests/many_models/`.
+/// One model of every group and product of groups; `tests/tests/many_models/` tests more.
 #[test]
 fn random_lagrangians() {
     agree_and_their_mutants_do_not(0..DERIVED_QUICKLY);
 }
 
-/// The derivative of a determinant is its adjugate, of a singular matrix not the determinant times an inverse.
+/// The derivative of a determinant is its adjugate. For a singular matrix, the determinant times an inverse is not defined.
 #[test]
 fn the_determinant_of_a_singular_matrix() {
     let mut model = Model::of("Singular".to_owned(), &[(Family::Rotation(3), Side::Space)]);

@@ -1,6 +1,5 @@
-//! The oracle against what is known without any engine.
-//! Takes its systems at random points; gives agreement with differences of the action, with the discrete
-//! Euler-Lagrange equations of the free body and the heavy top in closed form, and with conservation laws.
+//! Tests the oracle without the engine. At random points, compares its systems with differences of the action, with closed-form
+//! discrete Euler-Lagrange equations of the free body and the heavy top, and with conservation laws.
 
 use clebsch_oracle::oracle::action::bodies::{FreeBody, HeavyTop, Stated, TwoVectors};
 use clebsch_oracle::oracle::action::coupled::CoupledBodies;
@@ -19,10 +18,10 @@ use clebsch_oracle::physics::measure::worse;
 use clebsch_oracle::sizes::{DIFFERENTIATED, WRITTEN};
 use std::array::from_fn;
 
-/// Rounding of a few hundred operations, each of a relative error of 1e-16, on the natural scale.
+/// The rounding error of a few hundred operations with relative error 1e-16, on the natural scale.
 const ROUNDING: f64 = 1e-13;
 
-/// How far apart differences over 1e-3 and 2e-3 are at a kink, of the scale.
+/// Two differences over 1e-3 and 2e-3 that deviate by more than this, relative to the scale, indicate a kink.
 const KINK: f64 = 1e-5;
 
 fn expected(value: &[f64], reference: &[f64], scale: f64, tolerance: f64, what: &str) {
@@ -93,7 +92,7 @@ fn agrees_with_differences<const N: usize, const G: usize, S: Stated<N, G>>(
         let nodes = nodes::<N, G, S>(&mut source);
         let exact = stationarity(&system, &nodes, basis);
         let approximate = differences(&system, &nodes, basis);
-        // Extrapolated differences of step 1e-3: rounding 1e-16/1e-3, truncation (1e-3)^4.
+        // Extrapolated differences with step 1e-3: rounding error 1e-16/1e-3, truncation error (1e-3)^4.
         expected(
             &exact.derivative,
             &approximate,
@@ -113,8 +112,8 @@ fn hand_typed_variations_are_derivatives_of_the_action() {
     agrees_with_differences::<3, 1, EllipsoidConvective<3>>(&entries(), 5);
 }
 
-/// The same of a random model, along straight lines, with how far the two differences are apart: an action is a function of
-/// matrices, on the group or not.
+/// Differences of a random model's action along straight lines, and the deviation between the two difference steps. The action is a
+/// function of matrices, on or off the group.
 fn differences_of(point: &Point<'_>, nodes: &[Node; 3]) -> Vec<[f64; 2]> {
     let total = |here: &Node| -> f64 {
         let before: f64 = point.edge(&nodes[0], here).iter().sum();
@@ -150,13 +149,14 @@ fn random_variations_are_derivatives_of_the_action() {
                 .flat_map(|&(a, b)| point.edge(&nodes[a], &nodes[b]))
                 .map(|summand: f64| summand.abs())
                 .sum();
-            // Differences lose 1e-16/1e-3 of the action itself and (1e-3)^4 of its fifth derivative, which
-            // for products of many factors is up to 1e4 times the first.
+            // Differences have a rounding error of 1e-16/1e-3 of the action and a truncation error of (1e-3)^4 of its fifth
+            // derivative. For products of many factors, the fifth derivative reaches 1e4 times the first.
             let scale = exact.scale + action;
             let text = model.text();
             let bent = text.contains("abs(") || text.contains("sign(");
             for (a, [b, apart]) in exact.derivative.iter().zip(differences_of(&point, &nodes)) {
-                // A kink of `abs` or `sign` lies between the places: smooth actions leave (1e-3)^2 of their third derivative.
+                // A kink of `abs` or `sign` lies between the sample points; for a smooth action the deviation is (1e-3)^2 of its
+                // third derivative.
                 if bent && apart > KINK * scale {
                     kinks += 1;
                     continue;
@@ -181,7 +181,7 @@ fn the_free_body_transports_its_momentum() {
             nodes[0][0].transpose() * nodes[1][0],
             nodes[1][0].transpose() * nodes[2][0],
         ];
-        // h N = axial vector of Ω J - J Ωᵀ, twice the skew half.
+        // h N = axial vector of Ω J - J Ωᵀ, twice the skew part.
         let momentum = |omega: &Square<f64, 3>| {
             let moved = *omega * body.second_moment;
             vee(&(moved - moved.transpose())).map(|entry| entry / body.h)
@@ -261,7 +261,7 @@ fn the_heavy_top_obeys_its_law_under_every_rule_of_the_nodes() {
 fn momenta_of_symmetric_actions_are_equal_at_both_ends() {
     let mut source = Source::seeded(13);
     for _ in 0..300 {
-        // Turning space turns a free body and nothing else: Λ μ is the same at both ends of an edge.
+        // A free body is invariant under rotations of space: Λ μ is the same at both ends of an edge.
         let body = FreeBody::random(&mut source);
         let [tail, head, _] = nodes::<3, 1, FreeBody>(&mut source);
         let out = momentum_out(&body, &tail, &head, &rotations());
@@ -274,7 +274,7 @@ fn momenta_of_symmetric_actions_are_equal_at_both_ends() {
             ROUNDING,
             "spatial momentum",
         );
-        // The spatial side varies Λ in space and finds the very same momentum, without carrying it.
+        // The spatial side varies Λ in space and gives the same spatial momentum directly.
         let spatial = FreeBodySpatial {
             h: body.h,
             second_moment: body.second_moment,
@@ -287,7 +287,7 @@ fn momenta_of_symmetric_actions_are_equal_at_both_ends() {
             ROUNDING,
             "both sides",
         );
-        // A weight leaves the momentum about the vertical.
+        // A weight preserves the momentum about the vertical.
         let top = HeavyTop::<0>::random(&mut source);
         let out = momentum_out(&top, &tail, &head, &rotations());
         let into = momentum_in(&top, &tail, &head, &rotations());
@@ -299,7 +299,7 @@ fn momenta_of_symmetric_actions_are_equal_at_both_ends() {
             ROUNDING,
             "vertical momentum",
         );
-        // Two bodies alone in space: the sum of both spatial momenta.
+        // For two bodies without external forces, the sum of both spatial momenta is conserved.
         let pair = CoupledBodies::<true>::random(&mut source);
         let [tail, head, _] = nodes::<3, 2, CoupledBodies<true>>(&mut source);
         let out = momentum_out(&pair, &tail, &head, &rotations());

@@ -1,14 +1,14 @@
-//! Counts shapes of sentences that readers stumble over, in documents and comments, folder by folder.
-//! The counts in `prose.txt` may only fall: if you have mended sentences, lower the number of the folder there.
+//! Counts hard-to-read sentence patterns in documents and comments, folder by folder. The counts in `prose.txt` must not rise; if
+//! you improve sentences, lower the number of the folder there.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Words of a sentence beyond which it counts as long.
+/// A sentence with more words than this counts as long.
 const LONG: usize = 32;
 
-/// Parts of sentences that have a plainer form.
+/// Phrases with a plainer alternative.
 const SHAPES: [&str; 22] = [
     " is told",
     " are told",
@@ -34,7 +34,7 @@ const SHAPES: [&str; 22] = [
     " lets ",
 ];
 
-/// Ways of speaking that contain a shape and are plain.
+/// Phrases that contain one of the patterns but are plain.
 const PLAIN: [&str; 5] = [
     " no longer ",
     " no more ",
@@ -43,7 +43,7 @@ const PLAIN: [&str; 5] = [
     " no limit",
 ];
 
-/// Words that open a sentence by its topic, or by a clause as its subject.
+/// Words that open a sentence with its topic or with a clause as its subject.
 const OPENINGS: [&str; 2] = ["Of ", "What "];
 
 #[test]
@@ -82,7 +82,7 @@ fn shapes_are_seen() {
     assert_eq!(hard(&"word ".repeat(LONG + 1)), 1);
 }
 
-/// Adds what the files below a folder have.
+/// Adds the counts of the files below a folder.
 fn count(root: &Path, folder: &Path, counts: &mut BTreeMap<String, usize>) {
     let entries = fs::read_dir(folder).expect("a folder");
     for entry in entries.map(|e| e.expect("an entry").path()) {
@@ -107,13 +107,13 @@ fn count(root: &Path, folder: &Path, counts: &mut BTreeMap<String, usize>) {
     }
 }
 
-/// A document without its code.
+/// A document without its code blocks.
 fn markdown(text: &str) -> String {
     let parts = text.split("```").step_by(2);
     parts.collect::<Vec<_>>().join("\n\n").replace('`', "")
 }
 
-/// The comments of a program, those of neighbouring lines in one paragraph.
+/// The comments of a program; adjacent lines form one paragraph.
 fn rust(text: &str) -> String {
     let mut out = String::new();
     for line in text.lines() {
@@ -128,7 +128,7 @@ fn rust(text: &str) -> String {
     out.replace('`', "")
 }
 
-/// How many shapes the sentences of a text have.
+/// The number of patterns in the sentences of a text.
 fn hard(text: &str) -> usize {
     let paragraphs = text.split("\n\n");
     let sentences = paragraphs.flat_map(|p| {

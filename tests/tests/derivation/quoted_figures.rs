@@ -1,10 +1,10 @@
-//! Every figure that the README quotes about speed and accuracy is the one in the row and column of the page it names.
-//! Takes the pages; a figure moved to another row fails, shown here too, and so does one that no row is named for.
+//! Checks that every speed and accuracy figure in the README equals the value in the named row and column of the benchmark page.
+//! Tests check that a figure in another row fails, and that a figure without a named row fails.
 
 use std::fs;
 use std::path::Path;
 
-/// The table with what was measured, by its section and the head of its first column.
+/// A table cell: its section, its row, and the head of its column.
 struct Place {
     section: &'static str,
     row: &'static str,
@@ -85,7 +85,7 @@ fn tables(section: &str) -> Vec<Vec<Vec<&str>>> {
     found
 }
 
-/// The one cell of a section's tables in the row and column with these names.
+/// The unique cell with this row and column in the tables of a section.
 fn cell<'a>(text: &'a str, at: &Place) -> Result<&'a str, String> {
     let mut found = Vec::new();
     for table in tables(section(text, at.section)?) {
@@ -106,7 +106,7 @@ fn cell<'a>(text: &'a str, at: &Place) -> Result<&'a str, String> {
     }
 }
 
-/// The numbers with an exponent in the sentences of a section.
+/// The numbers with an exponent in the prose of a section.
 fn exponents(section: &str) -> Vec<&str> {
     let sentences = section
         .lines()
@@ -138,7 +138,7 @@ fn largest(long: &str, column: &str) -> Result<f64, String> {
     Ok(largest)
 }
 
-/// What is quoted and does not stand where it was measured.
+/// An error if a quoted figure differs from its measurement.
 fn check(readme: &str, results: &str, long: &str) -> Result<(), String> {
     let quoting = section(readme, "## How fast")?;
     let rows = tables(quoting);
@@ -163,7 +163,7 @@ fn check(readme: &str, results: &str, long: &str) -> Result<(), String> {
             ));
         }
     }
-    // The long runs: the README has the momentum, RESULTS.md the momentum and the energy.
+    // Long runs: the README quotes the momentum, RESULTS.md the momentum and the energy.
     let momentum = largest(long, "whole run")?;
     let energy = largest(long, "energy")?;
     let numbers = |text: &str| -> Vec<f64> {
@@ -193,7 +193,7 @@ fn what_the_readme_quotes_was_measured() {
     }
     assert!(long.contains("--bin long_run"));
 
-    // A figure that left its row for another one of the same table, one row after the other.
+    // Moves each figure to another row of its table.
     for (label, at) in &QUOTED {
         let figure = cell(&results, at).expect("just checked");
         let row = results
@@ -207,7 +207,7 @@ fn what_the_readme_quotes_was_measured() {
         let refused = check(&readme, &wrong, &long).expect_err("a figure was moved");
         assert!(refused.contains(label), "{refused}");
     }
-    // Two rows of the README exchanged, a row too many, another number in a sentence.
+    // Exchanges two rows of the README, adds a row, and changes a number in a sentence.
     let quote = |old: &str, new: &str| {
         let wrong = readme.replacen(old, new, 1);
         assert_ne!(wrong, readme, "{old}");
@@ -223,7 +223,7 @@ fn what_the_readme_quotes_was_measured() {
 #[test]
 fn one_step_is_that_of_the_body_it_names() {
     let [results, peers] = ["benches/RESULTS.md", "benches/PEERS.md"].map(page);
-    // The same body in the page with all rows, where solvers are called so.
+    // The same body on the page with all rows, which uses other solver names.
     let (_, body) = peers
         .split_once("\n### I = (3.5, 2.5, 2), M = (-0.5, 0, 1)\n")
         .expect("the body");

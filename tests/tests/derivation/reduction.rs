@@ -1,6 +1,5 @@
-//! Models stated by their configuration at both ends of a step. Takes unreduced statements; their
-//! residual is the variation of the action typed by hand, on either side, and their steps are those
-//! of the reduced statement. A wrong sign, factor or frame fails.
+//! Models stated by their configurations at both ends of a step. The residual of each unreduced statement equals the variation of
+//! the hand-written action on either side, and its steps equal those of the reduced statement. A wrong sign, factor or frame fails.
 
 use super::common::oracle_bridge::{AGREEMENT, assignment};
 use clebsch::nalgebra::{Matrix3, Vector3};
@@ -18,7 +17,7 @@ use std::array::from_fn;
 
 const POINTS: usize = 200;
 
-/// A system whose variations act on a side of one's choice.
+/// A system with a choice of the side of variation.
 struct From<S>(S, Side);
 
 impl<const N: usize, const G: usize, S: DiscreteAction<N, G>> DiscreteAction<N, G> for From<S> {
@@ -145,7 +144,7 @@ fn residuals_of_elastic_bodies_too() {
 #[test]
 fn a_wrong_statement_disagrees() {
     let basis = rotations();
-    // The sign of the weight, the other side, a factor in the coupling.
+    // Mistakes: the sign of the weight, the other side, a factor in the coupling.
     let rising = top("Λ*Ω", "symmetric").replace("- h*dot", "+ h*dot");
     let wrong = [
         worst::<3, 1, HeavyTop<0>>(&rising, Side::Body, &basis),
@@ -233,14 +232,14 @@ fn steps_are_those_of_the_reduced_statement() {
         stated.step(&mut b, &mut work_b).unwrap();
         in_space.step(&mut c, &mut work_c).unwrap();
     }
-    // The same operations on the same numbers.
+    // The same operations on the same numbers, hence bitwise equal.
     assert_eq!((a.Λ(), a.spatial_momentum()), (b.Λ(), b.spatial_momentum()));
     assert_eq!(reduced.Γ(&a), stated.z_body(&b));
     assert_eq!(reduced.energy(&a), stated.energy(&b));
-    // Another form of the same step: rounding, magnified a little by 200 steps of a tumbling top.
+    // Another form of the same step: a rounding error, slightly amplified by 200 steps of a tumbling top.
     let off = (a.Λ().matrix() - c.Λ().matrix()).norm();
     assert!(off < 1e-11, "{off:e}");
-    // The statement that is kept is the one that was typed, and it derives the same model.
+    // The stored source text is the stated one, and it derives the same model.
     assert!(TopStated::<f64>::SOURCE.contains("next(Λ)"));
     assert!(!TopStated::<f64>::SOURCE.contains("z_body"));
     assert_eq!(

@@ -1,6 +1,6 @@
-//! Models on SU(2) and SE(3), and on several groups at once, stated by their configuration at both
-//! ends of a step. Their residuals are the variation of the action typed by hand and those of the
-//! reduced statement; their steps are those of the reduced model. What is stated wrongly disagrees.
+//! Models on SU(2), SE(3) and several groups at once, stated by their configurations at both ends of a step. Their residuals equal
+//! the variation of the hand-written action and the residual of the reduced statement; their steps equal those of the reduced
+//! model. A wrong statement disagrees.
 
 use super::common::oracle_bridge::{AGREEMENT, assignment};
 use clebsch::nalgebra::{Matrix3, SVector, Vector3, Vector4};
@@ -28,7 +28,7 @@ fn derive(text: &str) -> Derivation {
     derive_source(text).unwrap_or_else(|e| panic!("{text}\nis refused:\n{e}"))
 }
 
-/// The quaternion body of the gallery, unreduced, on either side.
+/// The gallery's quaternion body, unreduced, on either side.
 fn quaternion_body(update: &str) -> String {
     format!(
         "model Body {{
@@ -87,8 +87,8 @@ clebsch::model! {
     }
 }
 
-/// The largest disagreement of a statement with the variation of the action, and with the residual
-/// of another statement of the same model.
+/// The largest disagreement of a statement with the variation of the action, and with the residual of another statement of the same
+/// model.
 fn worst<const G: usize, A: DiscreteAction<4, G>>(
     [text, other]: [&str; 2],
     system: impl Fn(&mut Source) -> (A, f64),
@@ -130,7 +130,7 @@ fn quaternions_worst(texts: [&str; 2], side: Side) -> (f64, f64) {
             (a, h)
         },
         quaternions::node,
-        // The unreduced statement knows the moments in the body, whatever its side.
+        // The unreduced statement uses body moments on either side.
         |a, nodes| {
             let side = Side::Body;
             quaternions::CayleyKlein { side, ..a.clone() }.given(nodes)
@@ -248,7 +248,7 @@ fn steps_of_the_quaternion_body_are_those_of_the_reduced_statement() {
         reduced.step(&mut a, &mut work_a).unwrap();
         stated.step(&mut b, &mut work_b).unwrap();
     }
-    // The same action was derived, and the same operations emitted.
+    // Both derive the same action and emit the same operations.
     assert_eq!((a.q(), a.spatial_momentum()), (b.q(), b.spatial_momentum()));
 }
 
@@ -301,7 +301,7 @@ fn steps_of_kirchhoffs_body_are_those_of_the_reduced_statement() {
     }
     let last = (one.G().matrix() - two.G().matrix()).amax();
     println!("one step {first:e}, a hundred {last:e}");
-    // Another form of one equation: rounding of one step, then magnified by the motion.
+    // Another form of the same equation: the rounding error of one step, later amplified by the motion.
     assert!(first < 1e-14 && last < 1e-11, "{first:e} {last:e}");
 }
 
@@ -317,7 +317,7 @@ fn four(r: &Matrix3<f64>) -> Square<f64, 4> {
 fn steps_on_different_groups_make_the_action_stationary() {
     let mut source = Source::seeded(17);
     let mut action = Mixed::random(&mut source);
-    // The parameters by name, as the oracle gives them.
+    // The parameters by name, from the oracle.
     let given = action.given(&from_fn(|_| mixed::node(&mut source)));
     let data = |name: &str| {
         let found = given.iter().find(|g| g.name == name).expect("a parameter");
@@ -369,7 +369,7 @@ fn steps_on_different_groups_make_the_action_stationary() {
     }
     println!("stationary to {worst:e}");
     assert!(worst < 1e-13, "{worst:e}");
-    // Negative control: one element moved by a thousandth.
+    // Negative control: one element perturbed by 1e-3.
     let mut moved: [[Square<f64, 4>; 3]; 3] = from_fn(|i| nodes[i]);
     moved[1][1] = four(
         &(Rotation::exp(&Vector3::new(1e-3, 0.0, 0.0)).matrix()

@@ -1,14 +1,14 @@
-//! The tables of reference numbers are what tests/reference/generate.py computes from the equations in fifty digits.
-//! Takes its committed output and the text of the tables; every number of every table is compared, none is left out.
+//! Checks that the tables of reference numbers equal the output of tests/reference/generate.py, which evaluates the equations with
+//! fifty digits. Compares every number of every table with the committed output.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// What is no result and no start of a run.
+/// Constants that are neither results nor initial data of a run.
 const SETTINGS: [&str; 4] = ["H", "NODES", "TOLERANCE", "coupled_sym.TOLERANCE"];
 
-/// Errors are written with five digits or six, states as the nearest `f64`.
+/// Errors have five or six digits; states are the nearest `f64`.
 const ERRORS: &str = "asymmetric_body_errors.ATTITUDE";
 
 fn page(name: &str) -> String {
@@ -16,7 +16,7 @@ fn page(name: &str) -> String {
     fs::read_to_string(root.join(name)).expect("a file of the tests")
 }
 
-/// The tables of a source: name with that of its module, numbers as they are written.
+/// The tables of a source file: module and name, with their numbers as text.
 fn tables(file: &str, source: &str) -> BTreeMap<String, Vec<String>> {
     let mut found = BTreeMap::new();
     let mut module = file.to_owned();
@@ -32,7 +32,7 @@ fn tables(file: &str, source: &str) -> BTreeMap<String, Vec<String>> {
             .and_then(|item| item.split_once(':'))
         {
             let (_, value) = typed.split_once('=').expect("a value");
-            // Every constant ends before the next one, the last `;` of its type stands before `=`.
+            // Every constant ends before the next, and the last `;` of its type precedes `=`.
             let (value, _) = value.split_once(';').expect("an end");
             let numbers = value.split(|c: char| c.is_whitespace() || "[],".contains(c));
             let numbers = numbers.filter(|n| !n.is_empty()).map(str::to_owned);
@@ -51,7 +51,7 @@ fn all_tables() -> BTreeMap<String, Vec<String>> {
     all
 }
 
-/// What the generator wrote: the rows of a table one after the other.
+/// The output of the generator, with the rows of a table concatenated.
 fn generated() -> BTreeMap<String, Vec<String>> {
     let mut all: BTreeMap<String, Vec<String>> = BTreeMap::new();
     let mut rows: BTreeMap<String, usize> = BTreeMap::new();
@@ -68,7 +68,7 @@ fn generated() -> BTreeMap<String, Vec<String>> {
     all
 }
 
-/// Half a unit in the last place of a number as it is written.
+/// Half a unit in the last written digit of a number.
 fn half_a_unit(written: &str) -> f64 {
     let (digits, exponent) = written.split_once('e').unwrap_or((written, "0"));
     let after = digits.split_once('.').map_or(0, |(_, d)| d.len());
@@ -76,7 +76,7 @@ fn half_a_unit(written: &str) -> f64 {
     0.5 * 10_f64.powi(exponent - i32::try_from(after).expect("few digits"))
 }
 
-/// Which numbers are not those that were computed.
+/// The numbers that differ from the computed ones.
 fn differences(tables: &BTreeMap<String, Vec<String>>) -> Vec<String> {
     let computed = generated();
     let mut found = Vec::new();
@@ -110,7 +110,7 @@ fn every_number_is_the_one_computed() {
     assert!(numbers > 400, "{numbers}");
     let found = differences(&tables);
     assert!(found.is_empty(), "{found:#?}");
-    // 32 digits are given, of which zeros and whole numbers need none.
+    // The output has 32 digits, except for zeros and integers.
     let computed = generated();
     for number in computed.values().flatten().filter(|n| *n != "0") {
         let digits = number.split('e').next().unwrap_or_default();
@@ -122,7 +122,7 @@ fn every_number_is_the_one_computed() {
 #[test]
 fn another_number_is_found() {
     let tables = all_tables();
-    // The last bit of any state; two numbers exchanged; a table more; a table less.
+    // Mistakes: the last bit of any state, two exchanged numbers, an extra table, a missing table.
     for name in [
         "body_sym.MOMENTUM",
         "spatial.OMEGA",
@@ -149,7 +149,7 @@ fn another_number_is_found() {
     assert_eq!(differences(&wrong).len(), 1);
 }
 
-/// The runtime's own tests, which this crate is not there for, repeat the first two nodes of one run.
+/// The runtime's tests cannot use this crate, and repeat the first two nodes of one run.
 #[test]
 fn the_numbers_that_the_runtime_repeats_are_the_same() {
     let source = page("../runtime/tests/runtime/free.rs");

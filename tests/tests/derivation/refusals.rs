@@ -1,14 +1,14 @@
-//! Wrong models and what is said of them by the engine: one fault a file of `tests/refusals/tests/ui/`, whose `.stderr` holds
-//! the messages as the compiler prints them. `compiler` of the same folder asks the compiler itself about a few.
+//! Wrong models and the engine's error messages. Each file of `tests/refusals/tests/ui/` contains one fault, and its `.stderr` the
+//! messages in the layout of the compiler. The `compiler` test in the same folder runs the compiler on a few of them.
 
 use clebsch_core::diagnostic::{Diagnostic, Place};
 use clebsch_core::{lattice, pipeline};
 use std::path::{Path, PathBuf};
 
-/// Where the faults are, and where their package is that the compiler is run in.
+/// The folder of the faults.
 const FOLDER: &str = "refusals/tests/ui";
 
-/// Warnings are no errors of the engine: only the compiler, told to deny them, stops there.
+/// Warnings are not errors of the engine; only the compiler with denied warnings stops at these.
 const WARNED: &str = "warnings_on_their_tokens";
 
 #[test]
@@ -29,7 +29,7 @@ fn every_fault_is_refused_on_its_tokens() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
-/// The files of faults, in order.
+/// The files with faults, sorted.
 fn faults() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(FOLDER);
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
@@ -41,7 +41,7 @@ fn faults() -> Vec<PathBuf> {
     files
 }
 
-/// What the engine says of a file, as the compiler would print it; empty where it finds no fault.
+/// The engine's messages for a file in the compiler's layout; empty if the model is accepted.
 fn messages(file: &Path) -> String {
     let source = std::fs::read_to_string(file).unwrap();
     let model = pipeline::parse_source(&source);
@@ -63,7 +63,7 @@ fn messages(file: &Path) -> String {
         .join("\n")
 }
 
-/// A message with its line and carets below the tokens, in the layout of rustc.
+/// A message with its source line and carets below the tokens, in the layout of rustc.
 fn printed(source: &str, file: &Path, place: Place, text: &str) -> String {
     let (start, end) = (place.first.start(), place.last.end());
     assert_eq!(start.line, end.line, "a range of tokens over several lines");

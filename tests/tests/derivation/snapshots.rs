@@ -1,15 +1,14 @@
-//! What the engine prints, as files that a reader can judge: the derivation of every model of the gallery and of
-//! models without a stepper. Takes statements; fails when a character differs from `snapshots/`. The emitted Rust
-//! is compared with `generated/` by `generated_fresh`. To accept new output after reading it:
-//! `INSTA_UPDATE=always cargo test --profile quick --test derivation snapshots`.
+//! The engine's printed output as files for human review: the derivation of every gallery model and of models without a stepper. A
+//! test fails if a character differs from `snapshots/`. `generated_fresh` compares the emitted Rust with `generated/`. To accept
+//! new output after review: `INSTA_UPDATE=always cargo test --profile quick --test derivation snapshots`.
 
 use clebsch_core::document::{Citations, printed_telling};
 use clebsch_core::print::{Format, Style};
 use clebsch_core::{Derivation, derive_source};
 use insta::assert_snapshot;
 
-/// Statements that the engine derives and prints, and that have no place in the gallery: no stepper
-/// is emitted for them, or one of the gallery integrates the same motion.
+/// Statements outside the gallery that the engine derives and prints. Either no stepper is emitted for them, or a gallery model
+/// integrates the same motion.
 const ENGINE_ONLY: [(&str, &str); 4] = [
     (
         "four-dimensional-body",

@@ -1,9 +1,9 @@
-//! Every constraint of every model of the gallery with a velocity on its wrong side: refused, and
-//! at that constraint. One that were accepted would give equations with left-over multipliers.
+//! Puts a velocity of every constraint of every gallery model on its wrong side. The engine must reject the model at that
+//! constraint, because accepting it would leave multipliers in the equations.
 
 use clebsch_core::derive_source;
 
-/// The words of a statement: names as they are, everything else character by character.
+/// The tokens of a statement: names as a whole, everything else character by character.
 fn words(text: &str) -> Vec<String> {
     let mut words: Vec<String> = Vec::new();
     let mut inside = false;
@@ -18,7 +18,7 @@ fn words(text: &str) -> Vec<String> {
     words
 }
 
-/// The right side with one velocity replaced by its inverse, for a group of transposes.
+/// The right-hand side with one velocity replaced by its inverse, for a group whose inverse is the transpose.
 fn turned(text: &str, velocity: &str) -> Option<String> {
     let words = words(text);
     let mut out = String::new();
@@ -80,7 +80,7 @@ fn no_wrong_sided_action_is_derived() {
     assert!(tried >= 6, "only {tried} constraints were turned");
 }
 
-/// On every group, in the body and in space: what carries a quantity the wrong way, and the right one.
+/// For several groups, in the body and in space: an advection of a quantity in the wrong direction, and the correct one.
 const OFFERED: [[&str; 5]; 7] = [
     ["SO<3>", "G*V", "Vec<3>", "V*P", "V^T * P"],
     ["SO<3>", "V*G", "Vec<3>", "V^T*P", "V * P"],

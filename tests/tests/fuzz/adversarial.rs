@@ -1,10 +1,9 @@
-//! Inputs made to hurt: deep nesting, expressions that explode when multiplied out, absurd numbers.
-//! Takes nothing; gives named inputs, each of at most 10 kB.
+//! Adversarial inputs of at most 10 kB, with names: deep nesting, expressions that explode when expanded, absurd numbers.
 
 use crate::probe::Input;
 use std::fmt::Write;
 
-/// A heavy top with another Lagrangian, and more statements before it.
+/// A heavy top with a different Lagrangian, and additional statements before it.
 fn top(statements: &str, lagrangian: &str) -> String {
     format!(
         "model Top {{ param J, K: Sym<3>; param B: Mat<3>; param c: Real; param gU, z: Vec<3>; \
@@ -23,7 +22,7 @@ fn joined(count: usize, separator: &str, part: impl Fn(usize) -> String) -> Stri
     parts.join(separator)
 }
 
-/// `let v1 = f(v0); let v2 = f(v1); ...` with `step` writing f.
+/// `let v1 = f(v0); let v2 = f(v1); ...`, where `step` writes f.
 fn chain(count: usize, first: &str, step: impl Fn(&str) -> String) -> String {
     let mut text = format!("let v0 = {first};");
     for place in 0..count {

@@ -1,4 +1,4 @@
-//! Inputs by number: streams of tokens, and valid models with changes.
+//! Inputs by number: token streams, and mutations of valid models.
 
 use crate::probe::{Input, Report};
 use crate::tokens;
@@ -13,13 +13,13 @@ pub fn stream(number: u64) -> Input {
     }
 }
 
-/// The models that are changed, in tokens.
+/// The models to mutate, as tokens.
 pub fn models() -> Vec<Vec<String>> {
     let models = tokens::models();
     models.iter().map(|text| tokens::lex(text)).collect()
 }
 
-/// One of the models with changes.
+/// One of the models with mutations.
 pub fn mutated(number: u64, models: &[Vec<String>]) -> Input {
     let mut source = Source::seeded(number ^ 0x00f0_0d00);
     Input {
@@ -28,7 +28,7 @@ pub fn mutated(number: u64, models: &[Vec<String>]) -> Input {
     }
 }
 
-/// Fails if an input did.
+/// Fails if an input failed.
 pub fn judge(report: &Report) {
     println!("{report}");
     assert!(
@@ -38,7 +38,7 @@ pub fn judge(report: &Report) {
     );
 }
 
-/// The same of mutated models, of which some are valid: otherwise nothing but the parser is tested.
+/// Like `judge`, for mutated models. Some of them must be valid; otherwise the inputs test only the parser.
 pub fn judge_mutated(report: &Report) {
     assert!(
         report.accepted * 100 >= report.probed,

@@ -1,6 +1,5 @@
-//! The engine under arbitrary input: it never panics, never hangs and never fills the memory.
-//! Takes random token streams, mutated valid models and adversarial inputs; gives for each the work and the
-//! peak of the memory that it took, against the limits for inputs of at most 10 kB. More of them: `many.rs`.
+//! Fuzzing of the engine: it never panics, hangs or exhausts memory. Inputs of at most 10 kB are random token streams, mutated
+//! valid models and adversarial texts. Each input has limits on work and peak memory. `many.rs` tests more inputs.
 
 mod adversarial;
 mod kinds;
@@ -13,7 +12,7 @@ use kinds::{judge, judge_mutated};
 use probe::{Input, probe_all};
 use std::sync::{Mutex, MutexGuard};
 
-/// One kind at a time, which takes all threads.
+/// Runs one kind at a time, because each uses all threads.
 fn alone() -> MutexGuard<'static, ()> {
     static TURN: Mutex<()> = Mutex::new(());
     TURN.lock()
@@ -26,7 +25,7 @@ fn random_token_streams() {
     judge(&probe_all(0..FUZZED, kinds::stream));
 }
 
-/// Long, since every text is derived as far as it goes.
+/// Slow: every text is derived as far as possible.
 #[test]
 fn mutated_models() {
     let _turn = alone();
@@ -36,7 +35,7 @@ fn mutated_models() {
     }));
 }
 
-/// Each of the inputs given.
+/// Probes each given input.
 fn each(inputs: &[Input]) -> probe::Report {
     probe_all(0..inputs.len() as u64, |number| {
         let place = usize::try_from(number).unwrap_or(0);

@@ -1,5 +1,4 @@
-//! More random token streams and mutated models than `main.rs` has: the engine never panics, never hangs and never fills
-//! the memory.
+//! More random token streams and mutated models than `main.rs`: the engine never panics, hangs or exhausts memory.
 
 mod kinds;
 mod memory;
@@ -12,13 +11,12 @@ use kinds::{judge, judge_mutated};
 use probe::probe_all;
 use std::ops::Range;
 
-/// Those of `main.rs`, and the last of each kind; a hundred thousand by `FUZZ_INPUTS=100000`.
+/// The inputs after those of `main.rs`; `FUZZ_INPUTS=100000` requests a hundred thousand of each kind.
 fn inputs() -> Range<u64> {
     FUZZED..asked_for("FUZZ_INPUTS", FUZZED_LONG)
 }
 
-/// Long, since some thousand texts are derived.
-/// One after the other, each on all threads.
+/// Slow: several thousand texts are derived. The kinds run in sequence, each on all threads.
 #[test]
 fn token_streams_and_mutated_models() {
     judge(&probe_all(inputs(), kinds::stream));

@@ -1,12 +1,11 @@
-//! A counting allocator: calls, bytes alive and their peak, for each thread.
-//! Takes every allocation of this test binary; gives calls and peak since they were last reset. Beyond a hard limit
-//! it refuses, so that a runaway ends the test and not the machine.
+//! A counting allocator for this test binary: calls, live bytes and their peak per thread since the last reset. Beyond a hard limit
+//! it fails allocations, so that a runaway input ends the test and not the machine.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::io::Write as _;
 
-/// Bytes alive on one thread beyond which allocations are refused: four times what is allowed.
+/// Limit on the live bytes of a thread: four times the limit of an input.
 const REFUSED: isize = 2_000_000_000;
 
 thread_local! {
@@ -18,9 +17,9 @@ thread_local! {
 /// The system allocator with counters.
 struct Counting;
 
-/// Counts a change of the bytes alive; false if it goes beyond the hard limit.
+/// Counts a change of the live bytes; false if it exceeds the hard limit.
 fn count(change: isize) -> bool {
-    // While a thread ends its counters are gone: what it frees then is of no interest.
+    // At thread exit the counters no longer exist, and what the thread frees then does not matter.
     ALIVE
         .try_with(|alive| {
             let now = alive.get() + change;
@@ -32,7 +31,7 @@ fn count(change: isize) -> bool {
         .unwrap_or(true)
 }
 
-/// Says why the process is about to end; the standard error stream is written without allocating.
+/// Prints the reason before the process ends; writing to standard error does not allocate.
 fn refuse() -> bool {
     let why = b"more than 2 GB are refused; CLEBSCH_FUZZ_TRACE=1 names the input\n";
     let _ = std::io::stderr().write_all(why);
@@ -43,7 +42,7 @@ fn signed(size: usize) -> isize {
     isize::try_from(size).unwrap_or(isize::MAX / 2)
 }
 
-// SAFETY: every call goes to the system allocator unchanged, or returns null, which the trait allows.
+// SAFETY: every call is passed unchanged to the system allocator, or returns null, as the trait permits.
 #[allow(unsafe_code)]
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
@@ -51,23 +50,23 @@ unsafe impl GlobalAlloc for Counting {
             count(-signed(layout.size()));
             return std::ptr::null_mut();
         }
-        // SAFETY: the caller keeps the contract of `alloc`.
+        // SAFETY: the caller satisfies the contract of `alloc`.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
         count(-signed(layout.size()));
-        // SAFETY: the caller keeps the contract of `dealloc`.
+        // SAFETY: the caller satisfies the contract of `dealloc`.
         unsafe { System.dealloc(pointer, layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        // Old and new block may be alive together.
+        // The old and the new block may exist at the same time.
         if !count(signed(size)) {
             count(-signed(size));
             return std::ptr::null_mut();
         }
-        // SAFETY: the caller keeps the contract of `realloc`.
+        // SAFETY: the caller satisfies the contract of `realloc`.
         let moved = unsafe { System.realloc(pointer, layout, size) };
         count(-signed(if moved.is_null() { size } else { layout.size() }));
         moved
@@ -77,12 +76,12 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Allocations made on this thread since `begin`.
+/// Allocations of this thread since `begin`.
 pub fn calls() -> u64 {
     CALLS.with(Cell::get)
 }
 
-/// Begins a measurement on this thread; returns the bytes alive at its beginning.
+/// Starts a measurement on this thread; returns the current live bytes.
 pub fn begin() -> isize {
     CALLS.with(|calls| calls.set(0));
     let alive = ALIVE.with(Cell::get);
@@ -90,7 +89,7 @@ pub fn begin() -> isize {
     alive
 }
 
-/// The largest number of bytes alive since `begin`, beyond those alive then.
+/// The peak of live bytes since `begin`, minus the live bytes at that time.
 pub fn peak_since(begin: isize) -> isize {
     PEAK.with(Cell::get) - begin
 }

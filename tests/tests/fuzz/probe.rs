@@ -1,6 +1,6 @@
-//! Probes the engine with one input after the other.
-//! Takes inputs by number; gives how many were valid, the most laborious and the largest, and every failure: a panic,
-//! too much work (counted in allocations, which no other load of the machine changes) or more than 500 MB.
+//! Probes the engine with a sequence of inputs. Reports how many were valid, the inputs with the most work and memory, and every
+//! failure: a panic, too many allocations, or more than 500 MB. Allocations measure work, because other load on the machine does
+//! not change them.
 
 use crate::memory;
 use clebsch_core::print::Format;
@@ -12,40 +12,40 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, Once, PoisonError};
 
-/// The allocations that an input of at most 10 kB may take: half as much again as the busiest, within the 2 s that
-/// are promised, in an optimised engine.
+/// Limit on allocations for an input of at most 10 kB: 1.5 times the busiest input, and within the guaranteed 2 s in an optimised
+/// engine.
 const WORK: u64 = 20_000_000;
-/// The memory that an input of at most 10 kB may take, in bytes.
+/// Memory limit for an input of at most 10 kB, in bytes.
 const MEMORY: isize = 500_000_000;
-/// Failures after which probing ends: more tell nothing new.
+/// Probing stops after this number of failures.
 const ENOUGH: usize = 20;
 
-/// Threads that probe; the machines this runs on have two cores.
+/// Probing threads; the usual machines have two cores.
 const THREADS: usize = 2;
 
-/// If this variable is set every input is named before it is probed: an exhausted stack aborts the process,
-/// and then the last name tells why.
+/// If this variable is set, the name of every input is printed before it is probed. A stack overflow aborts the process, and the
+/// last name identifies the input.
 const TRACE: &str = "CLEBSCH_FUZZ_TRACE";
 
-/// An input with a name by which it can be found again.
+/// An input with a name to reproduce it.
 #[derive(Clone, Debug, Default)]
 pub struct Input {
-    /// Kind and number.
+    /// Its kind and number.
     pub name: String,
     /// The text.
     pub text: String,
 }
 
-/// What came out of many inputs.
+/// The results of many inputs.
 #[derive(Debug, Default)]
 pub struct Report {
-    /// Inputs probed.
+    /// Number of inputs.
     pub probed: u64,
-    /// Inputs that are models.
+    /// Number of valid models.
     pub accepted: u64,
-    /// The most allocations, and of which input.
+    /// The most allocations, and the input.
     pub busiest: (u64, String),
-    /// The largest peak of memory, and of which input.
+    /// The largest peak of memory, and the input.
     pub largest: (isize, String),
     /// All failures.
     pub failures: Vec<String>,
@@ -70,7 +70,7 @@ impl fmt::Display for Report {
 /// The message of the last panic on a probing thread.
 static PANIC: Mutex<Option<String>> = Mutex::new(None);
 
-/// Keeps panics of probing threads silent; all others are reported as ever.
+/// Silences panics of probing threads; all other panics are reported as usual.
 fn silence_probes() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -89,7 +89,7 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What one input did.
+/// The result of one input.
 struct Outcome {
     panicked: bool,
     accepted: bool,
@@ -102,9 +102,9 @@ fn probe(text: &str) -> Outcome {
     let result = catch_unwind(AssertUnwindSafe(|| {
         match clebsch_core::derive_source(text) {
             Ok(derivation) => {
-                // Without values nothing can be evaluated, but the program is built and the answer typed.
+                // Without values the evaluation fails, but it builds the program and returns a typed error.
                 let _ = derivation.residual(&Assignment::new());
-                // What is derived is also printed and emitted.
+                // Printing and emission are probed, too.
                 for format in [
                     Format::Text,
                     Format::Latex,
@@ -119,7 +119,7 @@ fn probe(text: &str) -> Outcome {
                 }
                 String::new()
             }
-            // The message is part of the answer to what is no model.
+            // The error message is part of the probe.
             Err(errors) => errors.to_string(),
         }
     }));
@@ -131,7 +131,7 @@ fn probe(text: &str) -> Outcome {
     }
 }
 
-/// What is wrong with an input, if anything.
+/// The failure of an input, if any.
 fn failure(input: &Input, outcome: &Outcome) -> Option<String> {
     let complaint = if outcome.panicked {
         let message = lock(&PANIC).take().unwrap_or_default();
@@ -147,7 +147,7 @@ fn failure(input: &Input, outcome: &Outcome) -> Option<String> {
     Some(format!("{} {complaint}\n{shown}", input.name))
 }
 
-/// Probes the inputs with these numbers on two threads, with half of the stack that rustc gives to macros: the engine is as
+/// Probes the inputs with these numbers on two threads, with half of the stack that rustc gives to macros, because the engine is as
 /// unoptimised as in a user's build.
 pub fn probe_all(numbers: Range<u64>, input: impl Fn(u64) -> Input + Sync) -> Report {
     silence_probes();
@@ -162,7 +162,7 @@ pub fn probe_all(numbers: Range<u64>, input: impl Fn(u64) -> Input + Sync) -> Re
             }
             let input = input(number);
             if trace {
-                // Straight to the stream: what the test harness captures is lost with an abort.
+                // Written directly to the stream, because output captured by the test harness is lost on abort.
                 let _ = writeln!(std::io::stderr(), "{}", input.name);
             }
             let outcome = probe(&input.text);

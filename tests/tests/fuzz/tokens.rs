@@ -1,6 +1,5 @@
-//! Random token streams and mutations of valid models.
-//! Takes a seeded source; gives texts of at most 10 kB made of the tokens of the model language, of Rust,
-//! and of models that are valid before they are mutated.
+//! Random token streams and mutations of valid models, from a seeded source. Texts have at most 10 kB and consist of tokens of the
+//! model language, of Rust, and of valid models.
 
 use clebsch_oracle::oracle::action::bodies::{
     FourDimensional, FreeBody, HeavyTop, QuadraticField, Stated, TwoVectors,
@@ -11,10 +10,10 @@ use clebsch_oracle::oracle::action::spatial::{FreeBodySpatial, HeavyTopSpatial};
 use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::wide::Model;
 
-/// The longest text.
+/// Maximum length of a text.
 const LONGEST: usize = 10_000;
 
-/// Words of the model language and of its neighbourhood.
+/// Words of the model language and similar words.
 const WORDS: [&str; 118] = [
     "model",
     "pub",
@@ -136,7 +135,7 @@ const WORDS: [&str; 118] = [
     "D",
 ];
 
-/// Punctuation and numbers.
+/// Punctuation and number literals.
 const SIGNS: [&str; 62] = [
     ";",
     ";",
@@ -251,7 +250,7 @@ pub fn stream(source: &mut Source) -> String {
     }
 }
 
-/// Valid models: the hand-typed systems of the oracle and random ones.
+/// Valid models: the hand-written systems of the oracle, and random models.
 pub fn models() -> Vec<String> {
     let mut models = vec![
         FreeBody::text(),
@@ -272,7 +271,7 @@ pub fn models() -> Vec<String> {
     models
 }
 
-/// Splits a model into words, numbers and single signs.
+/// Splits a model into words, numbers and single punctuation characters.
 pub fn lex(text: &str) -> Vec<String> {
     let mut tokens: Vec<String> = Vec::new();
     let mut word = false;
@@ -292,7 +291,7 @@ pub fn lex(text: &str) -> Vec<String> {
     tokens
 }
 
-/// What a token may be exchanged for.
+/// The class of tokens that a token may be replaced with.
 fn kind_of(token: &str) -> u8 {
     match token.chars().next() {
         Some(first) if first.is_ascii_digit() => 0,
@@ -302,7 +301,7 @@ fn kind_of(token: &str) -> u8 {
     }
 }
 
-/// A model with a few mutations of its tokens.
+/// A model with a few token mutations.
 pub fn mutate(source: &mut Source, models: &[Vec<String>]) -> String {
     let mut tokens = source.choose(models).cloned().unwrap_or_default();
     let mutations = if source.chance(60) {
@@ -321,7 +320,7 @@ pub fn mutate(source: &mut Source, models: &[Vec<String>]) -> String {
             .cloned();
         match source.below(18) {
             13..=17 => {
-                // Another one of the same kind, from the same model: many of these stay models.
+                // Replaces the token with another of the same kind from the same model; many results remain valid models.
                 let kind = kind_of(&tokens[here]);
                 let alike: Vec<String> = tokens
                     .iter()
@@ -338,7 +337,7 @@ pub fn mutate(source: &mut Source, models: &[Vec<String>]) -> String {
             7 => tokens[here] = tokens[there].clone(),
             8 => tokens.truncate(here),
             9 => {
-                // A run of tokens several times over.
+                // Repeats a run of tokens several times.
                 let length = 1 + source.below(12);
                 let run: Vec<String> = tokens.iter().skip(here).take(length).cloned().collect();
                 let times = 1 + source.below(8);

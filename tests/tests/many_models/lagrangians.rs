@@ -1,4 +1,4 @@
-//! Random Lagrangians on every group, in two halves that run side by side.
+//! Random Lagrangians on every group, in two halves that run in parallel.
 
 use super::common::lagrangians::agree_and_their_mutants_do_not;
 use clebsch_oracle::sizes::DERIVED;

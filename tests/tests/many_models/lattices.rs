@@ -1,5 +1,5 @@
-//! Lines and rings of up to fifty sites, with all pairs of ends, against actions typed by hand; the shortest of each kind are
-//! those of `tests/tests/derivation/lattices.rs`.
+//! Chains and rings of up to fifty sites, with all pairs of ends, against hand-written actions;
+//! `tests/tests/derivation/lattices.rs` tests the shortest of each kind.
 
 use super::common::lattices::{
     Ends, FREE, beam, body_chain, held, hoop, rod, scalars, sets, shallow_water, tops,
@@ -93,7 +93,7 @@ fn beams_in_a_ring() {
 
 #[test]
 fn long_beams() {
-    // Of 50 segments the derivation is larger than any is given.
+    // With 50 segments the derivation exceeds the engine's limit.
     beam::check(40, Ends::Open("spring", "spring"));
     beam::check(40, Ends::Ring);
 }

@@ -1,5 +1,5 @@
-//! Random models and long lines against the oracle, and second proofs of all that is derived: what `derivation` asks of a
-//! few models, asked of many.
+//! Random models and long chains against the oracle, and second proofs of all derivations: the checks of `derivation` for many more
+//! models.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,6 +1,5 @@
-//! The certificate proved again by equality saturation, which shares nothing with the normal form.
-//! Takes the steps of every model of the gallery; what the search cannot finish is listed with its
-//! reason, and nothing with a flipped sign is ever proved.
+//! Proves the certificate again by equality saturation, which shares no code with the normal form. Covers the steps of every
+//! gallery model. Steps that the search cannot finish are listed with a reason, and no step with a flipped sign is ever proved.
 
 use clebsch_core::expr::symbol::Symbols;
 use clebsch_core::expr::{self, Expr, Node};
@@ -39,8 +38,8 @@ fn every_step_of_the_gallery_is_proved_or_reported() {
     insta::assert_snapshot!(report);
 }
 
-/// The expression with the sign of one summand flipped, for each summand of each sum in it; with
-/// its own sign flipped if it holds no sum.
+/// Copies of the expression with the sign of one summand flipped, for each summand of each sum. Without a sum, the whole expression
+/// is negated.
 fn flipped(symbols: &Symbols, e: &Expr) -> Vec<Expr> {
     let inside = inside(symbols, e);
     if inside.is_empty() && !e.is_zero() {
@@ -73,7 +72,7 @@ fn inside(symbols: &Symbols, e: &Expr) -> Vec<Expr> {
     all
 }
 
-/// One sign in so many is flipped; an attempt to prove what is wrong takes as long as it may.
+/// Flips one in this many signs, because an attempt to prove a false step uses its full time limit.
 const SIGNS: usize = 9;
 
 #[test]

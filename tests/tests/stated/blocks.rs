@@ -1,7 +1,6 @@
-//! Bodies whose forces depend on attitudes, not on velocities: each velocity is a block of its own.
-//! Ten frames in a ring of springs, all explicit, and four bodies of which two share a velocity
-//! term: three blocks of two kinds, one of them stated in space. Against the variation of the
-//! unreduced action, and against what such bodies keep together.
+//! Bodies whose coupling depends on attitudes and not on velocities, so that each velocity is solved as its own block. One model
+//! has ten frames in a ring of springs, all explicit. The other has four bodies, two with a common velocity term: three blocks of
+//! two kinds, one of them spatial. Compared with the variation of the unreduced action and with joint invariants.
 
 use clebsch::integrate::Stepper;
 use clebsch::nalgebra::{Matrix2, Matrix3, Vector3};
@@ -96,7 +95,7 @@ clebsch::model! {
     }
 }
 
-/// What both models have.
+/// The data of both models.
 struct Given {
     h: f64,
     j: Square<f64, 3>,
@@ -126,7 +125,7 @@ impl Given {
         -(Square::constant(&self.j) * tail.transpose() * *head).trace() / T::constant(self.h)
     }
 
-    /// A spring between two directions, half of it at either end of the edge.
+    /// A spring between two directions, half at either end of the edge.
     fn spring<T: Number>(&self, one: [&Square<T, 3>; 2], other: [&Square<T, 3>; 2]) -> [T; 2] {
         let (a, b) = (constant_column(&self.a), constant_column(&self.b));
         [0, 1].map(|k| {
@@ -174,7 +173,7 @@ fn rotation(source: &mut Source) -> Rotation {
     Rotation::from_matrix(&Matrix3::from_fn(|i, j| m.0[i][j])).expect("a rotation")
 }
 
-/// The frames of a ring.
+/// The frames of the ring.
 fn frames(s: &RingState<f64>) -> [Square<f64, 3>; 10] {
     let all = [
         s.R0(),
@@ -191,7 +190,7 @@ fn frames(s: &RingState<f64>) -> [Square<f64, 3>; 10] {
     all.map(|r| square(&r))
 }
 
-/// The largest component of the variation, of the size of its terms.
+/// The largest component of the variation, relative to the size of its terms.
 fn share(variation: &Variation) -> f64 {
     let largest = variation
         .derivative
@@ -259,7 +258,7 @@ fn kinds(given: &Given, source: &mut Source) -> (Kinds, KindsInitial) {
     (model.expect("positive"), initial)
 }
 
-/// Steps of a motion, each three nodes seen by `look`.
+/// Steps of a motion; `look` receives three consecutive nodes.
 fn along<M: Stepper<Scalar = f64>>(
     model: &M,
     start: M::State,
@@ -281,7 +280,7 @@ fn along<M: Stepper<Scalar = f64>>(
     }
 }
 
-/// A thousand roundings of the size of the terms.
+/// A thousand rounding errors, relative to the size of the terms.
 const ROUNDING: f64 = 2e-13;
 
 #[test]
@@ -356,7 +355,7 @@ fn frames_that_act_on_one_another_keep_their_angular_momentum() {
         along(&model, start, h, 2000, |past| {
             worst = worst.max((total(&past[2]) - first).norm() / size);
         });
-        // Ten sums of two forces a step, each rounded: 2000 steps at random signs, all of one size.
+        // Per step ten sums of two forces with rounding errors of equal size; 2000 steps with random signs.
         assert!(worst < 2e-13, "h = {h:e}: {worst:e}");
     }
 }
@@ -407,15 +406,15 @@ fn the_edge_of_a_domain_is_met_once() {
         S: Rotation::identity(),
         body_momentum_S: still,
     };
-    // Outside from the start: no step helps, and none is looked for.
+    // Outside the domain from the start: no step size helps, and the solver searches for none.
     let error = model(1.0, -3.0).start(at(0.0), 0.05).expect_err("outside");
     assert!(matches!(error, StartError::Initial(_)), "{error}");
-    // Just inside: what is offered is taken.
+    // Just inside the domain: the suggested step size works.
     let edge = (-0.5f64).acos();
     for gap in [1e-2, 1e-4, 1e-6] {
         let mut initial = at(edge - gap);
         initial.body_momentum_R = BodyMomentum(Vector3::x());
-        // So weak that the edge is all there is of it.
+        // So weak that only the edge of its domain matters.
         let model = model(1e-30, 0.5);
         let error = model.start(initial, 0.2).expect_err("over the edge");
         let StartError::Refused(StepCause::Contact(contact)) = error else {

@@ -1,6 +1,5 @@
-//! The body of any dimension: its residual and steps against the oracle, what it conserves, its order,
-//! its bound, and its solvers against each other. The spectrum of Manakov is computed here, not taken
-//! from the card.
+//! The body in any dimension: residual and steps against the oracle, invariants, order, solvability bound, and its solvers against
+//! each other. The Manakov spectrum is computed here and not taken from the card.
 
 use clebsch::card::Settings;
 use clebsch::nalgebra::{DMatrix, SMatrix};
@@ -51,7 +50,7 @@ fn square<const N: usize>(a: SMatrix<f64, N, N>) -> Square<f64, N> {
     Square::from_entries(|i, j| a[(i, j)])
 }
 
-/// A symmetric factor, or one that is not.
+/// A random factor, symmetric or not.
 fn factor<const N: usize>(source: &mut Source, symmetric: bool) -> SMatrix<f64, N, N> {
     let p = matrix(&source.positive::<N>());
     match symmetric {
@@ -60,7 +59,7 @@ fn factor<const N: usize>(source: &mut Source, symmetric: bool) -> SMatrix<f64, 
     }
 }
 
-/// A model and a momentum at this part of the bound, at the step `H`.
+/// A model, and a momentum at this fraction of the bound for the step size `H`.
 fn at_fraction<const N: usize>(
     source: &mut Source,
     c: SMatrix<f64, N, N>,
@@ -134,7 +133,7 @@ fn residual_and_steps<const N: usize>() {
         }
     }
     println!("n = {N}: {worst:?}");
-    // A thousand roundings, magnified by the sensitivity to the entries of the group elements.
+    // A thousand rounding errors, amplified by the sensitivity to the entries of the group elements.
     assert!(worst.iter().all(|w| *w < 1e-13), "n = {N}: {worst:?}");
 }
 
@@ -147,7 +146,7 @@ fn residuals_and_steps_are_those_of_the_unreduced_action() {
     residual_and_steps::<8>();
 }
 
-/// `det(M + λ J²)` at a few `λ`, relative to Hadamard's bound: the size of what is summed up to it.
+/// `det(M + λ J²)` at several `λ`, relative to Hadamard's bound, the size of its summands.
 fn spectrum<const N: usize>(m: &SMatrix<f64, N, N>, j: &SMatrix<f64, N, N>) -> Vec<f64> {
     let square = j * j;
     let lambdas = [0.25, 0.5, 1.0, 2.0].map(|x| x * m.norm() / square.norm());
@@ -183,7 +182,7 @@ fn keeps_spectrum<const N: usize>() {
     }
     println!("n = {N}: spectrum {worst:e}, of another matrix {other:e}, momentum {moved:e}");
     assert!(worst < 1e-12, "n = {N}: {worst:e}");
-    // The momentum itself moves, and the spectrum with another matrix is not kept.
+    // The momentum itself changes, and the spectrum with a different matrix is not conserved.
     assert!(moved > 1e-2 && other > 1e-6, "n = {N}: {moved:e} {other:e}");
 }
 
@@ -208,7 +207,7 @@ fn spatial_momentum_of_the_edges_is_kept_for_a_hundred_thousand_steps() {
             let before = state.Λ().matrix();
             model.step(&mut state, &mut work).expect("solvable");
             if step % 64 == 0 {
-                // From the configurations alone, not from what the state keeps.
+                // Computed from the configurations alone, not from stored values.
                 let a = before.transpose() * state.Λ().matrix() * c.transpose() / H;
                 let m = before * (a - a.transpose()) * before.transpose();
                 worst = worse(worst, (m - first).amax() / first.amax());
@@ -232,7 +231,7 @@ fn order_two() {
         (state.Λ().matrix(), state.body_momentum().0)
     };
     let steps = [0.04, 0.02, 0.01, 0.005].map(at);
-    // Differences of neighbours fall by four where the order is two.
+    // For order two, differences of neighbours decrease by a factor of four.
     let apart: Vec<(f64, f64)> = steps
         .windows(2)
         .map(|w| ((w[0].0 - w[1].0).amax(), (w[0].1 - w[1].1).amax()))
@@ -287,7 +286,7 @@ fn with_a_factor_assumed_symmetric_steps_are_reversible_and_compose() {
         println!("order {order}: {found}, {coarse:e}, {fine:e}");
         assert!((found - f64::from(order)).abs() < 0.3, "{order}: {found}");
     }
-    // What is assumed is checked.
+    // The constructor checks the assumption.
     let turned = factor::<4>(&mut source, false);
     assert!((card.open)(&[rows(turned)], &start, Settings::step(H)).is_err());
 }
@@ -328,7 +327,7 @@ fn solvers<const N: usize>(names: &[Method]) {
         })
         .collect();
     for end in &ends {
-        // A hundred steps of the rounding of the invariant subspace.
+        // A hundred steps with the rounding error of the invariant subspace.
         assert!((end - ends[0]).amax() < 1e-11, "n = {N}");
     }
 }

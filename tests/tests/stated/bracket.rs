@@ -1,6 +1,6 @@
-//! The derived Lie-Poisson bracket against the emitted steps: every step is a Poisson map,
-//! `D B D^T = B` at the image, with exact derivatives. Takes models of both sides, with tensors and
-//! with several bodies; a bracket with a wrong sign and quantities of different nodes fail.
+//! Checks that every emitted step is a Poisson map of the derived Lie-Poisson bracket: `D B D^T = B` at the image, with exact
+//! derivatives. Covers models on both sides, with tensors and with several bodies. A bracket with a wrong sign fails, and so do
+//! quantities from different nodes.
 
 use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
 use clebsch::{BodyMomentum, Dual, Rotation, SpatialMomentum};
@@ -58,11 +58,11 @@ clebsch::model! {
     }
 }
 
-/// Rounding of a product of three matrices of up to twelve rows with entries of order one, over the
-/// largest entry, with a wide margin.
+/// Tolerance relative to the largest entry, well above the rounding error of a product of three matrices with up to twelve rows and
+/// entries of order one.
 const TOLERANCE: f64 = 1e-10;
 
-/// One step: the derivation, the points before and after, the Jacobian in the bracket's coordinates.
+/// One step: the derivation, the points before and after, and the Jacobian in the coordinates of the bracket.
 struct Step {
     derivation: Derivation,
     before: Assignment,
@@ -74,7 +74,7 @@ fn values(m: &Matrix) -> &[f64] {
     &m.data
 }
 
-/// `D B D^T - B'`, the largest entry over that of `B'`; `change` spoils the brackets first.
+/// The largest entry of `D B D^T - B'` relative to the largest entry of `B'`; `change` modifies the brackets first.
 fn defect(step: &Step, change: impl Fn(&mut Matrix)) -> f64 {
     let at = |point: &Assignment| {
         let mut b = step
@@ -105,7 +105,7 @@ fn defect(step: &Step, change: impl Fn(&mut Matrix)) -> f64 {
 
 fn unchanged(_: &mut Matrix) {}
 
-/// The sign of the brackets of the first momentum with itself turned round.
+/// Flips the sign of the brackets of the first momentum with itself.
 fn wrong_sign(b: &mut Matrix) {
     for i in 0..3 {
         for j in 0..3 {
@@ -191,7 +191,7 @@ fn body(draws: &mut Draws) -> Step {
     }
 }
 
-/// The heavy top; `late` takes the vertical of the node after with the momentum of this one.
+/// The heavy top. With `late`, pairs the vertical of the next node with the momentum of this node.
 fn top(draws: &mut Draws, late: bool) -> Step {
     type T = Dual<6>;
     let attitude = rotation::<6>(draws);
@@ -215,8 +215,8 @@ fn top(draws: &mut Draws, late: bool) -> Step {
     model.step(&mut state, &mut work).expect("solvable");
     let mut moved = (state.body_momentum().0, model.Γ(&state));
     if late {
-        // Both points and both ends of the derivative with the momentum of one node and the
-        // vertical of the next: the map between them is not Poisson.
+        // Both points, and both ends of the derivative, combine the momentum of one node with the vertical of the next; this map is
+        // not Poisson.
         own.1 = moved.1;
         model.step(&mut state, &mut work).expect("solvable");
         moved.1 = model.Γ(&state);
@@ -344,7 +344,7 @@ fn steps_are_poisson_maps() {
         is_poisson("top", &top(&mut draws, false));
         is_poisson("top in space", &top_in_space(&mut draws));
         is_poisson("joined bodies", &joined(&mut draws));
-        // The bracket of the free body is linear in one momentum: its sign as a whole drops out.
+        // The bracket of the free body is linear in one momentum, so its overall sign cancels.
         let right = defect(&body(&mut draws), unchanged);
         assert!(right < TOLERANCE, "body: {right:e}");
     }
@@ -389,7 +389,7 @@ fn casimirs_commute_with_everything() {
                 };
                 let g = evaluate(s, &expr::gradient(s, value, at), &step.before).expect("given");
                 gradient.extend(match (s.get(*id).name.as_str(), g.rows * g.cols) {
-                    // The derivative along a symmetric change.
+                    // The derivative along a symmetric variation.
                     ("J", _) => UPPER
                         .map(|(i, j)| {
                             if i == j {

@@ -1,6 +1,6 @@
-//! The momentum is carried from node to node on every side and for every group: what is conserved stays so to rounding,
-//! for steps from a tenth to 1e-6 and below. Takes pairs and single bodies stated in space, maps of GL(3), bodies whose tensor is
-//! constant on the other side.
+//! The stepper advances the momentum from node to node, on every side and for every group. Invariants hold to rounding for step
+//! sizes from a tenth to 1e-6 and below. Covers spatial pairs and single bodies, maps of GL(3), and bodies whose tensor is constant
+//! on the other side.
 
 use clebsch::integrate::Stepper;
 use clebsch::nalgebra::{Matrix3, SMatrix, SVector, Vector3};
@@ -128,13 +128,13 @@ const STEPS: u64 = 2000;
 
 const SIZES: [f64; 6] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8];
 
-/// Two thousand sums round by half a unit each, at random by 13 units together; with a margin of eight.
+/// Two thousand sums with half a unit of rounding each add up to 13 units at random; the margin is a factor of eight.
 const EXACT: f64 = 100.0 * f64::EPSILON;
 
 fn largest<const R: usize, const C: usize>(a: &SMatrix<f64, R, C>) -> f64 {
     let mut largest = 0.0;
     for x in a {
-        // NaN is larger than any number.
+        // NaN counts as the largest.
         let within = x.abs() <= largest;
         if !within {
             largest = x.abs();
@@ -143,7 +143,7 @@ fn largest<const R: usize, const C: usize>(a: &SMatrix<f64, R, C>) -> f64 {
     largest
 }
 
-/// All steps keep what is conserved to its rounding.
+/// Checks that all steps conserve the invariants to rounding.
 fn keeps<M: Stepper, const R: usize, const C: usize>(
     model: &M,
     mut state: M::State,
@@ -216,7 +216,7 @@ fn the_total_momentum_of_a_pair_stated_by_its_attitudes() {
     }
 }
 
-/// What one body loses the other gains, in the same numbers: axes turn with both ends of an edge.
+/// Each body loses exactly the numbers that the other gains, because the axes rotate with both ends of an edge.
 #[test]
 fn the_total_momentum_of_bodies_of_two_groups() {
     for h in SIZES {
@@ -267,7 +267,7 @@ fn the_pair_moves_as_it_is_stated_from_its_bodies() {
         .max(largest(
             &(state.spatial_momentum_A().0 - other.spatial_momentum_A().0),
         ));
-    // Rounding of a hundred steps, which two motions may amplify tenfold over five units of time.
+    // Rounding error of a hundred steps, which the two motions may amplify tenfold over five time units.
     assert!(off < 1e-12, "{off:e}");
 }
 
@@ -306,7 +306,7 @@ fn the_angular_momentum_of_an_elastic_body() {
     }
 }
 
-/// A thrown body of this shape, mass and first momentum, and where it starts.
+/// A thrown body with this inertia, mass and first moment, and its initial position.
 fn thrown(
     j: Vector3<f64>,
     m: f64,
@@ -333,7 +333,7 @@ fn thrown(
 
 #[test]
 fn free_fall_keeps_energy_to_the_rounding_of_what_is_carried() {
-    // Light bodies are solved worse and worse about an origin that is far away: they fall a hundred seconds.
+    // Far from the origin, light bodies are solved less accurately; during a hundred seconds they fall far.
     let bodies = [
         (
             5000,
@@ -368,19 +368,19 @@ fn free_fall_keeps_energy_to_the_rounding_of_what_is_carried() {
                 model.step(&mut state, &mut work).unwrap();
                 let p = state.spatial_momentum().0;
                 let linear = p.fixed_rows::<3>(3).norm();
-                // What is carried about the fixed origin, and the potential beside it.
+                // The momentum about the fixed origin, plus the potential.
                 let carried = (1.0 + state.G().translation.norm())
                     * (linear + p.fixed_rows::<3>(0).norm())
                     / m.min(j.min())
                     + m * 9.81 * state.G().translation.norm();
-                // Each step rounds by one unit, at worst of one sign.
+                // Each step adds at most one rounding error, in the worst case always with the same sign.
                 let rounding = k as f64 * f64::EPSILON * carried;
                 let off = (model.energy(&state) - energy).abs();
                 assert!(
                     off <= rounding,
                     "h = {h:e}, node {k}: {off:e}, rounding {rounding:e}"
                 );
-                // Angular about the vertical, and linear across it.
+                // The angular momentum about the vertical, and the horizontal linear momentum.
                 let about = [p[2] - start[2], p[3] - start[3], p[4] - start[4]];
                 for off in about {
                     assert!(

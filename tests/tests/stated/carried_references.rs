@@ -1,7 +1,6 @@
-//! Advected quantities without a definition, started from attitudes that are not the identity: what the state keeps
-//! is their value carried back to the identity, and what is seen from the body is carried on from there. Vectors,
-//! symmetric tensors, directions seen from moving bodies and orientations of two bodies, beside the same models
-//! with definitions.
+//! Advected quantities without a definition, started from attitudes other than the identity. The state stores their value pulled
+//! back to the identity, and computes body values from it. Covers vectors, symmetric tensors, directions in the frames of moving
+//! bodies, and relative orientations of two bodies, against the same models with definitions.
 
 use clebsch::nalgebra::{Matrix3, Matrix4, Vector3, Vector4, Vector6};
 use clebsch::{BodyImpulse, BodyMomentum, RigidMotion, Rotation};
@@ -102,10 +101,11 @@ clebsch::model! {
 const H: f64 = 0.05;
 const STEPS: usize = 100;
 
-/// Rounding of a value of order one carried back and forth, magnified by a hundred steps of motions without chaos yet.
+/// Rounding error of a value of order one that is pulled back and pushed forward, amplified by a hundred steps of a motion that is
+/// not yet chaotic.
 const ROUNDING: f64 = 1e-12;
 
-/// Rounding of carrying back and forth once.
+/// Rounding error of a single pull-back and push-forward.
 const ONCE: f64 = 1e-15 * 8.0;
 
 fn largest<'a>(difference: impl IntoIterator<Item = &'a f64>) -> f64 {
@@ -152,11 +152,11 @@ fn fields_seen_from_the_body() {
             Λ: attitude,
             body_momentum: momentum,
             Γ: r.tr_mul(&z),
-            // Symmetric to the last bit.
+            // Exactly symmetric.
             S: (seen + seen.transpose()) / 2.0,
         };
         let (mut two, mut work_two) = given.start(initial, H).unwrap();
-        // What was given is what is seen.
+        // The accessor returns the initial value.
         assert!(largest(&(given.Γ(&two) - initial.Γ)) < ONCE);
         assert!(largest(&(given.S(&two) - initial.S)) < ONCE);
         for node in 1..=STEPS {
@@ -167,7 +167,7 @@ fn fields_seen_from_the_body() {
                 largest(&(one.body_momentum().0 - two.body_momentum().0)),
                 largest(&(told.Γ(&one) - given.Γ(&two))),
                 largest(&(told.S(&one) - given.S(&two))),
-                // Fixed in space.
+                // Constant in space.
                 largest(&(two.Λ().matrix() * given.Γ(&two) - z)),
             ];
             let worst = apart.into_iter().fold(0.0, worse);

@@ -1,4 +1,4 @@
-//! A space stated by its coordinates, numbers and shorter vectors: its rotations are found, and their momenta kept.
+//! Space described by scalar coordinates and shorter vectors: clebsch finds its rotations, and the steps conserve their momenta.
 
 use clebsch::nalgebra::{Vector1, Vector2, Vector3};
 use clebsch::{Additive, FieldMomentum};
@@ -39,7 +39,8 @@ fn coordinates_keep_their_angular_momentum() {
     };
     let first = by_hand(&state);
     for _ in 0..2_000 {
-        // Signs are those of the planes; what is told is the moment, and a step keeps it to rounding.
+        // Each sign follows from the plane of the rotation. The reported moment equals the hand-written one, and a step conserves
+        // it to rounding.
         let (told, now) = (told(&state), by_hand(&state));
         assert!((told.abs() - now.abs()).norm() < 1e-14, "{told} {now}");
         assert!((now - first).norm() < 1e-13, "{}", now - first);

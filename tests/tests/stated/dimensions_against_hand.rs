@@ -1,5 +1,5 @@
-//! The generated free body in n dimensions against the hand-written one: one step from ten thousand random states of
-//! four dimensions and a thousand of eight. Takes nothing but seeds; a body of another inertia fails, shown here too.
+//! Compares the generated free body in n dimensions with the hand-written one: one step from ten thousand random states in four
+//! dimensions and a thousand in eight. A test checks that a body with different inertia fails.
 
 use clebsch::nalgebra::SMatrix;
 use clebsch::{BodyMomentumMatrix, Orthogonal};
@@ -20,10 +20,10 @@ clebsch::model! {
     }
 }
 
-/// Some thirty roundings of numbers of order one, for data that are not magnified.
+/// About thirty rounding errors of numbers of order one, for data without amplification.
 const ONE_STEP: f64 = 1e-14;
 
-/// Relative change of the data by which conditioning is measured: far above rounding, far below one.
+/// Relative change of the data to measure conditioning: far above rounding, far below one.
 const NUDGE: f64 = 1e-6;
 
 struct State<const N: usize> {
@@ -43,7 +43,7 @@ impl<const N: usize> State<N> {
         }
     }
 
-    /// Momenta larger by the share `momentum`, inertia by the share `inertia`.
+    /// Momenta increased by the fraction `momentum`, inertia by the fraction `inertia`.
     fn nudged(&self, momentum: f64, inertia: f64) -> State<N> {
         State {
             j: self.j.map(|x| x * (1.0 + inertia)),
@@ -88,7 +88,7 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
         )
 }
 
-/// Largest difference over what the step magnifies a change of momenta or inertia by, at least one.
+/// Largest difference divided by the amplification of changes of momenta or inertia, at least one.
 fn single_steps<const N: usize>(count: u32, mistaken: f64) -> f64 {
     let mut source = Source::seeded(41);
     let (mut worst, mut hardest, mut refused) = (0.0_f64, 1.0_f64, 0);

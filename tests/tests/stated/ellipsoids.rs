@@ -1,6 +1,6 @@
-//! Elastic ellipsoids on GL(n), convective and spatial, n = 2 to 4: their balance is linear in the
-//! velocity and each step explicit. Against the material form, in which the second difference of the
-//! placement is the force: `C0 (Q'' - 2 Q' + Q) I0 = -h² ∇V(Q')`, Störmer-Verlet.
+//! Elastic ellipsoids on GL(n), convective and spatial, n = 2 to 4. Their balance is linear in the velocity, so each step is
+//! explicit. Compared with the material form, in which the force is the second difference of the placement:
+//! `C0 (Q'' - 2 Q' + Q) I0 = -h² ∇V(Q')`, Störmer-Verlet.
 
 use clebsch::integrate::Stepper;
 use clebsch::nalgebra::SMatrix;
@@ -51,7 +51,7 @@ clebsch::model! {
 
 type Matrix<const N: usize> = SMatrix<f64, N, N>;
 
-/// What both models have.
+/// The data of both models.
 struct Given<const N: usize> {
     c0: Matrix<N>,
     i0: Matrix<N>,
@@ -86,7 +86,7 @@ impl<const N: usize> Given<N> {
         Matrix::identity() * self.a + x * (2.0 * self.b) - inverse(x) * (self.d / 2.0)
     }
 
-    /// The gradient of the potential, a function of the placement.
+    /// The gradient of the potential with respect to the placement.
     fn gradient(&self, q: &Matrix<N>, spatial: bool) -> Matrix<N> {
         match spatial {
             true => self.derivative(&(q * self.i0 * q.transpose())) * q * self.i0 * 2.0,
@@ -94,17 +94,17 @@ impl<const N: usize> Given<N> {
         }
     }
 
-    /// What is left of the material equation, of the size of its terms.
+    /// The residual of the material equation, relative to the size of its terms.
     fn left(&self, q: &[Matrix<N>; 3], spatial: bool) -> f64 {
         let second = self.c0 * (q[2] - q[1] * 2.0 + q[0]) * self.i0;
         let force = self.gradient(&q[1], spatial) * self.h.powi(2);
-        // Placements are stored to rounding: their size counts, not that of their differences.
+        // Placements have rounding errors relative to their own size, not to that of their differences.
         let size = self.c0.norm() * 4.0 * q[1].norm() * self.i0.norm() + force.norm();
         (second + force).norm() / size
     }
 }
 
-/// Rounding of three placements, of two inverses and of the force.
+/// Rounding errors of three placements, two inverses and the force.
 const ROUNDING: f64 = 1e-14;
 
 fn follow<const N: usize, M: Stepper<Scalar = f64>>(
@@ -134,7 +134,7 @@ fn ellipsoids<const N: usize>(seed: u64) {
     for h in [1e-3, 1e-2] {
         for _ in 0..20 {
             let given = Given::<N>::random(&mut source, h);
-            // Near the reference, so that the motion stays away from singular placements.
+            // Near the reference, so that the placement stays invertible.
             let q = Matrix::<N>::identity() + matrix(&source.matrix()) * 0.1;
             let p = matrix(&source.matrix()) * 0.1;
             let placed = Linear::from_matrix(&q).expect("regular");

@@ -1,5 +1,5 @@
-//! Fields: vectors that are added, against the variation of the action in flat coordinates, by dual numbers. What classical mechanics knows of them: Störmer-Verlet, the
-//! centred rotation in a magnetic field, momenta of translations and rotations.
+//! Fields, which are additive vectors, against the variation of the action in flat coordinates by dual numbers. Also tests
+//! classical results: Störmer-Verlet, the centred rotation in a magnetic field, and momenta of translations and rotations.
 
 use clebsch::integrate::Stepper;
 use clebsch::nalgebra::{Vector2, Vector3};
@@ -29,7 +29,7 @@ clebsch::model! {
     }
 }
 
-/// The action of an edge in flat coordinates, term by term, and the directions in which a node may move.
+/// The action of an edge in flat coordinates, term by term, and the directions of variation at a node.
 pub(super) trait Flat {
     fn edge<T: Number>(&self, tail: &[T], head: &[T]) -> Vec<T>;
 
@@ -39,8 +39,7 @@ pub(super) trait Flat {
     }
 }
 
-/// The largest derivative of the action of two edges as the node between them moves, of the size of its
-/// terms.
+/// The largest derivative of the action of two edges at the middle node, relative to the size of its terms.
 pub(super) fn share<A: Flat>(action: &A, nodes: &[Vec<f64>; 3]) -> f64 {
     let still = |x: &[f64]| -> Vec<Dual> { x.iter().map(|v| Dual::constant(*v)).collect() };
     let (before, after) = (still(&nodes[0]), still(&nodes[2]));
@@ -66,7 +65,7 @@ pub(super) fn share<A: Flat>(action: &A, nodes: &[Vec<f64>; 3]) -> f64 {
     largest / scale
 }
 
-/// The largest share along some steps.
+/// The largest such ratio along several steps.
 pub(super) fn worst<A: Flat, M: Stepper<Scalar = f64>>(
     action: &A,
     model: &M,
@@ -91,7 +90,7 @@ where
     worst
 }
 
-/// A thousand roundings of the size of the terms.
+/// A thousand rounding errors, relative to the size of the terms.
 pub(super) const ROUNDING: f64 = 2e-13;
 
 pub(super) fn minus<T: Number, const N: usize>(a: &[T], b: &[T]) -> [T; N] {
@@ -102,12 +101,12 @@ pub(super) fn of<T: Number>(x: f64) -> T {
     T::constant(x)
 }
 
-/// A force at both ends of the edge.
+/// A potential term, half at either end of the edge.
 pub(super) fn at_ends<T: Number>(tail: &[T], head: &[T], term: impl Fn(&[T]) -> T) -> [T; 2] {
     [tail, head].map(|node| of::<T>(0.5) * term(node))
 }
 
-/// Parameters of the models of vectors, by their names there.
+/// Parameters of the vector models, by their names in the models.
 struct Given {
     h: f64,
     m: f64,
@@ -209,7 +208,7 @@ fn vectors_solve_the_unreduced_equations() {
     }
 }
 
-/// A mutation that must be seen: the action with another force.
+/// Negative control: an action with a different force disagrees.
 #[test]
 fn the_oracle_notices_another_force() {
     let mut source = Source::seeded(32);
@@ -222,8 +221,8 @@ fn the_oracle_notices_another_force() {
     assert!(found > ROUNDING, "{found:e}");
 }
 
-/// The kinetic momentum `m V` of a charge is turned about `B` by exactly `2 atan(q |B| h/2m)` a step,
-/// where there is no electric field: the centred rotation of Boris.
+/// Without an electric field, a step rotates the kinetic momentum `m V` of a charge about `B` by exactly `2 atan(q |B| h/2m)`:
+/// Boris's centred rotation.
 #[test]
 fn a_charge_turns_as_boris_has_it() {
     let mut source = Source::seeded(33);
@@ -241,7 +240,7 @@ fn a_charge_turns_as_boris_has_it() {
         let steps = [place[1] - place[0], place[2] - place[1]];
         let plane = steps.map(|d| Vector2::new(d.x, d.y));
         let turned = plane[0].perp(&plane[1]).atan2(plane[0].dot(&plane[1]));
-        // With this sign of the vector potential a positive charge turns against B.
+        // With this sign of the vector potential, a positive charge rotates in the negative sense about B.
         let expected = -2.0 * (given.q * 1.7 * h / (2.0 * given.m)).atan();
         assert!((turned - expected).abs() < 1e-13, "{turned} {expected}");
         assert!((plane[0].norm() - plane[1].norm()).abs() < 1e-14 * plane[0].norm() + 1e-15);
@@ -249,8 +248,7 @@ fn a_charge_turns_as_boris_has_it() {
     }
 }
 
-/// Angular momentum of a planet is exact, and a step is Störmer-Verlet to the bit pattern of its
-/// formula: half a kick, a drift, half a kick.
+/// The angular momentum of a planet is exact, and a step equals the Störmer-Verlet formula: half a kick, a drift, half a kick.
 #[test]
 fn a_planet_is_stoermer_verlet() {
     let mut source = Source::seeded(34);
@@ -266,7 +264,7 @@ fn a_planet_is_stoermer_verlet() {
         x += p * (given.h / given.m);
         p += force(x) * (0.5 * given.h);
     }
-    // Rounding is magnified by the motion, linearly in time for a closed orbit.
+    // The motion amplifies rounding, linearly in time for a closed orbit.
     assert!((state.X().matrix() - x).norm() < 1e-10 * x.norm());
     assert!((state.momentum().0 - p).norm() < 1e-10 * p.norm());
     let now = state.X().matrix().cross(&state.momentum().0);

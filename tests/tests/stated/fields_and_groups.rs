@@ -1,5 +1,5 @@
-//! Fields beside groups in one model, against the variation of the action in flat coordinates, by dual
-//! numbers: four bodies of four kinds, and a rigid motion stated as a rotation and a place.
+//! Fields and groups in one model, against the variation of the action in flat coordinates by dual numbers: four bodies of four
+//! kinds, and a rigid motion stated as a rotation and a position.
 
 use super::fields::{Flat, ROUNDING, at_ends, minus, of, worst};
 use clebsch::nalgebra::{Matrix3, Vector3, Vector6};
@@ -67,7 +67,7 @@ clebsch::model! {
     }
 }
 
-/// Flat coordinates: the rotation (9, by rows), the motion (9 and 3), the quaternion (4), the field (3).
+/// Flat coordinates: the rotation (9, row-major), the motion (9 and 3), the quaternion (4), the field (3).
 struct OfMixed {
     h: f64,
     j: Square<f64, 3>,
@@ -101,7 +101,7 @@ fn turned_by<T: Number>(q: &[T], v: &[T; 3]) -> [T; 3] {
 
 impl Flat for OfMixed {
     fn edge<T: Number>(&self, tail: &[T], head: &[T]) -> Vec<T> {
-        // Product by product: near the identity they cancel in the sum, and are rounded by themselves.
+        // One summand per product: near the identity the products cancel in the sum, and each has its own rounding error.
         let trace = |j: &Square<f64, 3>, at: usize| {
             let [r0, r1] = [tail, head].map(|n| turn(&n[at..]));
             let all = (0..27).map(|n| [n / 9, n / 3 % 3, n % 3]);
@@ -267,14 +267,13 @@ fn four_kinds_keep_their_total_momentum() {
             let field = state.momentum_X().0.norm() + state.spatial_momentum_G().0.norm();
             scale = scale.max(axis.norm() * (1.0 + reach) * (1.0 + field));
         }
-        // Roundings of 2000 steps, of the size of what is carried.
+        // Rounding errors of 2000 steps, relative to the size of the momentum.
         let drift = (about(&state) - first).abs() / scale;
         assert!(drift < 1e-12, "{h:e}: {drift:e}");
     }
 }
 
-/// A rigid motion is a rotation and a place: two statements of one motion, on different groups, by
-/// different tangents.
+/// A rigid motion equals a rotation and a position: two statements of one motion, on different groups and with different Jacobians.
 #[test]
 fn a_rotation_and_a_place_move_as_a_rigid_motion() {
     let mut source = Source::seeded(41);
@@ -330,7 +329,7 @@ fn a_rotation_and_a_place_move_as_a_rigid_motion() {
         }
         let apart = (one.G().translation - other.x().matrix()).norm()
             + (one.G().rotation.matrix() - other.R().matrix()).norm();
-        // A hundred steps of a few roundings each, magnified by the motion.
+        // A hundred steps with a few rounding errors each, amplified by the motion.
         assert!(apart < 1e-12, "{h}: {apart:e}");
     }
 }

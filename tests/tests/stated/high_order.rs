@@ -1,6 +1,6 @@
-//! Orders above two of emitted steppers, in double-double by halving the step: compositions of a
-//! heavy top against its Taylor series, of coupled bodies and of a top in no gallery (Newton)
-//! against much finer steps; modified moments for a body in no gallery. One-sided models are refused.
+//! Orders above two of emitted steppers, in double-double arithmetic by step halving. Compares compositions of a heavy top with its
+//! Taylor series, and compositions of coupled bodies and of a top outside the gallery (Newton's method) with much finer steps. Also
+//! tests modified moments for a body outside the gallery, and the error for one-sided models.
 
 use clebsch::card::{OpenError, Settings};
 use clebsch::integrate::{Composition, CompositionOrder, Reversible};
@@ -68,7 +68,7 @@ fn attitude() -> Rotation<Quad> {
     Rotation::exp(&quad(Vector3::new(0.3, -0.2, 0.5)))
 }
 
-/// The numbers of a state, the sign of the quaternion fixed.
+/// The numbers of a state, with a fixed quaternion sign.
 fn numbers(list: &[(Rotation<Quad>, Vector3<Quad>)]) -> Vec<Quad> {
     let mut out = Vec::new();
     for (rotation, momentum) in list {
@@ -84,7 +84,7 @@ fn apart(a: &[Quad], b: &[Quad]) -> f64 {
         .fold(0.0, |m, (x, y)| worse(m, (*x - *y).magnitude()))
 }
 
-/// The end of a composed run over a time that is a power of two, hence with exact steps.
+/// The final state of a composed run over a time that is a power of two, so that step sizes are exact.
 fn end<S: Reversible<Scalar = Quad>>(
     model: &S,
     mut state: S::State,
@@ -109,7 +109,7 @@ fn measured<S: Reversible<Scalar = Quad>>(
     exact: &[Quad],
 ) {
     for order in CompositionOrder::ALL {
-        // At the steps of the others order eight is at the rounding of its factors.
+        // At the step sizes of the other orders, order eight reaches the rounding of its coefficients.
         let steps = match order {
             CompositionOrder::Eight => steps / 8,
             _ => steps,
@@ -118,18 +118,18 @@ fn measured<S: Reversible<Scalar = Quad>>(
             [steps, 2 * steps].map(|n| apart(&end(model, state, (time, n), order, &out), exact));
         let measured = (coarse / fine).log2();
         println!("{name}, order {order}: {measured:.3} ({coarse:.1e}, {fine:.1e})");
-        // Factors of the composition are rounded to 1e-16 of a step.
+        // The coefficients of the composition have rounding errors of 1e-16 of a step.
         assert!(fine > 1e-14, "{name}: {fine:e}");
         let nominal = f64::from(order.number());
         assert!((measured - nominal).abs() < 0.15, "{name}: {measured}");
     }
 }
 
-/// Terms of the series.
+/// Number of terms of the series.
 const TERMS: usize = 26;
 
-/// The motion of the heavy top `mu' = mu x w + Γ x gU`, `R' = R hat(w)`, `Γ = R^T z`, by its Taylor
-/// series; independent of everything above.
+/// The motion of the heavy top `mu' = mu x w + Γ x gU`, `R' = R hat(w)`, `Γ = R^T z`, by its Taylor series; independent of all code
+/// above.
 fn series(
     start: (Matrix3<Quad>, Vector3<Quad>),
     top: &HeavyTopParameters<Quad>,
@@ -319,7 +319,7 @@ fn one_sided_models_offer_no_composition() {
     let refused = open(Settings::step(0.1).of_order(4)).unwrap_err();
     assert!(matches!(refused, OpenError::Order { asked: 4, .. }));
     assert!(refused.to_string().contains("node symmetric"), "{refused}");
-    // The same data with the weight split evenly go on.
+    // With the weight split evenly between both ends, the same data work.
     let card = HeavyTop::CARD;
     for order in card.orders {
         let settings = Settings::step(0.1).of_order(*order);
@@ -344,7 +344,7 @@ fn compensation_is_made_where_it_is_known_and_refused_elsewhere() {
         (card.open)(&free, &initial, settings)
     };
     for order in Settings::COMPENSATED {
-        // The turn moves the body: by less than the error of a step, and more than rounding at order four.
+        // Compensation changes the result by less than the error of a step; at order four the change exceeds rounding.
         let ends = [false, true].map(|compensated| {
             let mut trajectory = open(order, compensated).expect("solvable");
             for _ in 0..100 {
@@ -365,7 +365,7 @@ fn compensation_is_made_where_it_is_known_and_refused_elsewhere() {
         assert!(matches!(refused, OpenError::Compensation { .. }), "{order}");
         assert!(refused.to_string().contains("leave the compensation out"));
     }
-    // A composition is symplectic as it is.
+    // A composition is symplectic without compensation, so it rejects the option.
     let top = [matrix(poinsot()), vec![0.1, -0.2, 0.6], vec![0.0, 0.0, 1.0]];
     let settings = Settings {
         compensated: true,

@@ -1,9 +1,8 @@
-//! What may surround a model, and what a model may call its quantities. Takes models next to items
-//! that shadow the prelude, in functions, side by side, and with names that emitted code uses
-//! itself; gives the same motion as for plain names, without a warning. This file is the strict
-//! crate: it denies every warning that emitted code could cause.
+//! The surroundings of a model, and permitted names of its quantities. Covers models next to items that shadow the prelude, in
+//! functions, side by side, and with names that emitted code uses itself. Each gives the same motion as with plain names, without a
+//! warning. This file represents a strict crate: it denies every warning that emitted code could cause.
 #![deny(warnings, missing_docs, missing_debug_implementations)]
-// One model is of first order, of which the macro warns by this lint.
+// One model is of first order; the macro warns about it with this lint.
 #![allow(deprecated)]
 #![deny(unreachable_pub, unused_qualifications, single_use_lifetimes)]
 
@@ -42,7 +41,7 @@ clebsch::model! {
     }
 }
 
-// Their modules would be `loop`, `core`, `std` and `clebsch`.
+// The modules of these models would be called `loop`, `core`, `std` and `clebsch`.
 clebsch::model! {
     model Loop {
         param J: Sym<3>;
@@ -76,7 +75,7 @@ clebsch::model! {
     }
 }
 
-/// Everything that a module may call differently.
+/// Lints that a crate might change.
 #[allow(
     dead_code,
     non_camel_case_types,
@@ -135,8 +134,7 @@ mod shadowed {
     }
 }
 
-/// Passes names on that emitted code uses itself: its functions, types and locals, and what Rust
-/// keeps in its prelude.
+/// Passes names that emitted code uses itself: its functions, types and locals, and names of the Rust prelude.
 macro_rules! awkward_names {
     ($then:ident! $($rest:tt)*) => {
         $then! {
@@ -152,17 +150,17 @@ macro_rules! awkward_names {
                 matrix model momenta momentum momentum_next n node out parameters parts potential
                 residual scratch solved solver state tangent total trial value velocity work x
                 field expected t1 t2 t3 momenta_six configurations
-                // Members.
+                // Fields, methods and associated constants.
                 balance body_momentum edge_momentum energies energy kinetic_warning refused
                 spatial_momentum start
                 step factor own_parameters CARD SOURCE
-                // The prelude and the primitive types.
+                // Names of the prelude and of primitive types.
                 Box Clone Copy Debug Default Err None Ok Option Real Result Some String Vec alloc
                 bool clebsch core drop f64 nalgebra std str u64 usize
-                // Words of the language and words that Rust keeps in some places only.
+                // Keywords of the language, and contextual keywords of Rust.
                 advected assume auto constraint default dim given group k label lagrangian macro_rules
                 param raw safe scale time union
-                // What the derivation calls its own letters, and tags it gives to letters.
+                // Names that the derivation gives to its own symbols, and their suffixes.
                 M P V_Γ η μ ξ m C N A S Γ_next Γ_before Γ_reference Λ_next Λ_moved Ω_matrix Ω_before
             ]
             $($rest)*
@@ -182,7 +180,7 @@ macro_rules! awkward_model {
     };
 }
 
-/// The parameters of a model: every number that was added is the same.
+/// The parameters of a model, with the same value for every added parameter.
 macro_rules! filled {
     ([$($name:ident)*] $parameters:ident, $each:ident, { $($field:tt)* }) => {
         $parameters { $($name: $each,)* $($field)* }
@@ -193,7 +191,7 @@ macro_rules! count {
     ([$($name:ident)*]) => { [$(stringify!($name)),*].len() };
 }
 
-/// One statement under awkward names and, with one number in their place, without.
+/// One statement with awkward names, and once more with a single parameter in their place.
 macro_rules! twice {
     ($awkward:ident $plain:ident { $($statement:tt)* }) => {
         awkward_names! { awkward_model! $awkward { $($statement)* } }
@@ -253,7 +251,7 @@ twice! { AwkwardMotion PlainMotion {
         + dot(pos(W), mass*pos(W))/h;
 } }
 
-// The time step, the velocity and what moves may bear such names as well.
+// The time index, the step size, the velocity and the configuration may have such names, too.
 clebsch::model! {
     model AwkwardStep {
         time j step work;
@@ -297,7 +295,7 @@ fn body_momentum() -> BodyMomentum<f64> {
     BodyMomentum(Vector3::new(0.1, -0.2, 0.8))
 }
 
-/// Each of the numbers under an awkward name: their sum is exact, its logarithm positive.
+/// The value of each parameter with an awkward name: the sum is exact, and its logarithm positive.
 const EACH: f64 = 1.0 / 64.0;
 
 fn weight() -> f64 {
@@ -323,7 +321,7 @@ impl Turned for RigidMotion {
     }
 }
 
-/// Steps a model and gives its attitudes and momenta.
+/// Steps a model and returns its attitudes.
 macro_rules! attitudes {
     ($model:expr, $initial:expr, $($element:ident)*) => {{
         let model = $model;
@@ -337,8 +335,8 @@ macro_rules! attitudes {
     }};
 }
 
-/// Runs both statements and compares them: but for rounding, since how often Newton's method
-/// corrects depends on the bounds of rounding of what is written.
+/// Runs both statements and compares them to rounding. They are not bitwise equal, because the number of Newton corrections depends
+/// on rounding bounds of the expressions.
 macro_rules! same_motion {
     (
         [$awkward:ident $plain:ident] [$awkward_p:ident $plain_p:ident]
@@ -358,7 +356,7 @@ macro_rules! same_motion {
         );
         assert_eq!(awkward.len(), plain.len());
         for (x, y) in awkward.iter().zip(&plain) {
-            // Some ten roundings a step.
+            // About ten rounding errors per step.
             assert!((x - y).abs() < 1e-13, "{x} {y}");
         }
     }};
@@ -472,7 +470,7 @@ fn models_stand_in_functions_and_next_to_each_other() {
             lagrangian = -tr(J*Ω)/h;
         }
     }
-    // The same name as outside: what is inside is meant.
+    // A name that also exists outside: the model refers to its own.
     clebsch::model! {
         model Private {
             param J: Sym<3>;

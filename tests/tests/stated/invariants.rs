@@ -1,6 +1,5 @@
-//! Invariants of stated models along emitted steppers. Takes models that no gallery holds, as their
-//! description opens them; every quantity that is said to be exact stays to rounding, what is said
-//! to be bounded moves, and what an assumption excludes is refused.
+//! Invariants of stated models along emitted steppers, for models outside the gallery, opened through their cards. Every exact
+//! invariant holds to rounding, bounded invariants oscillate, and data that violate an assumption are rejected.
 
 use clebsch::card::{Card, Conserved, Settings};
 use clebsch_oracle::physics::measure::worse;
@@ -92,13 +91,12 @@ clebsch::model! {
     }
 }
 
-/// Each operation adds an error of 1e-16 of the scale, independent of the others: after 2000 steps
-/// of a few hundred operations some 1e-13.
+/// Each operation adds an independent error of 1e-16 of the scale; 2000 steps of a few hundred operations reach about 1e-13.
 const ROUNDING: f64 = 1e-12;
 
 const STEPS: usize = 2_000;
 
-/// Largest change of each invariant over its scale.
+/// Largest change of each invariant relative to its scale.
 fn drifts(
     card: &Card,
     parameters: &[Vec<f64>],
@@ -145,7 +143,7 @@ fn hold(found: &[(String, bool, f64)], names: &[&str]) {
         if *exact {
             assert!(*drift < ROUNDING, "{name}: {drift:e}");
         } else {
-            // What only oscillates is seen to: the measurement can tell.
+            // Bounded invariants visibly oscillate, so the measurement can detect a change.
             assert!(*drift > 1e-8 && *drift < 1e-1, "{name}: {drift:e}");
         }
     }
@@ -181,7 +179,7 @@ fn lagrange_top() {
         let message = refused.expect_err("breaks an assumption").to_string();
         assert!(message.contains(what), "{message}");
     }
-    // A tenth of the last digit is rounding of the parameters, not a broken assumption.
+    // A deviation of a tenth of the last digit is parameter rounding and does not violate the assumption.
     let almost = parameters([0.5, 0.5, 1.5], [1e-17, 0.0, 1.3]);
     assert!((card.open)(&almost, &start, Settings::step(0.1)).is_ok());
 }
@@ -241,12 +239,12 @@ fn attracting_pair() {
     );
 }
 
-/// The numbers of a square matrix from a function of row and column.
+/// A row-major square matrix from a function of row and column.
 fn square(n: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<f64> {
     (0..n * n).map(|k| entry(k / n, k % n)).collect()
 }
 
-/// A symmetric matrix near a diagonal one.
+/// A symmetric, nearly diagonal matrix.
 fn inertia(n: usize) -> Vec<f64> {
     square(n, |i, j| match i == j {
         true => 1.0 + 0.3 * i as f64,
@@ -339,7 +337,7 @@ fn discrete_energies() {
         Λ: Rotation::exp(&Vector3::new(0.5, 0.2, 0.0)),
         body_momentum: BodyMomentum(Vector3::new(0.3, -0.2, 1.0)),
     };
-    // The mean of the energies of both ends, up to terms of second order in the step.
+    // The mean of the energies of both ends, up to second-order terms in h.
     let gap = |h: f64| {
         let (mut state, mut work) = model.start(initial, h).expect("solvable");
         let before = state;
@@ -349,7 +347,7 @@ fn discrete_energies() {
     };
     let ratio = gap(0.02) / gap(0.01);
     assert!((ratio - 4.0).abs() < 0.1, "{ratio}");
-    // Of the free body every edge has the same.
+    // For the free body, every edge has the same energy.
     let body = FreeBodyN::<4>::new(FreeBodyNParameters {
         C: clebsch::nalgebra::SMatrix::from_row_slice(&inertia(4)),
     })
@@ -367,7 +365,7 @@ fn discrete_energies() {
         body.step(&mut state, &mut work).expect("solvable");
         let now = body.discrete_energy(0.1, &before, &state);
         let first = *first.get_or_insert(now);
-        // Traces of order one over h^2 = 0.01 cancel to the energy: a hundredfold rounding.
+        // Traces of order one over h^2 = 0.01 cancel to the energy, which amplifies rounding a hundredfold.
         assert!((now - first).abs() < 1e-12, "{now} {first}");
     }
 }

@@ -1,6 +1,6 @@
-//! Momenta of symmetries that move several configurations together, or change the action by a total difference, along
-//! emitted steppers: conserved to rounding; a statement that breaks the symmetry loses them, in its list and in its
-//! motion.
+//! Momenta of symmetries that move several configurations together, or that change the action by a total difference, along emitted
+//! steppers. They are conserved to rounding. If a statement breaks the symmetry, its list omits the momentum and the motion does
+//! not conserve it.
 
 use clebsch::card::{Card, Conserved, Settings, Trajectory};
 
@@ -92,8 +92,8 @@ clebsch::model! {
     }
 }
 
-/// Each operation adds an error of 1e-16 of the scale, independent of the others: after 500 steps of a few hundred
-/// operations some 1e-13, with a margin of ten.
+/// Each operation adds an independent error of 1e-16 of the scale; 500 steps of a few hundred operations reach about 1e-13, and the
+/// margin is a factor of ten.
 const ROUNDING: f64 = 1e-12;
 
 const STEPS: usize = 500;
@@ -104,7 +104,7 @@ fn open(card: &Card, parameters: &[Vec<f64>], initial: &[Vec<f64>]) -> Box<dyn T
     opened.unwrap_or_else(|e| panic!("{}: {e}", card.name))
 }
 
-/// Runs, and holds every exact invariant against its scale; these must be among them.
+/// Runs a model and compares the drift of every exact invariant with its scale; the invariants must include `wanted`.
 fn hold(card: &Card, parameters: &[Vec<f64>], initial: &[Vec<f64>], wanted: &[&str]) {
     for name in wanted {
         assert!(
@@ -147,7 +147,7 @@ fn hold(card: &Card, parameters: &[Vec<f64>], initial: &[Vec<f64>], wanted: &[&s
             at += v.rows;
         }
     }
-    // Nothing stands still: the momenta could have changed.
+    // The energy changes, so the momenta could have changed.
     let bounded = card
         .invariants
         .iter()
@@ -173,7 +173,7 @@ fn placed(turn: &[f64], place: [f64; 3]) -> Vec<f64> {
     out
 }
 
-/// Parameters of the two bodies of different groups, with one vertical or two.
+/// Parameters of two bodies on different groups, with a common vertical or two different ones.
 fn verticals(second: Option<[f64; 3]>) -> Vec<Vec<f64>> {
     let z = [0.0, 0.6, 0.8];
     let mut out = vec![
@@ -255,7 +255,7 @@ fn rigid_motion_and_rotation() {
         inertia([0.9, 1.1, 1.6]),
         inertia([0.7, 1.3, 1.0]),
         vec![1.5],
-        // Light enough not to fall far: moments about a fixed origin are exact to rounding of |x| |p|.
+        // A weak weight, so that the body does not fall far: moments about a fixed origin are exact to rounding of |x| |p|.
         vec![0.02],
         vec![0.4],
         vec![0.1, 0.2, -0.8],

@@ -1,6 +1,5 @@
-//! Steps that leave what their model is defined on: maps of GL(n) that lose their inverse, functions outside their domain.
-//! Takes models and motions that do; each is an error with the time of contact, the state is as it was, and a step that is
-//! named can be made.
+//! Steps that leave the domain of their model: maps of GL(n) that become singular, and functions outside their domain. Each is an
+//! error with the contact time, leaves the state unchanged, and suggests a step size that works.
 
 use clebsch::domain::Function;
 use clebsch::nalgebra::{Matrix2, Matrix3, Vector1, Vector2, Vector3};
@@ -132,7 +131,7 @@ fn contact(error: &StepError) -> Contact {
     }
 }
 
-/// Steps until one is refused, at most `most`; the error, with the state it left unchanged.
+/// Steps until a step fails, at most `most` times; returns the error and checks that the state is unchanged.
 fn refused<S: Copy + PartialEq + std::fmt::Debug>(
     state: &mut S,
     most: u32,
@@ -148,7 +147,7 @@ fn refused<S: Copy + PartialEq + std::fmt::Debug>(
     panic!("{most} steps were made");
 }
 
-/// The velocity of the straight line along which the first axis reaches zero at time 1.
+/// The velocity of the straight line along which the first axis vanishes at time 1.
 fn inwards() -> Matrix3<f64> {
     -Matrix3::from_diagonal(&Vector3::new(1.0, 0.2, 0.1))
 }
@@ -173,14 +172,14 @@ fn a_straight_line_through_zero_ends_at_the_contact() {
         let (mut state, mut work) = model.start(initial, h).unwrap();
         let error = refused(&mut state, 100, |s| model.step(s, &mut work));
         let time = error.contact_time().expect("known");
-        // Rounding of a straight line of at most forty steps.
+        // Rounding error of a straight line with at most forty steps.
         assert!((time - 1.0).abs() < 1e-13, "h = {h}: {time}");
         assert_eq!(error.node, ((1.0 - 1e-9) / h).floor() as u64, "h = {h}");
         assert!(
             error.to_string().contains("`Q` loses its inverse"),
             "{error}"
         );
-        // The step that is named was tried and can be made.
+        // The suggested step size was tried and works.
         let works = contact(&error).works().expect("found");
         assert!(works < h && model.workspace(&state, works).is_ok());
     }
@@ -188,7 +187,7 @@ fn a_straight_line_through_zero_ends_at_the_contact() {
 
 #[test]
 fn the_first_step_is_tested_too_and_two_crossings_in_one() {
-    // Past the first axis; past the second; past all three: det is negative, positive, negative.
+    // Beyond the zero of the first axis, of the second, and of all three: det is negative, positive, negative.
     for h in [2.5, 7.0, 15.0] {
         let (model, initial) = ellipsoid();
         let Err(StartError::Refused(StepCause::Contact(met))) = model.start(initial, h) else {
@@ -219,7 +218,7 @@ fn the_body_side_ends_there_too() {
 
 #[test]
 fn a_motion_that_turns_back_before_it_is_not_stopped() {
-    // A spring of frequency 1 about zero goes through it; one about the identity does not.
+    // A spring of frequency 1 with its rest position at zero passes through zero; a spring about the identity does not.
     let model = ElasticAtRest::new(ElasticAtRestParameters { s: 1.0 }).unwrap();
     let initial = ElasticAtRestInitial {
         Q: Linear::identity(),
@@ -244,7 +243,7 @@ fn a_motion_that_turns_back_before_it_is_not_stopped() {
     let (mut state, mut work) = model.start(initial, 0.05).unwrap();
     let error = refused(&mut state, 100, |s| model.step(s, &mut work));
     let time = error.contact_time().expect("known");
-    // cos t = sin t / 10, to the second order of the scheme.
+    // cos t = sin t / 10, to second order.
     assert!((time - 10.0f64.atan()).abs() < 1e-3, "{time}");
 }
 
@@ -276,7 +275,7 @@ fn a_collapse_is_an_error_before_its_energy_is_no_number() {
         assert!(model.energy(s).is_finite());
         done
     });
-    // It falls faster than the straight line.
+    // It reaches the contact earlier than along the straight line.
     assert!(error.contact_time().is_some_and(|t| t < 1.0), "{error}");
 }
 
@@ -296,7 +295,7 @@ fn body() -> Matrix3<f64> {
     Matrix3::new(1.0, 0.1, 0.0, 0.1, 1.5, 0.2, 0.0, 0.2, 2.0)
 }
 
-/// Where the argument `x + c` of a top vanishes: by the error, and interpolated between its own nodes.
+/// The contact time, where the argument `x + c` of a top vanishes: from the error, and by interpolation between its own nodes.
 fn assert_met(error: &StepError, function: Function, before: f64) {
     let contact = contact(error);
     let Met::Outside {
@@ -381,8 +380,8 @@ fn a_power_and_an_inverse_are_left_with_an_error() {
         let (mut state, mut work) = model.start(initial, 0.05).unwrap();
         refused(&mut state, 10_000, |s| model.step(s, &mut work))
     };
-    // The root leaves first, then the matrix becomes singular first. Below a root the residual itself is no number, so
-    // that Newton's method may find no velocity instead.
+    // First case: the root leaves its domain first; second case: the matrix becomes singular first. Below the root the residual is
+    // NaN, so that Newton's method may find no velocity instead.
     let error = start(1e-3, 0.0, 0.3, 2.0);
     match error.cause {
         StepCause::Contact(_) => assert!(error.to_string().contains("a power"), "{error}"),
@@ -429,7 +428,7 @@ fn parameters_states_and_velocities_outside_are_refused_at_the_start() {
         refusal.contains("it is -0.5, and the argument of log must be positive"),
         "{refusal}"
     );
-    // b·Ωb - 1 begins above zero; the first step turns it below.
+    // b·Ωb - 1 is positive at first; the first step makes it negative.
     let model = EdgePole::new(EdgePoleParameters {
         J: body(),
         b: Vector3::x() * 1.1,
@@ -460,7 +459,7 @@ fn inverted(momentum: Matrix2<f64>, of_u: f64) -> (Inverted, InvertedInitial) {
     (Inverted::new(parameters).unwrap(), initial)
 }
 
-/// What is met, at the first step or at a later one, and when.
+/// The contact, at the first step or later, and its time.
 fn met(momentum: Matrix2<f64>, of_u: f64, h: f64) -> (Contact, f64) {
     let (model, initial) = inverted(momentum, of_u);
     let (mut state, mut work) = match model.start(initial, h) {
@@ -476,7 +475,7 @@ fn met(momentum: Matrix2<f64>, of_u: f64, h: f64) -> (Contact, f64) {
 
 #[test]
 fn a_matrix_field_that_is_inverted_meets_a_determinant_of_zero_twice_in_one_step() {
-    // Both entries change their sign in one step: the determinant is positive at either end.
+    // Both entries change sign in one step, so the determinant is positive at either end.
     let momentum = -Matrix2::from_diagonal(&Vector2::new(80.0, 81.0));
     let (contact, time) = met(momentum, 0.0, 0.05);
     assert_eq!(contact.met, Met::Singular { configuration: "A" });
@@ -499,7 +498,7 @@ fn a_root_that_is_left_is_told_before_the_force_that_has_no_value_there() {
 #[test]
 fn what_is_squared_is_not_carried_past_zero() {
     let model = Squared::new(SquaredParameters { m: 1.0, k: 1e-6 }).unwrap();
-    // One of them falls to zero at time 1, too fast for a barrier that is as weak as this.
+    // One entry decreases to zero at time 1, and the barrier is too weak to stop it.
     let start = |a: f64, u: f64| {
         let initial = SquaredInitial {
             A: Additive::new(Matrix2::identity()),
@@ -509,7 +508,7 @@ fn what_is_squared_is_not_carried_past_zero() {
         };
         let (mut state, mut work) = model.start(initial, 0.03).unwrap();
         let error = refused(&mut state, 1000, |s| model.step(s, &mut work));
-        // The barrier changes the speed by parts of a thousandth.
+        // The barrier changes the speed by about 0.1 %.
         let time = error.contact_time().expect("known");
         assert!((time - 1.0).abs() < 2e-3, "{time}");
         error.to_string()

@@ -1,9 +1,9 @@
-//! Steppers of models that are stated here, on every group and of any size: what the gallery does not show. Beside
-//! `motion`, so that the two are compiled side by side.
+//! Steppers of models stated in these tests, on every group and in any dimension, for features that the gallery does not use. A
+//! separate binary from `motion`, so that both compile in parallel.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables, confusable_idents)]
-// Some models are of first order or without a limit on purpose, of which the macro warns by this lint.
+// Some models are deliberately of first order or lack a small-step limit; the macro warns about these with this lint.
 #![allow(deprecated)]
 
 mod blocks;

@@ -1,6 +1,6 @@
-//! Steps solved by Newton's method, refused: what the error offers, and that no failure is silent.
-//! Takes models of the gallery and others on every group, with random data; the step offered is
-//! taken, a longer one is not, and what is taken solves the derived equations.
+//! Failed steps of Newton's method: the suggestion in the error, and the absence of silent failures. Covers gallery models and
+//! others on every group, with random data. The suggested step size works, a larger one fails, and every accepted step solves the
+//! derived equations.
 
 #![allow(non_snake_case)]
 
@@ -20,7 +20,7 @@ use clebsch_oracle::physics::measure::worse;
 use drawn::{Coupled, Drawn, Fluid, InFourDimensions, Mixed, Quaternion, Rough, Stiff};
 use std::cell::Cell;
 
-/// The refusal of steps of `h` from this state.
+/// The error of a step of size `h` from this state.
 fn refusal<M: Model<Scalar = f64>>(model: &M, state: &M::State, h: f64) -> Option<NewtonError> {
     match model.workspace(state, h) {
         Err(StartError::Refused(StepCause::Newton(e))) => Some(e),
@@ -29,7 +29,7 @@ fn refusal<M: Model<Scalar = f64>>(model: &M, state: &M::State, h: f64) -> Optio
     }
 }
 
-/// A step of no length or of none that is a number is said to be that, not to have no solution.
+/// A step size of zero or NaN is reported as such, and not as a missing solution.
 #[test]
 fn a_workspace_is_refused_for_a_step_that_is_none() {
     let (model, state, unit) = Coupled::draw(&mut Draws::new(3));
@@ -44,11 +44,11 @@ fn a_workspace_is_refused_for_a_step_that_is_none() {
     }
 }
 
-/// How much longer than the step offered a step is that must be refused.
+/// A step size larger than the suggestion by this relative amount must fail.
 const LONGER: f64 = 4e-6;
 
-/// Of `count` draws with a step far too long: how many offer a step, and how many of those are
-/// refused a little beyond it.
+/// For `count` draws with a step size far too large: how many errors suggest a step size, and how many of these fail slightly
+/// beyond it.
 fn offers<D: Drawn>(count: u64) -> [u64; 2] {
     let mut draws = Draws::new(7);
     let mut found = [0; 2];
@@ -72,7 +72,7 @@ fn offers<D: Drawn>(count: u64) -> [u64; 2] {
         ] {
             assert!(said.contains(words), "{said}");
         }
-        // Seen from the other side, backwards in time.
+        // The same for negative step sizes.
         if let Some(back) = refusal(&model, &state, -h) {
             let largest = back.largest_step.expect("searched");
             assert!(-h < largest && largest < 0.0, "{back}");
@@ -97,18 +97,16 @@ fn the_step_offered_is_taken_and_a_longer_one_is_not() {
         assert!(offered > 0);
         assert_eq!(offered, refused);
     }
-    // A term of fourth degree brings other solutions, a few of them beyond the bound.
+    // A quartic term has other solutions, a few of them beyond the bound.
     let [offered, refused] = offers::<Stiff>(60);
     assert!(offered > 30 && 20 * refused > 19 * offered);
-    // In a fluid the momentum may go over into ever faster translations: solutions of another kind,
-    // which the iteration from rest meets beyond the first step that it does not solve. Most of
-    // them are passed over.
+    // In a fluid, momentum can convert to ever faster translation. Beyond the first unsolvable step size, the iteration from zero
+    // velocity can reach such solutions. The search passes over most of them.
     let [offered, refused] = offers::<Fluid>(60);
     assert!(offered > 30 && 2 * refused > offered);
 }
 
-/// Two bodies that do not feel each other, each turning about an axis of its own: sin(angle) cannot
-/// exceed one, so the bound is known.
+/// Two uncoupled bodies that rotate about their own axes. sin(angle) cannot exceed one, so the bound is known.
 fn apart(momenta: [Vector3<f64>; 2]) -> (CoupledBodies, CoupledBodiesState) {
     let j = |a, b, c| clebsch::nalgebra::Matrix3::from_diagonal(&Vector3::new(a, b, c));
     let parameters = CoupledBodiesParameters {
@@ -132,7 +130,7 @@ fn apart(momenta: [Vector3<f64>; 2]) -> (CoupledBodies, CoupledBodiesState) {
 
 #[test]
 fn the_bound_of_a_body_about_an_axis_is_met_and_the_axis_named() {
-    // I_zz of the second body is 1.4, I_yy of the first 1.4 as well.
+    // I_zz of the second body is 1.4, and I_yy of the first is 1.4, too.
     for (axis, body, moment) in [(2, 1, 1.4), (1, 0, 1.4), (0, 1, 1.0), (0, 0, 1.6)] {
         let mut momenta = [Vector3::zeros(); 2];
         momenta[body][axis] = 2.0;
@@ -141,8 +139,8 @@ fn the_bound_of_a_body_about_an_axis_is_met_and_the_axis_named() {
         let bound = moment / 2.0;
         let e = refusal(&model, &state, 3.0 * bound).expect("too long");
         let largest = e.largest_step.expect("searched");
-        // At the bound the solution is a double root, where the curve that leads to it folds: what
-        // is nearer than 1e-6 is not offered.
+        // At the bound the solution is a double root, and the solution curve folds. The search does not suggest a step size closer
+        // than 1e-6.
         let short = 1.0 - largest / bound;
         assert!(0.0 < short && short < 3e-6, "{e}: {bound}");
         assert_eq!(e.worst.part, Part::Axis(axis as u8), "{e}");
@@ -150,7 +148,7 @@ fn the_bound_of_a_body_about_an_axis_is_met_and_the_axis_named() {
         assert!(e.to_string().contains("3.00000"), "{e}");
         assert!(refusal(&model, &state, 0.999 * bound).is_none());
         assert!(refusal(&model, &state, 1.001 * bound).is_some());
-        // Of twice the momentum that step would be too long: the test can fail.
+        // With twice the momentum this step size fails, so the test can fail.
         let (_, faster) = apart(momenta.map(|m| m * 2.0));
         assert!(refusal(&model, &faster, 0.999 * largest).is_some());
     }
@@ -168,7 +166,7 @@ fn values_that_no_step_can_use_are_said_to_be_so() {
     );
 }
 
-/// A composed step passes the refusal on with its own numbers.
+/// A composed step returns the error with its own numbers.
 fn composed<D: Drawn>(seed: u64)
 where
     D::M: Reversible,
@@ -242,12 +240,11 @@ fn lanes_are_named() {
     assert!(e.to_string().starts_with("lane 3: "), "{e}");
 }
 
-/// What is taken solves the equations to this many times the size of their terms: the solver stops
-/// at a thousand roundings at worst, and attitudes are kept to a few.
+/// Accepted steps solve the equations to this fraction of the size of their terms. The solver stops at a thousand rounding errors
+/// at worst, and attitudes are accurate to a few.
 const ROUNDING: f64 = 1e-12;
 
-/// Problems drawn of each model; a million in all by `NEWTON_PROBLEMS=200000`. Every one is proved
-/// anew, which takes milliseconds.
+/// Random problems per model; `NEWTON_PROBLEMS=200000` gives a million in all. Each step is certified, which takes milliseconds.
 fn problems() -> u64 {
     asked_for("NEWTON_PROBLEMS", 2000)
 }
@@ -263,16 +260,16 @@ fn two_steps<M: Model<Scalar = f64>>(model: &M, start: M::State, h: f64) -> Opti
     Some(past)
 }
 
-/// Random problems about the bound: none is left unsolved without a word.
+/// Random problems around the bound: no failure is silent.
 fn none_is_silent<D: Drawn>(count: u64) {
     let mut draws = Draws::new(11);
     let (mut solved, mut refused, mut silent, mut worst, mut turned) = (0, 0, 0, 0.0_f64, 0);
     for _ in 0..count {
         let (model, start, unit) = D::draw(&mut draws);
-        // From short steps to a little beyond what can be solved.
+        // From small step sizes to slightly beyond the largest solvable one.
         let h = unit * 10.0_f64.powf(draws.uniform(-2.0, D::BEYOND));
         let made = Cell::new(None);
-        // Within a search no other step is looked for, which takes a hundred times as long.
+        // Inside a search, a failed step does not start another search, which would take a hundred times as long.
         let _ = largest_step(1.0, |_| {
             made.set(two_steps(&model, start, h));
             Some(0.0)
@@ -296,7 +293,7 @@ fn none_is_silent<D: Drawn>(count: u64) {
         refused * 50 > count && solved * 2 > count,
         "{refused} of {count}"
     );
-    // An attitude that is off by 1e-8 would have been seen.
+    // The check detects an attitude error of 1e-8.
     assert_eq!(turned, solved);
 }
 

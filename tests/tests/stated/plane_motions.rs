@@ -1,6 +1,6 @@
-//! Steppers on SE(2): the action is stationary at every node of a run, on both sides, with potentials and
-//! a term linear in the velocity; momenta keep for any step; the order is two; a free body turns
-//! uniformly and goes straight.
+//! Steppers on SE(2). The action is stationary at every node of a run, on both sides, with potentials and a term linear in the
+//! velocity. Momenta are conserved for any step size, the order is two, and a free body rotates uniformly and moves along a
+//! straight line.
 
 use clebsch::nalgebra::{Matrix2, Matrix3, SVector, Vector2, Vector3};
 use clebsch::{BodyPlaneImpulse, PlaneMotion, SpatialPlaneImpulse};
@@ -86,7 +86,7 @@ clebsch::model! {
     }
 }
 
-/// Steps of the runs on which the action is varied.
+/// Steps of the runs that vary the action.
 const STEPS: usize = 200;
 
 fn matrix<const N: usize>(a: &Square<f64, N>) -> clebsch::nalgebra::SMatrix<f64, N, N> {
@@ -97,7 +97,7 @@ fn square(a: &Matrix3<f64>) -> [Square<f64, 3>; 1] {
     [Square(from_fn(|i| from_fn(|j| a[(i, j)])))]
 }
 
-/// The largest derivative of the action at a node, in units of its terms.
+/// The largest derivative of the action at a node, relative to its terms.
 fn worst_of(action: &PlaneSum, nodes: &[Matrix3<f64>]) -> f64 {
     let along = nodes.windows(3).map(|w| {
         let nodes = [square(&w[0]), square(&w[1]), square(&w[2])];
@@ -167,7 +167,7 @@ fn the_action_is_stationary_at_every_node() {
         );
         let found = worst_of(&space, &nodes);
         assert!(found < 1e-12, "space: {found:e}");
-        // A statement that is not the oracle's is found out.
+        // A statement that differs from the oracle's fails.
         let mut other = space.clone();
         other.weights[0] *= 1.01;
         assert!(worst_of(&other, &nodes) > 1e-9);
@@ -212,7 +212,7 @@ fn a_free_body_turns_uniformly_and_goes_straight() {
         let place = motion.translation + linear * (n * h / 2.0);
         let gap = (state.G().translation - place).norm() / place.norm();
         assert!(gap < 1e-13, "straight: {gap:e}");
-        // A step turns by the angle whose sine is h L / tr J, to rounding; the body by h L / tr J.
+        // A step rotates by the angle with sine h L / tr J, to rounding; the continuous motion rotates by h L / tr J.
         let turn = |angle: f64| PlaneMotion::new(0.3 + angle, place).rotation.matrix();
         let own = n * (h * moment / second_moments().trace()).asin();
         let gap = (state.G().rotation.matrix() - turn(own)).norm();
@@ -234,7 +234,7 @@ fn momenta_of_free_bodies_keep_for_any_step() {
         scalar: std::marker::PhantomData,
     })
     .unwrap();
-    // A mass of two with its centre at (0.2, -0.1) of the body, seen from space.
+    // A mass of two with its centre at body coordinates (0.2, -0.1), in the spatial frame.
     let arm = Vector3::new(0.2, -0.1, 1.0);
     let mut own: Matrix3<f64> = 2.0 * arm * arm.transpose();
     own[(0, 0)] += 0.7;
@@ -270,7 +270,7 @@ fn momenta_of_free_bodies_keep_for_any_step() {
     }
 }
 
-/// Where a body with weight is after a time, by so many steps.
+/// The final position of a heavy body after a fixed time with `steps` steps.
 fn sledge(steps: usize) -> (Matrix3<f64>, SVector<f64, 3>) {
     let model = Sledge::new(SledgeParameters {
         J: second_moments(),

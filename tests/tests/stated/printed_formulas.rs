@@ -1,6 +1,6 @@
-//! What the card shows of an invariant is what its function computes: every formula is read back and evaluated, for all
-//! models of the gallery, for models with terms linear in the velocity, and for a hundred random Lagrangians, whose
-//! energy follows from the Lagrangian itself. A formula that leaves out a term fails, which is shown too.
+//! Checks that the printed formula of every invariant equals its function. Formulas are parsed and evaluated for all gallery
+//! models, for models with terms linear in the velocity, and for a hundred random Lagrangians, whose energy follows from the
+//! Lagrangian. A test checks that a formula without one term fails.
 
 mod lengths;
 mod random;
@@ -96,7 +96,7 @@ clebsch::model! {
     }
 }
 
-/// The values of all letters at the node of a trajectory.
+/// The values of all symbols at a node of a trajectory.
 fn letters(
     d: &Derivation,
     card: &Card,
@@ -122,7 +122,7 @@ fn letters(
             Side::Body => "body_momentum",
             Side::Spatial => "spatial_momentum",
         };
-        // The momentum of the side of its constraint has a letter.
+        // Only the momentum on the side of its constraint has a symbol.
         let momentum = d.spec.configurations.iter().enumerate().find(|(_, c)| {
             let base = match c.group.is_additive() {
                 true => "momentum",
@@ -150,7 +150,7 @@ fn letters(
     out
 }
 
-/// How many numbers of a value an invariant has as a matrix that is skew.
+/// The independent entries of a value; a skew matrix has as many as the invariant has rows.
 fn coordinates(v: &Value, rows: usize) -> Vec<f64> {
     if v.data.len() == rows {
         return v.data.clone();
@@ -160,7 +160,7 @@ fn coordinates(v: &Value, rows: usize) -> Vec<f64> {
     pairs.map(|(i, j)| v.data[j * n + i]).collect()
 }
 
-/// Compares all invariants at two nodes; how many were compared.
+/// Compares all invariants at two nodes; returns the number of comparisons.
 fn compared(card: &Card, parameters: &[Vec<f64>], initial: &[Vec<f64>], h: f64) -> usize {
     let d = derive_source(card.source).unwrap_or_else(|e| panic!("{e}"));
     let opened = (card.open)(parameters, initial, Settings::step(h));
@@ -181,7 +181,7 @@ fn compared(card: &Card, parameters: &[Vec<f64>], initial: &[Vec<f64>], h: f64) 
         for (shown, derived) in card.invariants.iter().zip(&d.invariants) {
             let here = from..from + shown.rows;
             from += shown.rows;
-            // Coefficients of a determinant, told in words.
+            // The card describes coefficients of a determinant in words.
             if derived.kind == Kind::Spectrum {
                 continue;
             }

@@ -1,5 +1,5 @@
-//! What rounding leaves of fields: forces between places far from the origin keep the digits of their
-//! distance, and exact invariants do not lose the digits of `1/h`, whatever the statement spells out.
+//! Rounding of fields. Forces between positions far from the origin keep the digits of their distance, and exact invariants do not
+//! lose the digits of `1/h`, however the model states them.
 
 use clebsch::nalgebra::{Matrix3, Vector3, Vector6};
 use clebsch::{Additive, BodyImpulse, FieldMomentum, RigidMotion, Rotation};
@@ -68,18 +68,17 @@ clebsch::model! {
     }
 }
 
-/// A distance from the origin at which numbers have eight digits left.
+/// At this distance from the origin, numbers have eight digits left.
 const FAR: f64 = 67_108_864.0;
 
-/// What a place is rounded to there, and what the gradient of the forces, a hundred at most, makes of it
-/// in one step.
+/// The rounding error of a position at that distance, times the effect of the force gradient, at most a hundred, in one step.
 const FAR_ROUNDING: f64 = 100.0 * FAR * f64::EPSILON;
 
 fn away(by: f64) -> Vector3<f64> {
     Vector3::new(by, -by, 2.0 * by)
 }
 
-/// Places of few digits: they are stored exactly, wherever they are.
+/// Positions with few digits, which are exact at any distance.
 fn places() -> [Vector3<f64>; 3] {
     [[0.5, 0.25, -0.5], [-0.25, 0.5, 0.75], [1.0, -0.75, 0.25]].map(Vector3::from)
 }
@@ -173,7 +172,7 @@ fn a_spelled_out_kinetic_energy_keeps_the_momentum() {
             model.step(&mut state, &mut work).expect("solvable");
         }
         let pushed = p + g * (1.5 * 1000.0 * h);
-        // Roundings of a thousand additions, and of what is added.
+        // Rounding errors of a thousand additions and of the increments.
         let rounding = 2000.0 * f64::EPSILON * (1.0 + pushed.norm());
         assert!((state.momentum().0 - pushed).norm() < rounding, "{h:e}");
     }
@@ -203,7 +202,7 @@ fn a_mass_on_an_arm_keeps_the_total_momenta_at_small_steps() {
             model.step(&mut state, &mut work).expect("solvable");
         }
         assert_eq!(state.momentum_X().0, first);
-        // A thousand steps of a few roundings of numbers of order one.
+        // A thousand steps with a few rounding errors of numbers of order one.
         let drift = (about(&state) - total).norm();
         assert!(drift < 1e-12, "{h:e}: {drift:e}");
     }

@@ -1,5 +1,4 @@
-//! Starts where a model is not defined: they are refused with the argument that has no value there, and
-//! no shorter step is offered.
+//! Initial states where a model is undefined. The error names the argument outside its domain and suggests no smaller step size.
 
 use clebsch::nalgebra::{Vector1, Vector3};
 use clebsch::{Additive, FieldMomentum, StartError};
@@ -82,7 +81,7 @@ fn an_argument_that_holds_the_step_is_refused_by_its_value_at_that_step() {
         };
         model.start(initial, tau).map(|_| ())
     };
-    // -1/16 with a step of 1/16, 1/16 with one of 3/16.
+    // -1/16 with step size 1/16, and 1/16 with step size 3/16.
     let met = start(0.0625).expect_err("refused").to_string();
     assert!(met.contains("-0.0625"), "{met}");
     assert!(start(0.1875).is_ok());

@@ -1,5 +1,5 @@
-//! Models on SO(n) and GL(n), known by their statements alone: fixed and named sizes, forcing by
-//! advected quantities, Lagrangians without Moser-Veselov form.
+//! Models on SO(n) and GL(n), tested through their statements alone: fixed and named sizes, forcing by advected quantities,
+//! Lagrangians without Moser-Veselov form.
 
 use clebsch::nalgebra::{SMatrix, SVector};
 use clebsch::{BodyMomentumMatrix, Linear, Orthogonal, SpatialMomentumMatrix};
@@ -104,15 +104,15 @@ clebsch::model! {
     }
 }
 
-/// Random points and random states for every model.
+/// Random points and random states per model.
 const POINTS: usize = 60;
-/// Agreement of residuals, relative to the sum of the sizes of the summands.
+/// Tolerance of residuals, relative to the sum of the absolute summands.
 const AGREEMENT: f64 = 1e-12;
-/// What rounding leaves of a solved equation: a thousand roundings of 1e-16, magnified by the
-/// sensitivity of the equation to the entries of the group elements.
+/// Tolerance of a solved equation: a thousand rounding errors of 1e-16, amplified by the sensitivity of the equation to the entries
+/// of the group elements.
 const ROUNDING: f64 = 1e-13;
 
-/// The unreduced action of one step, typed by hand, at random parameters.
+/// The hand-written unreduced action of one step, with random parameters.
 trait System<const N: usize>: DiscreteAction<N, 1> + Sized {
     fn draw(source: &mut Source, h: f64) -> Self;
     /// A random configuration.
@@ -129,7 +129,7 @@ trait System<const N: usize>: DiscreteAction<N, 1> + Sized {
     fn two_steps(&self, start: &Square<f64, N>, momentum: &[f64]) -> Option<Steps<N>>;
 }
 
-/// Three nodes made by emitted code, and the momenta at the first two.
+/// Three nodes from emitted code, and the momenta at the first two.
 struct Steps<const N: usize> {
     nodes: [Square<f64, N>; 3],
     momenta: [Vec<f64>; 2],
@@ -179,7 +179,7 @@ fn kinetic<T: Number, const N: usize>(
     -(Square::<T, N>::constant(c).transpose() * tail.transpose() * *head).trace() / T::constant(h)
 }
 
-/// Implements `residual` and `two_steps` by the emitted model.
+/// Implements `residual` and `two_steps` with the emitted model.
 macro_rules! emitted {
     ($model:ident, $parameters:ident, $configuration:ident, $initial:ident, $group:ident,
      $element:ident, $momentum:ident: $frame:ident, $read:ident, $write:ident, $n:expr,
@@ -238,7 +238,7 @@ impl DiscreteAction<4, 1> for Body {
 
 impl System<4> for Body {
     fn draw(source: &mut Source, h: f64) -> Self {
-        // A rotation of some tenths times a positive matrix: not symmetric.
+        // A positive matrix plus a small skew one: not symmetric.
         let c = source.positive() + source.skew().scaled(0.2);
         Self { h, c }
     }
@@ -329,13 +329,13 @@ impl<const N: usize> System<N> for Spatial<N> {
     );
 }
 
-/// `Λ J Λ^T`, symmetric to the last bit.
+/// `Λ J Λ^T`, exactly symmetric.
 fn carried<const N: usize>(node: &Square<f64, N>, j: &Square<f64, N>) -> SMatrix<f64, N, N> {
     let value = matrix(&(*node * *j * node.transpose()));
     (value + value.transpose()) * 0.5
 }
 
-/// [`Stiff4`]: the carried matrix at the identity is `s`.
+/// [`Stiff4`]: the advected matrix at the identity is `s`.
 struct Stiff {
     h: f64,
     j: Square<f64, 4>,
@@ -477,7 +477,7 @@ impl System<2> for Planar {
     );
 }
 
-/// Residuals at points that solve nothing, and steps that solve the equations.
+/// Checks residuals at points that solve nothing, and steps that solve the equations.
 fn agrees<const N: usize, S: System<N>>() {
     let mut source = Source::seeded(11);
     let basis = S::basis();

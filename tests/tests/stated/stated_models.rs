@@ -1,7 +1,6 @@
-//! Models that are in no gallery, known by their statements alone: the free body and the heavy top
-//! in the spatial representation and two bodies joined at a point, against runs in 32 digits.
-//! They exercise what the gallery does not: the spatial side, advected tensors, several groups,
-//! Newton.
+//! Models outside the gallery, tested through their statements alone, against 32-digit runs: the free body and the heavy top in the
+//! spatial representation, and two bodies joined at a point. They cover features that the gallery does not use: the spatial side,
+//! advected tensors, several groups, Newton's method.
 
 use clebsch::nalgebra::{Matrix3, SVector, Vector3};
 use clebsch::{BodyMomentum, Rotation, SpatialMomentum};
@@ -81,7 +80,7 @@ fn free_body_in_space() {
     let initial = FreeBodySpatialInitial {
         Λ: attitude,
         spatial_momentum: SpatialMomentum(m),
-        // Symmetric to the last bit, as the parameter would have to be.
+        // Exactly symmetric, as required for the parameter.
         J: (j + j.transpose()) / 2.0,
     };
     let (mut state, mut work) = model.start(initial, H).unwrap();
@@ -167,7 +166,7 @@ fn coupled_bodies() {
         ]
         .into_iter()
         .fold(0.0, worse);
-        // The reference allows a digit more for coupled runs.
+        // The tolerance is one digit larger for coupled runs.
         assert!(worst < coupled_sym::TOLERANCE, "node {node}: {worst:e}");
     }
     assert!((energy - coupled_sym::ENERGY_0).abs() < 1e-14);

@@ -1,5 +1,6 @@
-//! Places and their momenta are kept in two numbers, and those of a rigid motion about its own origin: small bodies far
-//! away keep their spin, and small steps gather no rounding. Compared with double-double arithmetic, and with what is conserved.
+//! Positions and their momenta are stored in two numbers each, and momenta of a rigid motion about its own origin. Small bodies far
+//! from the origin keep their spin, and small steps accumulate no rounding. Compared with double-double arithmetic and with
+//! invariants.
 
 use clebsch::nalgebra::{Matrix3, SVector, Vector2, Vector3};
 use clebsch::{
@@ -47,11 +48,11 @@ clebsch::model! {
 
 const STEPS: usize = 2_000;
 
-/// What the runs of a body give: its spin seen from itself, and its linear momentum.
+/// The results of a run: the spin in the body frame, and the linear momentum.
 type Momenta<T> = [Vec<T>; 2];
 
-/// A body of this size, so far from the origin, after [`STEPS`] steps of `h`. Masses go with the
-/// volume, so that accelerations do not depend on the size.
+/// A body of this size, at this distance from the origin, after [`STEPS`] steps of `h`. Masses scale with the volume, so that
+/// accelerations do not depend on the size.
 fn in_space<T: Real>(size: f64, far: f64, h: f64) -> Momenta<T> {
     let number = T::from_f64;
     let mass = size * size * size;
@@ -116,7 +117,7 @@ fn in_plane<T: Real>(size: f64, far: f64, h: f64) -> Momenta<T> {
     ]
 }
 
-/// How far numbers are from those of double-double arithmetic, relative to their size.
+/// The largest deviation from the double-double results, relative to their size.
 fn gap(found: &[f64], exact: &[DoubleDouble]) -> f64 {
     let off = found.iter().zip(exact);
     let off = off.fold(0.0, |sum: f64, (x, y)| {
@@ -136,9 +137,8 @@ fn spin_of_a_small_body_far_away_is_kept() {
                     in_plane::<DoubleDouble>(size, far, h),
                 ];
                 for (found, exact) in space.iter().zip(&exact) {
-                    // What the attitude is rounded by comes back as a torque, which changes the spin of
-                    // the smallest body by 4e3 of itself in unit time. A moment about the origin
-                    // would lose 1e-16 |x| / size^2 besides, 1e-7 at worst.
+                    // The rounding error of the attitude acts as a torque. For the smallest body it changes the spin by a relative
+                    // 4e3 per unit time. A moment about the origin would also lose 1e-16 |x| / size^2, at worst 1e-7.
                     let gathered = f64::EPSILON * (1.0 + 4e3 * STEPS as f64 * h);
                     let [spin, linear] = [0, 1].map(|k| gap(&found[k], &exact[k]));
                     let case = format!("size {size}, {far} away, h = {h}");
@@ -192,7 +192,7 @@ fn small_steps_gather_no_rounding() {
             model.step(&mut state, &mut work).expect("step");
         }
         let after = told(&state);
-        // Rounding of the sums themselves; in one number the drifts are 7e-12, 1e-9 and 5e-12.
+        // Rounding of the sums themselves. With one number per value, the drifts are 7e-12, 1e-9 and 5e-12.
         let linear = (after.0 - before.0).norm();
         let angular = (after.1 - before.1).norm() / before.1.norm();
         let energy = ((after.2 - before.2) / before.2).abs();

@@ -1,6 +1,6 @@
-//! Models on SU(2) whose step comes down to one equation for a number: which those are, what their steps solve, by the
-//! variation of the unreduced action, and how a step that is too long is refused.
-//! Takes the gallery, models stated here, and random states; a wrong body and a wrong node are found out.
+//! Models on SU(2) whose step reduces to a scalar equation: which models have this form, whether their steps satisfy the variation
+//! of the unreduced action, and the error of a step size that is too large. Covers the gallery, models stated here, and random
+//! states. A wrong body or node fails.
 
 #![allow(non_snake_case)]
 
@@ -51,8 +51,8 @@ clebsch::model! {
     }
 }
 
-/// A step solves the equation to rounding of its terms. Short steps are differences of attitudes, whose rounding
-/// counts the more for the terms being of the size of the turn; three nodes and two edges add up.
+/// Tolerance of a solved equation, relative to its terms. Small steps are differences of attitudes, whose rounding matters more
+/// because the terms have the size of the rotation angle. Errors of three nodes and two edges add up.
 const ROUNDING: f64 = 2e-14;
 
 type Node = [Square<f64, 4>; 1];
@@ -61,7 +61,7 @@ fn node(q: &UnitQuaternion) -> Node {
     [left(q.components())]
 }
 
-/// The oracle's derivative at the middle one of three nodes, over the size of the terms.
+/// The oracle's derivative at the middle of three nodes, relative to the size of the terms.
 fn off<A: DiscreteAction<4, 1>>(action: &A, nodes: &[UnitQuaternion; 3]) -> f64 {
     let found = stationarity(action, &nodes.map(|q| node(&q)), &halves());
     let most = found
@@ -71,7 +71,7 @@ fn off<A: DiscreteAction<4, 1>>(action: &A, nodes: &[UnitQuaternion; 3]) -> f64 
     most / found.scale
 }
 
-/// The second attitude turned by an angle.
+/// The three attitudes, with one rotated by an angle.
 fn displaced([a, b, c]: [UnitQuaternion; 3], angle: f64) -> [UnitQuaternion; 3] {
     let turn = Rotation::exp(&(Vector3::new(0.6, -0.64, 0.48) * angle)).quaternion();
     [
@@ -87,7 +87,7 @@ fn attitude(source: &mut Source) -> UnitQuaternion {
     UnitQuaternion::from_components(q.map(|x| x / length)).expect("unit")
 }
 
-/// Attitudes at three nodes from a start; nothing where a step is refused.
+/// Attitudes at three nodes from a start; `None` if a step fails.
 fn three<M: Model<Scalar = f64>>(
     model: &M,
     start: Option<M::State>,
@@ -135,7 +135,7 @@ fn steps_of_the_gallery_make_the_unreduced_action_stationary() {
         worst = worse(worst, off(&action, &seen));
         action.side = Side::Space;
         worst = worse(worst, off(&action, &carried));
-        // Neither another attitude nor another member of the family would do.
+        // Neither a different attitude nor a different member of the family passes.
         assert!(
             off(&action, &displaced(carried, 1e-8)) > 1e-10,
             "case {case}"
@@ -159,14 +159,14 @@ fn steps_of_tops_stated_here_do_so_too() {
         let h = action.h * 0.3;
         let b = source.between(-8.0, -2.0);
         action.h = h;
-        // Coefficients as they stand before the terms, which are not all divided by the step.
+        // Coefficients as the model states them; not all terms are divided by the step size.
         action.weights[1] = b / h;
         let [a0, _, a13, a14] = action.weights;
         let q = attitude(&mut source);
         let S = Matrix3::from_fn(|i, j| action.symmetric.0[i][j]);
         let (u, z) = (Vector3::from(action.lever), Vector3::from(action.vertical));
         let momentum = Vector3::from(source.vector::<3>());
-        // Not every random matrix is a body's.
+        // Not every random matrix is an admissible inertia.
         let Ok(body) = QuaternionTop::new(QuaternionTopParameters {
             a0,
             b,
@@ -212,7 +212,7 @@ fn steps_of_tops_stated_here_do_so_too() {
     }
     println!("{made} of 4000, worst {worst:e}, both sides apart {apart:e}");
     assert!(made > 1000 && worst < ROUNDING, "{made} {worst:e}");
-    // Two steps near a bound magnify rounding by its square root.
+    // Near a bound, two steps amplify rounding by its square root.
     assert!(apart < 1e-9, "{apart:e}");
 }
 
@@ -234,7 +234,7 @@ fn what_is_of_the_form_is_solved_so_and_nothing_else() {
         "c*d*re(W)/h - h*d*dot(Γ, S*Γ)^2 - h*log(3 + dot(u, Γ)^2)".to_owned(),
         "d*dot(im(W), im(W))/h".to_owned(),
         "d*re(W)^2/h".to_owned(),
-        // The skew part of a form is none.
+        // The skew part of a matrix does not contribute to its quadratic form.
         "dot(im(W), A*im(W))/h".to_owned(),
     ];
     for term in yes {
@@ -247,7 +247,7 @@ fn what_is_of_the_form_is_solved_so_and_nothing_else() {
         );
     }
     let no = [
-        // A multiple that depends on the step, a velocity that stands otherwise.
+        // A factor without 1/h, or a velocity in another form.
         "c*re(W)",
         "c*re(W)^3/h",
         "dot(u, im(W))/h",
@@ -275,7 +275,7 @@ fn refusal<M: Model<Scalar = f64>>(model: &M, state: &M::State, h: f64) -> Optio
     }
 }
 
-/// A ball that turns about an axis, and the longest step it can make: `sin t ((i - c) cos t + c) = h m / 2`.
+/// A ball that rotates about an axis, and its largest step size: `sin t ((i - c) cos t + c) = h m / 2`.
 fn ball(axis: usize, moment: f64, c: f64, momentum: f64) -> (CayleyKlein, CayleyKleinState, f64) {
     let inertia = Matrix3::from_diagonal_element(moment);
     let model = CayleyKlein::new(CayleyKleinParameters { I: inertia, c }).expect("valid");
@@ -286,7 +286,7 @@ fn ball(axis: usize, moment: f64, c: f64, momentum: f64) -> (CayleyKlein, Cayley
         body_momentum: BodyMomentum(along),
     };
     let state = model.begin(initial).expect("valid");
-    // The largest: (i - c)(2 x^2 - 1) + c x = 0 with x = cos t.
+    // The maximum: (i - c)(2 x^2 - 1) + c x = 0 with x = cos t.
     let a = moment - c;
     let x = (-c + (c * c + 8.0 * a * a).sqrt()) / (4.0 * a);
     let bound = 2.0 * (1.0 - x * x).sqrt() * (a * x + c) / momentum;
@@ -315,7 +315,7 @@ fn the_bound_of_a_ball_is_met_and_the_axis_named() {
         assert!(refusal(&model, &state, bound * 1.000_001).is_some(), "{e}");
         let back = refusal(&model, &state, -3.0 * bound).and_then(|e| e.largest_step);
         assert!((back.expect("known") + largest).abs() < 1e-9, "{e}");
-        // Of twice the momentum that step would be too long: the test can fail.
+        // With twice the momentum this step size fails, so the test can fail.
         let (_, faster, _) = ball(axis, 1.4, c, 4.0);
         assert!(refusal(&model, &faster, 0.999 * largest).is_some());
     }

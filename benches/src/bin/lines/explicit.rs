@@ -1,5 +1,5 @@
-//! Lattices whose steps are explicit from site to site, compiled and by hand, and the lone heavy top. Takes numbers of sites;
-//! gives blocks of work, and sees that both are the same motion.
+//! Chains with explicit steps, compiled and hand-written, and the single heavy top. Gives blocks of work for a number of sites, and
+//! checks that both implementations give the same motion.
 
 use super::{WORK, diagonal, number};
 use clebsch::nalgebra::Vector3;
@@ -15,7 +15,7 @@ use clebsch_models::lattices::{
 };
 use std::hint::black_box;
 
-/// Steps, compiled, from a state.
+/// Compiled steps from a state.
 macro_rules! compiled {
     ($n:expr, $line:expr, $initial:expr, $h:expr) => {{
         let line = $line;
@@ -29,7 +29,7 @@ macro_rules! compiled {
     }};
 }
 
-/// How far the momenta of both are from one another after twenty steps.
+/// Checks that the momenta of both implementations agree after twenty steps.
 macro_rules! apart {
     ($line:expr, $initial:expr, $h:expr, $state:ident => $momenta:expr, $hand:ident = $start:expr => $stepped:expr, $theirs:expr) => {{
         let line = $line;
@@ -42,12 +42,12 @@ macro_rules! apart {
         let (ours, theirs): (Vec<f64>, Vec<f64>) = ($momenta.collect(), $theirs.collect());
         assert_eq!(ours.len(), theirs.len());
         let far = largest(ours.iter().zip(&theirs).map(|(a, b)| (a - b).abs()));
-        // Twenty steps of a few roundings each, of momenta of order one.
+        // Twenty steps with a few rounding errors each, for momenta of order one.
         assert!(far < 1e-12, "both are the same motion: {far:e}");
     }};
 }
 
-/// Sees that lines of so many sites move alike.
+/// Checks that both implementations agree for this number of sites.
 pub fn same_motions(n: usize) {
     apart!(
         toda_chain(n), toda_initial(n), 0.01, state => state.momentum_q().iter().map(|p| p[0]),
@@ -113,7 +113,7 @@ pub fn toda(n: usize) -> impl FnMut() {
     compiled!(n, toda_chain(n), toda_initial(n), 0.01)
 }
 
-/// The same by hand.
+/// Toda's chain, hand-written.
 pub fn toda_by_hand(n: usize) -> impl FnMut() {
     let mut chain = toda_started(n);
     move || {
@@ -166,7 +166,7 @@ pub fn sine(n: usize) -> impl FnMut() {
     compiled!(n, wire(n), wire_initial(n), 0.01)
 }
 
-/// The same by hand.
+/// The sine-Gordon equation, hand-written.
 pub fn sine_by_hand(n: usize) -> impl FnMut() {
     let mut line = wire_started(n);
     move || {
@@ -224,12 +224,12 @@ fn row_started(n: usize) -> tops_hand::CoupledTops {
         .expect("starts")
 }
 
-/// Coupled heavy tops, both ends free, by so many threads.
+/// Coupled heavy tops with free ends on `threads` threads.
 pub fn tops(n: usize, threads: usize) -> impl FnMut() {
     compiled!(n, row(n).with_threads(threads), row_initial(n), 0.01)
 }
 
-/// The same by hand.
+/// Coupled heavy tops, hand-written.
 pub fn tops_by_hand(n: usize) -> impl FnMut() {
     let mut tops = row_started(n);
     move || {
@@ -238,7 +238,7 @@ pub fn tops_by_hand(n: usize) -> impl FnMut() {
     }
 }
 
-/// A lone heavy top; as many steps whatever the number of sites.
+/// A single heavy top; the number of steps does not depend on the number of sites.
 pub fn lone(_: usize) -> impl FnMut() {
     let parameters = HeavyTopParameters {
         J: diagonal(0.5, 0.5, 1.5),
@@ -252,7 +252,7 @@ pub fn lone(_: usize) -> impl FnMut() {
     compiled!(1, HeavyTop::new(parameters).expect("a top"), initial, 0.01)
 }
 
-/// From node to node of the rod.
+/// Node spacing of the rod.
 const LENGTH: f64 = 0.1;
 
 fn masses(n: usize) -> Vec<f64> {
@@ -321,7 +321,7 @@ pub fn rod(n: usize) -> impl FnMut() {
     compiled!(n, elastic(n), elastic_initial(n), 0.001)
 }
 
-/// The same by hand.
+/// The elastic rod, hand-written.
 pub fn rod_by_hand(n: usize) -> impl FnMut() {
     let mut rod = elastic_started(n);
     move || {

@@ -1,5 +1,5 @@
-//! One long run, looked at between the projections as often as behind them.
-//! Takes a start, an order and whether to project; gives the largest errors, their trend and the corrections made.
+//! One long run, sampled between projections and directly after them. Takes a start, an order and whether to project; gives the
+//! largest errors, their trend and the corrections.
 
 use super::phase::{Lag, Phase};
 use clebsch::Order;
@@ -8,27 +8,27 @@ use clebsch_comparisons::body::{BodyMotion, Start};
 use clebsch_comparisons::handwritten::attitude::{apply, dot};
 use clebsch_oracle::physics::trend::{Trend, trend};
 
-/// Steps of a run: a whole number of [`STRIDE`]s.
+/// Steps of a run, a multiple of [`STRIDE`].
 pub const STEPS: u64 = 100_000_000;
 
 /// Steps between two projections of the stepper.
 const STRIDE: u64 = 64;
 
-/// Every so many strides the motion is looked at, at another place of the stride each time.
+/// One in this many strides is sampled, each time at another step of the stride.
 const SPARSE: u64 = 16;
 
-/// Steps of the beginning, where it is looked at in every stride.
+/// Initial steps, in which every stride is sampled.
 const EARLY: u64 = 1_000_000;
 
-/// Nodes whose phase is reported.
+/// Nodes at which the phase is reported.
 const REPORTED: [u64; 3] = [10_000, 1_000_000, STEPS];
 
-/// Sizes seen.
+/// Statistics of a size.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tally {
     sum: f64,
     count: u64,
-    /// The largest.
+    /// The largest value.
     pub largest: f64,
 }
 
@@ -46,7 +46,7 @@ impl Tally {
     }
 }
 
-/// What a run has shown. Errors are relative to the start.
+/// The results of a run. Errors are relative to the initial values.
 pub struct Course {
     /// Largest error of mu . I^-1 mu / 2.
     pub energy: f64,
@@ -54,15 +54,15 @@ pub struct Course {
     pub square: f64,
     /// Largest |R mu - m| over |m| in the first million steps.
     pub spatial_early: f64,
-    /// The same over the whole run.
+    /// Largest |R mu - m| over |m| in the whole run.
     pub spatial: f64,
-    /// How |R mu - m| over |m| changes, by equally spaced samples.
+    /// The trend of |R mu - m| over |m| in equally spaced samples.
     pub trend: Trend,
-    /// What the projections changed in the momentum.
+    /// The corrections of the momentum by projections.
     pub momentum: Tally,
-    /// And in the attitude, in radians.
+    /// The corrections of the attitude by projections, in radians.
     pub attitude: Tally,
-    /// Behind the closed form, at the nodes reported.
+    /// The phase error relative to the closed form, at the reported nodes.
     pub lags: Vec<Lag>,
 }
 
@@ -73,7 +73,7 @@ struct Sample {
     spatial: f64,
 }
 
-/// Makes the run.
+/// Runs the motion.
 pub fn run(start: &Start, order: Order, projects: bool) -> Course {
     let mut body = Generated::start(start, order);
     if !projects {
@@ -87,7 +87,7 @@ pub fn run(start: &Start, order: Order, projects: bool) -> Course {
     let first = start.body_momentum;
     let (energy_0, square_0) = (energy(&first), dot(&first, &first));
     let look = |body: &Generated| {
-        // What the solver keeps, not what the state makes of its constant spatial momentum.
+        // The momentum that the solver stores, not the one that the state computes from its constant spatial momentum.
         let mu: [f64; 3] = body.workspace.solver().body_momentum().0.into();
         let away = apply(&body.attitude().matrix(), &mu);
         // The attitude starts at the identity.
@@ -120,7 +120,7 @@ pub fn run(start: &Start, order: Order, projects: bool) -> Course {
     for stride in 0..STEPS / STRIDE {
         let sparse = stride % SPARSE == 0;
         if sparse || stride * STRIDE < EARLY {
-            // Thirty-seven has no divisor in common with the stride.
+            // Thirty-seven and the stride are coprime.
             let ahead = 37 * (stride / SPARSE + stride % SPARSE) % STRIDE;
             advance(&mut body, ahead);
             let here = look(&body);

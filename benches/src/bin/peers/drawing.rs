@@ -1,5 +1,4 @@
-//! The picture: error against time of the processor, both logarithmic, one curve a method.
-//! Takes what was measured; gives SVG.
+//! The figure: error against CPU time on logarithmic axes, one curve per method, as SVG.
 
 use super::precision::{MOMENTS, MOMENTUM, TIME};
 use super::timing::Measured;
@@ -7,7 +6,7 @@ use clebsch_cli::plots::axis::Axis;
 use clebsch_cli::plots::curve::{Curve, Marks, Stroke};
 use clebsch_cli::plots::figure::{Figure, Panel};
 
-/// The methods, each once, in the order they were measured.
+/// The distinct methods, in the order of their measurements.
 pub fn methods(measured: &[Measured]) -> Vec<&str> {
     let mut methods: Vec<&str> = Vec::new();
     for m in measured {
@@ -18,12 +17,12 @@ pub fn methods(measured: &[Measured]) -> Vec<&str> {
     methods
 }
 
-/// How the names of the generated steppers begin.
+/// The prefix of the generated steppers' names.
 const OWN: &str = "generated";
 
-/// The picture.
+/// The figure as SVG.
 pub fn svg(measured: &[Measured]) -> Result<String, String> {
-    // Too slow to be drawn on the same axis; they are in the tables.
+    // Methods that are too slow for these axes; the tables contain them.
     let drawn = |method: &&str| !["fixed point", "PyElastica", "SciPy RK45"].contains(method);
     let shown: Vec<&str> = methods(measured).into_iter().filter(drawn).collect();
     let family = shown.iter().filter(|m| m.starts_with(OWN)).count();
@@ -36,13 +35,13 @@ pub fn svg(measured: &[Measured]) -> Result<String, String> {
                 .filter(|m| m.error.is_finite() && m.error < 3.0)
                 .map(|m| (m.micros.log10(), m.error.log10()))
                 .collect();
-            // The generated ones in shades of blue, which the others leave out.
+            // The generated steppers in shades of blue, which no other method uses.
             let stroke = if method.starts_with(OWN) {
                 own += 1;
                 Stroke::shade(own - 1, family).marked(Marks::Full)
             } else {
                 others += 1;
-                // Six colours dashed, then the same in full lines.
+                // Six colours with dashed lines, then the same colours with solid lines.
                 let stroke = Stroke::number(others + (others - 1) / 6);
                 Stroke {
                     dash: (others <= 6).then_some((6, 4)),

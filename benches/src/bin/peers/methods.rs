@@ -1,5 +1,5 @@
-//! The methods written in Rust, each with a range of steps or tolerances: the generated stepper of every order, alone and
-//! in lanes, its compositions, splitting, the fixed point, Runge-Kutta. Takes nothing; gives runs for the clock.
+//! The methods written in Rust, each with a range of step sizes or tolerances: the generated stepper of every order, single and in
+//! lanes, its compositions, splitting, fixed point, Runge-Kutta. Gives runs to time.
 
 use super::precision::{MOMENTS, MOMENTUM, TIME};
 use super::timing::{End, Run};
@@ -15,20 +15,20 @@ use clebsch_comparisons::runge_kutta::{
 };
 use clebsch_models::free_body::FreeBody;
 
-/// Trajectories side by side.
+/// Number of trajectories in lanes.
 pub const LANES: usize = 16;
 
-/// Distance of the nodes of Runge-Kutta methods: longer than the steps they take, short enough that the sum of the steps
-/// within is not rounded visibly. For loose tolerances, and for those below 1e-9.
+/// Node distance of Runge-Kutta methods: longer than their steps, and short enough that the sum of the steps has no visible
+/// rounding error. For loose tolerances, and for tolerances below 1e-9.
 const LOOSE: u32 = 25;
 const TIGHT: u32 = 5;
 
-/// Whole steps until the end: h = 1 to 0.001.
+/// Number of steps until the end: h = 1 to 0.001.
 const COUNTS: [u32; 16] = [
     100, 125, 160, 200, 250, 320, 400, 500, 640, 800, 1000, 2000, 5000, 10_000, 30_000, 100_000,
 ];
 
-/// All of them.
+/// All runs.
 pub fn all() -> Vec<Run> {
     let mut runs = Vec::new();
     for order in Order::ALL {
@@ -77,7 +77,7 @@ pub fn all() -> Vec<Run> {
     runs
 }
 
-/// Steps worth measuring at an order: until rounding is reached, and a little on.
+/// Step counts worth measuring at an order: until rounding is reached, and slightly beyond.
 fn wanted(order: u32) -> impl Iterator<Item = u32> {
     let most = match order {
         0..=3 => 100_000,
@@ -88,7 +88,7 @@ fn wanted(order: u32) -> impl Iterator<Item = u32> {
     COUNTS.into_iter().filter(move |count| *count <= most)
 }
 
-/// A method with a fixed step.
+/// A method with a fixed step size.
 fn stepping<M: BodyMotion>(
     method: &str,
     count: u32,
@@ -120,13 +120,13 @@ fn run(method: &str, h: f64, count: u32, lanes: usize, make: impl Fn() -> End + 
     }
 }
 
-/// The end of a motion that could not be made: infinitely wrong.
+/// The result of a failed motion, with infinite error.
 fn nowhere() -> End {
     ([f64::NAN; 4], [f64::NAN; 3])
 }
 
-/// The same trajectory in every lane of an ensemble, on the best instruction set: nothing is gained by its being the
-/// same, every lane has its own numbers.
+/// The same trajectory in every lane of an ensemble, on the best instruction set. Equal trajectories save nothing, because every
+/// lane has its own numbers.
 fn lanes(order: Order, count: u32) -> Run {
     let h = TIME / f64::from(count);
     let start = start_of(MOMENTS, MOMENTUM, h);
@@ -153,7 +153,7 @@ fn lanes(order: Order, count: u32) -> Run {
     )
 }
 
-/// The step of order two, composed: symplectic in momentum and attitude.
+/// The composed step of order two, which is symplectic in momentum and attitude.
 fn composed(order: CompositionOrder, count: u32) -> Run {
     let h = TIME / f64::from(count);
     let start = start_of(MOMENTS, MOMENTUM, h);
@@ -182,7 +182,7 @@ fn composed(order: CompositionOrder, count: u32) -> Run {
 
 type Adaptive = fn(&str, f64) -> Run;
 
-/// A method over tolerances half a decade apart.
+/// A method with tolerances half a decade apart.
 fn tolerances(method: &str, loose: Adaptive, tight: Adaptive) -> Vec<Run> {
     let run = |half_decades: u32| {
         let tolerance = 10_f64.powf(-0.5 * f64::from(half_decades));
@@ -192,7 +192,7 @@ fn tolerances(method: &str, loose: Adaptive, tight: Adaptive) -> Vec<Run> {
     (8..=31).map(run).collect()
 }
 
-/// A method that chooses its steps; the distance of its nodes is known to the compiler, which favours it.
+/// A method with adaptive steps. The compiler knows the node distance, which favours this method.
 fn adaptive<R: Scheme<7> + 'static, const NODES: u32>(method: &str, tolerance: f64) -> Run {
     let nodes = f64::from(NODES);
     let start = start_of(MOMENTS, MOMENTUM, nodes);

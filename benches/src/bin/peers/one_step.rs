@@ -1,5 +1,4 @@
-//! Time per step of the generated free body beside other methods, and how accurate each is.
-//! Takes nothing; prints a table for each body of the figures.
+//! Time per step and accuracy of the generated free body and of other methods. Prints a table for each body of the thesis figures.
 
 use clebsch::solvers::Method;
 use clebsch::solvers::moser_veselov::Edge;
@@ -17,7 +16,7 @@ use clebsch_comparisons::handwritten::free_body::FreeBody as Written;
 use clebsch_comparisons::runge_kutta::{Accuracy, Method54, Method85, RungeKutta, Scheme};
 use std::hint::black_box;
 
-/// Groups of four blocks: one process measures all.
+/// Groups of four blocks; a single process measures all methods.
 const QUADRUPLES: usize = 101;
 
 /// The bodies of thesis figures 2.5, 2.6 and 2.17.
@@ -41,13 +40,13 @@ const BODIES: [(&str, [f64; 3], [f64; 3]); 3] = [
 
 const H: f64 = 0.1;
 
-/// Nodes after which the error is taken: time 100.
+/// The error is measured after this many nodes, at time 100.
 const NODES: u32 = 1000;
 
-/// Steps of a block of a solver that takes microseconds, and groups of four of them.
+/// Steps per block, and groups of four blocks, for solvers that take microseconds.
 const SLOW: (u32, usize) = (500, 25);
 
-/// Prints them.
+/// Prints the tables.
 pub fn tables() {
     println!(
         "h = {H}; {} blocks of {STEPS} steps each way ({} of {} for the solvers by name), interleaved with the generated stepper",
@@ -68,7 +67,7 @@ pub fn tables() {
 /// The table of one body.
 struct Table {
     start: Start,
-    /// Nanoseconds of the hand-written step over those of the generated one.
+    /// Time of the hand-written step over that of the generated step.
     by_hand: f64,
 }
 
@@ -103,7 +102,7 @@ impl Table {
             let name = format!("solver {method}");
             match Generated::solved_by(s, Order::Two, method) {
                 Ok(motion) => self.timed_row(SLOW, &name, motion),
-                // A singular J has no inverse, which these need.
+                // These methods need the inverse of J.
                 Err(_) => println!("| {name} | - | - | - | - |"),
             }
         }
@@ -115,7 +114,7 @@ impl Table {
         self.row("Dormand-Prince 8(5,3), 1e-12", eighth);
     }
 
-    /// The generated stepper of an order against the one of order two.
+    /// The generated stepper of an order against order two.
     fn own(&self, name: &str, order: Order) {
         let motion = Generated::start(&self.start, order);
         let times = compare_blocks(
@@ -128,7 +127,7 @@ impl Table {
         self.print(name, &times, error(&self.start, motion));
     }
 
-    /// One method against the generated one.
+    /// A method against the generated stepper.
     fn row<M: BodyMotion + Clone>(&self, name: &str, motion: M) {
         self.timed_row((STEPS, QUADRUPLES), name, motion);
     }
@@ -153,7 +152,7 @@ fn by_hand(s: &Start) -> Written {
     Written::start(&s.poinsot, &s.attitude, &s.body_momentum, s.h).expect("solvable")
 }
 
-/// A method, as the first, against the generated stepper of order two.
+/// Times a method against the generated stepper of order two.
 fn timed<M: BodyMotion + Clone>(
     (steps, quadruples): (u32, usize),
     start: &Start,
@@ -168,7 +167,7 @@ fn timed<M: BodyMotion + Clone>(
     )
 }
 
-/// What a forced body pays without its forces: the quartic in every step, as emitted steppers call it.
+/// The cost of a body under forces without the forces: solves the quartic in every step, like emitted steppers.
 #[derive(Clone)]
 struct Solved {
     body: Poinsot,

@@ -1,20 +1,20 @@
-//! Error of the free body at time 100 against processor time, for the generated stepper of every order and for other
-//! methods. Takes what was measured of peers in Python, or why they are missing; prints tables, gives all points.
+//! Error of the free body at time 100 against CPU time, for the generated stepper of every order and for other methods. Takes the
+//! Python measurements, or the reason why they are missing; prints tables and returns all points.
 
 use super::timing::{self, Measured};
 use super::{drawing, methods};
 
-/// Principal moments, momentum and time of the problem.
+/// Principal moments of the problem.
 pub const MOMENTS: [f64; 3] = [3.5, 2.5, 2.0];
-/// Its body momentum at the start.
+/// Initial body momentum.
 pub const MOMENTUM: [f64; 3] = [-0.5, 0.0, 1.0];
-/// Its end.
+/// End time.
 pub const TIME: f64 = 100.0;
 
 /// Errors at which methods are compared.
 const LEVELS: [f64; 6] = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 5e-14];
 
-/// Measures the methods written in Rust, and prints all.
+/// Measures the methods written in Rust, and prints the tables.
 pub fn tables(peers: Result<(String, Vec<Measured>), String>) -> Vec<Measured> {
     let mut measured = timing::measure(methods::all());
     match peers {
@@ -39,8 +39,8 @@ pub fn tables(peers: Result<(String, Vec<Measured>), String>) -> Vec<Measured> {
     measured
 }
 
-/// How much longer others take than the generated stepper of order ten, with the cheapest step for a level and with the
-/// step 0.1; lanes against lanes.
+/// Time of other methods relative to the generated stepper of order ten, with the cheapest step size for an error level and with
+/// step size 0.1; lanes are compared with lanes.
 fn ratios(measured: &[Measured]) {
     let cheapest = |method: &str, level: f64| {
         let good = measured
@@ -82,7 +82,7 @@ fn ratios(measured: &[Measured]) {
     }
 }
 
-/// One row a method, one column a level of the error.
+/// One row per method, one column per error level.
 fn levels(measured: &[Measured]) {
     let heads: Vec<String> = LEVELS.iter().map(|level| format!("{level:.0e}")).collect();
     println!("| method | {} |", heads.join(" | "));

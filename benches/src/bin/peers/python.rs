@@ -1,5 +1,5 @@
-//! Peers that live in Python, measured by a script beside this crate in an environment of its own.
-//! Takes nothing; gives their points, or why there are none.
+//! Python packages, measured by a script of this crate in its own virtual environment. Returns their points, or the reason why they
+//! are missing.
 
 use super::precision::{MOMENTS, MOMENTUM, TIME};
 use super::timing::{Measured, error};
@@ -7,14 +7,14 @@ use clebsch::{DoubleDouble, Real};
 use clebsch_benches::python::told;
 use serde_json::Value;
 
-/// Versions in words, and what was measured.
+/// The versions as text, and the measurements.
 pub fn measured() -> Result<(String, Vec<Measured>), String> {
     let read = told("peers.py", "peers.json", &[])?;
     parsed(&read).ok_or_else(|| "peers.json is not what the script writes".to_owned())
 }
 
 fn parsed(read: &Value) -> Option<(String, Vec<Measured>)> {
-    // Another problem would be compared with this one's truth.
+    // The reference solution belongs to this problem only.
     let problem = [numbers(&read["moments"])?, numbers(&read["body_momentum"])?];
     if problem != [MOMENTS.to_vec(), MOMENTUM.to_vec()] || read["time"].as_f64()? != TIME {
         return None;

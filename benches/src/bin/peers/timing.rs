@@ -1,5 +1,5 @@
-//! Times of many short integrations, interleaved: every round makes a block of each, so that a drift of the machine falls
-//! on all alike. Takes runs; gives the error of each and the median of its times.
+//! Times many short integrations in interleaved rounds: every round runs a block of each, so that a drift of the machine affects
+//! all equally. Gives the error and the median time of each run.
 
 use super::precision::{MOMENTS, MOMENTUM};
 use clebsch::DoubleDouble;
@@ -8,39 +8,39 @@ use clebsch_benches::body::start_of;
 use clebsch_benches::truth;
 use std::hint::black_box;
 
-/// Rounds of the measurement.
+/// Number of rounds.
 const ROUNDS: usize = 41;
 
-/// Nanoseconds of a block, far above the resolution of the clock.
+/// Nanoseconds per block, far above the clock resolution.
 const BLOCK: f64 = 1e6;
 
-/// Where an integration ended: quaternion and body momentum.
+/// The end of an integration: quaternion and body momentum.
 pub type End = ([f64; 4], [f64; 3]);
 
-/// One integration of the problem, from its start to its end.
+/// One integration of the problem from start to end.
 pub struct Run {
     /// The method.
     pub method: String,
-    /// Its step or its tolerance.
+    /// Its step size or its tolerance.
     pub setting: String,
-    /// How many trajectories it makes side by side.
+    /// Number of trajectories in lanes.
     pub lanes: usize,
-    /// The time where it ends, which is the step's multiple nearest to that of the problem.
+    /// The end time, the multiple of the step size closest to that of the problem.
     pub time: DoubleDouble,
-    /// Makes it.
+    /// Runs it.
     pub make: Box<dyn Fn() -> End>,
 }
 
-/// What was measured.
+/// A measurement.
 #[derive(Clone, Debug)]
 pub struct Measured {
     /// The method.
     pub method: String,
-    /// Its step or its tolerance.
+    /// Its step size or its tolerance.
     pub setting: String,
-    /// The larger of the error of the momentum, relative, and of the attitude, in radians.
+    /// The larger of the relative momentum error and the attitude error in radians.
     pub error: f64,
-    /// Microseconds of the processor for one trajectory.
+    /// CPU microseconds per trajectory.
     pub micros: f64,
 }
 
@@ -49,7 +49,7 @@ pub fn error((attitude, momentum): &End, time: DoubleDouble) -> f64 {
     truth::at(&start_of(MOMENTS, MOMENTUM, 1.0), time).error(attitude, momentum)
 }
 
-/// Measures all of them.
+/// Measures all runs.
 pub fn measure(runs: Vec<Run>) -> Vec<Measured> {
     let time = |run: &Run, count: u32| {
         let begin = computed();

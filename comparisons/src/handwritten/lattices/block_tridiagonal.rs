@@ -1,14 +1,13 @@
-//! Block-tridiagonal systems of lattices, 3 x 3 blocks, open or closed to a ring: elimination from the first site on, without
-//! exchange of rows. Takes blocks site by site; gives solutions. A ring is solved by bordering: its last site is taken
-//! out, the others are an open line.
+//! Block-tridiagonal systems of chains and rings with 3 x 3 blocks: elimination from the first site, without pivoting. A ring is
+//! solved by bordering: its last site is separated, and the others form an open chain.
 
 use crate::handwritten::attitude::{
     Matrix, Vector, add_scaled, apply, inverse, product, scaled, scaled_matrix, sum,
 };
 
-/// The block of a site and a neighbour: a matrix, or a number for that multiple of the identity.
+/// The block between a site and a neighbour: a matrix, or a scalar multiple of the identity.
 pub trait Coupling: Copy {
-    /// None.
+    /// The zero block.
     const ZERO: Self;
     /// C v.
     fn applied(&self, v: &Vector) -> Vector;
@@ -16,7 +15,7 @@ pub trait Coupling: Copy {
     fn times(&self, m: &Matrix) -> Matrix;
     /// M C.
     fn after(&self, m: &Matrix) -> Matrix;
-    /// Written out.
+    /// As a matrix.
     fn matrix(&self) -> Matrix;
 }
 
@@ -71,13 +70,13 @@ impl Coupling for f64 {
 #[derive(Clone, Debug)]
 pub struct BlockTridiagonal<C> {
     ring: bool,
-    /// Blocks with the site before.
+    /// Blocks with the previous site.
     before: Vec<C>,
-    /// Blocks with the site after.
+    /// Blocks with the next site.
     after: Vec<C>,
-    /// Inverses of what is left at each site when those before are eliminated.
+    /// Inverse pivot of each site after elimination of the previous ones.
     pivots: Vec<Matrix>,
-    /// Of a ring: what the last site does to each other one.
+    /// For a ring: the coupling of the last site to each other site.
     border: Vec<Matrix>,
 }
 
@@ -88,7 +87,7 @@ fn less(u: &Vector, c: &impl Coupling, v: &Vector) -> Vector {
 }
 
 impl<C: Coupling> BlockTridiagonal<C> {
-    /// Room for so many sites, at least two of a ring.
+    /// Allocates for this number of sites, at least two for a ring.
     pub fn new(sites: usize, ring: bool) -> Self {
         BlockTridiagonal {
             ring,
@@ -99,14 +98,14 @@ impl<C: Coupling> BlockTridiagonal<C> {
         }
     }
 
-    /// The blocks of a site with its neighbours; those beyond an open end are not read.
+    /// Sets the blocks of a site with its neighbours; blocks beyond an open end are not read.
     #[inline(always)]
     pub fn couple(&mut self, site: usize, before: C, after: C) {
         self.before[site] = before;
         self.after[site] = after;
     }
 
-    /// Eliminates a site, whose block with itself this is: to be done in the order of sites.
+    /// Eliminates a site with diagonal block `own`; call in the order of the sites.
     #[inline(always)]
     pub fn eliminate(&mut self, site: usize, own: &Matrix, right: &mut [Vector]) {
         if self.ring && site + 1 == self.pivots.len() {
@@ -130,7 +129,7 @@ impl<C: Coupling> BlockTridiagonal<C> {
         right[site] = apply(&self.pivots[site], &own);
     }
 
-    /// What the last site of a ring and the others do to one another.
+    /// Eliminates the last site of a ring.
     fn close(&mut self, own: &Matrix) {
         let last = self.border.len();
         self.border.fill([[0.0; 3]; 3]);
@@ -158,7 +157,7 @@ impl<C: Coupling> BlockTridiagonal<C> {
         self.pivots[last] = inverse(&left);
     }
 
-    /// The solution, once all sites are eliminated.
+    /// The solution, after all sites are eliminated.
     #[inline(always)]
     pub fn substitute(&self, right: &mut [Vector]) {
         let open = self.pivots.len() - usize::from(self.ring);
@@ -178,7 +177,7 @@ impl<C: Coupling> BlockTridiagonal<C> {
         }
     }
 
-    /// The solution by the factors that are known.
+    /// The solution for another right-hand side, with the existing factors.
     #[inline(always)]
     pub fn solve(&self, right: &mut [Vector]) {
         let open = self.pivots.len() - usize::from(self.ring);
@@ -194,7 +193,7 @@ mod tests {
     use super::{BlockTridiagonal, Coupling};
     use crate::handwritten::attitude::{Matrix, Vector, add_scaled, apply};
 
-    /// Blocks whose own one is four or more times as large as those of neighbours: conditions below ten.
+    /// Diagonal blocks are at least four times as large as off-diagonal ones, with condition numbers below ten.
     fn solved<C: Coupling>(sites: usize, ring: bool, coupling: impl Fn(usize) -> C) -> f64 {
         let number = |k: usize| ((k * k + 3 * k) as f64 * 0.7).sin();
         let own: Vec<Matrix> = (0..sites)
@@ -243,7 +242,7 @@ mod tests {
                 let matrices = solved(sites, ring, |k| {
                     [0, 1, 2].map(|a| [0, 1, 2].map(|b| ((k + 5 * a + b) as f64).cos() * 0.6))
                 });
-                // Ten times some roundings of sums of nine terms of size eight.
+                // Ten times a few rounding errors of sums of nine terms of size eight.
                 assert!(numbers < 1e-14 && matrices < 1e-14, "{sites} {ring}");
             }
         }

@@ -1,6 +1,6 @@
-//! Bodies in a row or a ring whose kinetic energy joins neighbours: Newton's method for all Rodrigues vectors together, from
-//! rest, with a block-tridiagonal matrix. Takes J, the place d of the dragging mass, the strength eps of the coupling,
-//! attitudes, body momenta and h; gives attitudes and momenta at the nodes. Momenta are stored times h/2.
+//! Bodies in a chain or ring whose kinetic energy couples neighbours. Newton's method solves for all Rodrigues vectors together,
+//! from zero velocity, with a block-tridiagonal matrix. Takes J, the position d of the coupling mass, the coupling strength eps,
+//! attitudes, body momenta and h; gives attitudes and momenta at the nodes. Stores momenta times h/2.
 
 use super::block_tridiagonal::BlockTridiagonal;
 use crate::handwritten::Unsolvable;
@@ -10,25 +10,25 @@ use crate::handwritten::attitude::{
 };
 use crate::handwritten::principal_axes::PrincipalAxes;
 
-/// What the bodies are made of, all alike; in body axes.
+/// The data of the identical bodies, in body axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bodies {
     /// Poinsot (second moment) matrix J.
     pub poinsot: Matrix,
-    /// Place d of the mass that drags on that of the next body.
+    /// Position d of the mass that couples to the mass of the next body.
     pub arm: Vector,
     /// Strength of the coupling.
     pub eps: f64,
 }
 
-/// Most Newton matrices of one step.
+/// Maximum number of Newton matrices per step.
 const MOST_MATRICES: usize = 20;
 
-/// What is left of the largest Rodrigues vector when corrections end: a sixteenth of its rounding.
+/// Convergence threshold relative to the largest Rodrigues vector: a sixteenth of its rounding error.
 const LEFT: f64 = f64::EPSILON / 16.0;
 
-/// Rodrigues vector c with what the equations need of it: with alpha = 1 + |c|^2, G = (I c + c x I c)/alpha and
-/// w = (c x d + c x (c x d))/alpha = (Om - Id) d / 2.
+/// Rodrigues vector c and derived quantities: with alpha = 1 + |c|^2, G = (I c + c x I c)/alpha and w = (c x d + c x (c x d))/alpha
+/// = (Om - Id) d / 2.
 #[derive(Clone, Copy, Debug)]
 struct Turn {
     inverse: f64,
@@ -36,7 +36,7 @@ struct Turn {
     moved: Vector,
 }
 
-/// What all bodies have, in their principal axes.
+/// The common data of all bodies, in principal axes.
 #[derive(Clone, Copy, Debug)]
 struct Body {
     moments: Vector,
@@ -93,14 +93,14 @@ impl Body {
         scaled(-self.eps, &cross(&self.arm, &apply_transposed(r, v)))
     }
 
-    /// The same of the columns of a matrix.
+    /// `dragged` for each column of a matrix.
     #[inline(always)]
     fn dragging(&self, r: &Matrix, m: &Matrix) -> Matrix {
         crossed(&scaled(-self.eps, &self.arm), &transposed_product(r, m))
     }
 }
 
-/// Bodies on their way.
+/// The moving bodies.
 #[derive(Clone, Debug)]
 pub struct BodyChain {
     body: Body,
@@ -109,14 +109,14 @@ pub struct BodyChain {
     rotations: Vec<Matrix>,
     /// Spatial momenta.
     m: Vec<Vector>,
-    /// The same in body axes.
+    /// Body momenta.
     known: Vec<Vector>,
     /// Rodrigues vectors of the step.
     c: Vec<Vector>,
     turns: Vec<Turn>,
-    /// w in space, one place more on either side.
+    /// Spatial w, with one extra entry at either end.
     moved: Vec<Vector>,
-    /// Its derivative by the Rodrigues vector.
+    /// Derivative of spatial w with respect to the Rodrigues vector.
     moving: Vec<Matrix>,
     right: Vec<Vector>,
     system: BlockTridiagonal<Matrix>,
@@ -125,7 +125,7 @@ pub struct BodyChain {
 }
 
 impl BodyChain {
-    /// Starts a trajectory, of at least two bodies in a ring; momenta are those of node 0, each in the axes of its body.
+    /// Starts a trajectory with the body momenta of node 0. A ring needs at least two bodies.
     pub fn start(
         bodies: &Bodies,
         ring: bool,
@@ -168,7 +168,7 @@ impl BodyChain {
         })
     }
 
-    /// One step of the motion; unchanged when Newton's method does not converge.
+    /// Steps once; the state is unchanged if Newton's method does not converge.
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         for (u, (r, m)) in self
             .known
@@ -185,7 +185,7 @@ impl BodyChain {
             let taken = cross(&self.moved[i + 1], &around);
             self.m[i] = add_scaled(&self.m[i], -2.0 * self.body.eps, &taken);
             let ([x, y, z], q) = (self.c[i], self.q[i]);
-            // |q|^2 = 1 up to rounding; the factor takes that out again, to first order.
+            // Removes the rounding error of |q|^2 = 1, to first order.
             let correction = 1.5 - 0.5 * q.norm_squared();
             let turned = q.times(&Quaternion([1.0, x, y, z]));
             self.q[i] = turned.scaled(correction * self.turns[i].inverse.sqrt());
@@ -194,7 +194,7 @@ impl BodyChain {
         Ok(())
     }
 
-    /// Newton's method; each matrix serves for two corrections, which together are of third order.
+    /// Newton's method. Each matrix serves two corrections, which together converge cubically.
     #[inline(always)]
     fn solve(&mut self) -> Result<(), Unsolvable> {
         let mut bend = 0.0_f64;
@@ -204,7 +204,7 @@ impl BodyChain {
             if !first.is_finite() {
                 return Err(Unsolvable);
             }
-            // A correction d leaves bend d^2, another one e by the same matrix 2 bend d e.
+            // A correction d leaves an error of bend d^2; a second correction e with the same matrix leaves 2 bend d e.
             if bend > 0.0 && bend * first * first <= LEFT * size || size == 0.0 {
                 return Ok(());
             }
@@ -219,7 +219,7 @@ impl BodyChain {
         Err(Unsolvable)
     }
 
-    /// What the Rodrigues vectors make.
+    /// Computes the quantities that depend on the Rodrigues vectors.
     #[inline(always)]
     fn turn(&mut self) {
         let n = self.c.len();
@@ -248,7 +248,7 @@ impl BodyChain {
         }
     }
 
-    /// Residuals, and the solution by the matrix that belongs to them.
+    /// Computes the residuals and the solution of the linearised system.
     #[inline(always)]
     fn factor(&mut self) {
         let n = self.c.len();
@@ -269,11 +269,11 @@ impl BodyChain {
         self.system.substitute(&mut self.right);
     }
 
-    /// Corrects the Rodrigues vectors: the largest correction, and the largest of them.
+    /// Corrects the Rodrigues vectors; returns the largest correction and the largest vector.
     #[inline(always)]
     fn correct(&mut self) -> (f64, f64) {
         let (mut change, mut size) = (0.0_f64, 0.0_f64);
-        // A number that is none would be passed over by `max`.
+        // `max` would ignore a NaN.
         let mut lost = 0.0;
         for (c, d) in self.c.iter_mut().zip(&self.right) {
             *c = add_scaled(c, 1.0, d);
@@ -286,12 +286,12 @@ impl BodyChain {
         (change + lost, size)
     }
 
-    /// Attitudes body -> space at the present node.
+    /// Attitudes body -> space at the current node.
     pub fn attitudes(&self) -> impl ExactSizeIterator<Item = Quaternion> {
         self.q.iter().map(|q| self.axes.leave_attitude(q))
     }
 
-    /// Spatial momenta at the present node.
+    /// Spatial momenta at the current node.
     pub fn spatial_momenta(&self) -> impl ExactSizeIterator<Item = Vector> {
         self.m.iter().map(|m| m.map(|x| 2.0 * x / self.h))
     }

@@ -1,22 +1,21 @@
-//! A list for each of the numbers that a site has, so that one instruction takes the same number of several sites.
-//! Takes and gives numbers of one site, or of some sites side by side.
+//! One list per component of a site, so that one instruction processes the same component of several sites.
 
-/// Sites that are computed together: two registers of the widest instruction set.
+/// Sites processed together: two registers of the widest instruction set.
 pub const LANES: usize = 16;
 
 /// `K` lists of the same length.
 #[derive(Clone, Debug)]
 pub struct Columns<const K: usize> {
     data: Vec<f64>,
-    /// From where a list begins to where the next one does.
+    /// Offset between the beginnings of two lists.
     stride: usize,
 }
 
 impl<const K: usize> Columns<K> {
-    /// Lists of so many zeros.
+    /// Lists of `len` zeros.
     pub fn zeros(len: usize) -> Self {
-        // Lists that begin at the same place of their pages of memory are taken for one another by a processor that
-        // compares a load with earlier stores by that place.
+        // If lists start at the same offset within memory pages, a processor that compares loads with earlier stores by that offset
+        // confuses them.
         let stride = len.next_multiple_of(512) + 40;
         Self {
             data: vec![0.0; K * stride],
@@ -24,19 +23,19 @@ impl<const K: usize> Columns<K> {
         }
     }
 
-    /// The numbers of a site.
+    /// The components of a site.
     #[inline(always)]
     pub fn get(&self, site: usize) -> [f64; K] {
         lane(&self.read::<1>(site), 0)
     }
 
-    /// Other numbers of a site.
+    /// Sets the components of a site.
     #[inline(always)]
     pub fn set(&mut self, site: usize, numbers: [f64; K]) {
         self.write(site, &numbers.map(|number| [number]));
     }
 
-    /// The numbers of `L` sites from one on.
+    /// The components of `L` consecutive sites.
     #[inline(always)]
     pub fn read<const L: usize>(&self, first: usize) -> [[f64; L]; K] {
         let mut rows = [[0.0; L]; K];
@@ -46,7 +45,7 @@ impl<const K: usize> Columns<K> {
         rows
     }
 
-    /// Other numbers of `L` sites from one on.
+    /// Sets the components of `L` consecutive sites.
     #[inline(always)]
     pub fn write<const L: usize>(&mut self, first: usize, rows: &[[f64; L]; K]) {
         for (k, row) in rows.iter().enumerate() {
@@ -55,7 +54,7 @@ impl<const K: usize> Columns<K> {
     }
 }
 
-/// The numbers of one of the sites that are side by side.
+/// The components of one lane.
 #[inline(always)]
 pub fn lane<const K: usize, const L: usize>(rows: &[[f64; L]; K], at: usize) -> [f64; K] {
     let mut numbers = [0.0; K];
@@ -65,7 +64,7 @@ pub fn lane<const K: usize, const L: usize>(rows: &[[f64; L]; K], at: usize) -> 
     numbers
 }
 
-/// Puts the numbers of one of the sites that are side by side.
+/// Sets the components of one lane.
 #[inline(always)]
 pub fn put_lane<const K: usize, const L: usize>(
     rows: &mut [[f64; L]; K],
@@ -77,7 +76,7 @@ pub fn put_lane<const K: usize, const L: usize>(
     }
 }
 
-/// Does something with all sites, several together and then those that are left over.
+/// Applies a pass to all sites: several at a time, then the remaining ones.
 macro_rules! of_sites {
     ($count:expr, $line:ident.$pass:ident) => {
         let whole = $count / $crate::handwritten::lattices::columns::LANES

@@ -1,5 +1,5 @@
-//! Heavy tops in a row or a ring, each turned towards the attitude of its neighbours; potentials split over both ends of a step.
-//! Takes what tops and bonds are made of, attitudes and body momenta at a node, and the step; gives attitudes and momenta.
+//! Heavy tops in a chain or ring with elastic torques between the attitudes of neighbours; potentials are split over both ends of a
+//! step. Takes the data of tops and bonds, attitudes, body momenta and the step size; gives attitudes and momenta.
 
 use super::columns::{Columns, lane, of_sites, put_lane};
 use super::instruction_set::{Steps, widest};
@@ -9,16 +9,16 @@ use crate::handwritten::attitude::{
     Matrix, Quaternion, Vector, add_scaled, apply, cross, scaled, scaled_matrix,
 };
 
-/// What the row is made of.
+/// The data of the chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
-    /// From top to top.
+    /// Distance between tops.
     pub spacing: f64,
-    /// Second moments of mass of a unit length, body axes.
+    /// Second moments of mass per unit length, body axes.
     pub poinsot: Matrix,
-    /// Stiffness against a difference of attitude, body axes.
+    /// Stiffness of the elastic torque, body axes.
     pub stiffness: Matrix,
-    /// Weight of a unit length times the vector from the support to the centre of mass, body axes.
+    /// Weight per unit length times the vector from the support to the centre of mass, body axes.
     pub weight: Vector,
     /// Upward vertical, space axes.
     pub up: Vector,
@@ -26,29 +26,29 @@ pub struct Row {
     pub ring: bool,
 }
 
-/// A row on its way.
+/// A moving chain of tops.
 #[derive(Clone, Debug)]
 pub struct CoupledTops {
     bodies: Bodies,
     count: usize,
     ring: bool,
-    /// Step times spacing times weight, in the axes whose attitudes are kept.
+    /// Step size times spacing times weight, in the stored axes.
     weight: Vector,
     up: Vector,
-    /// Step over spacing times stiffness, in the same axes.
+    /// Step size over spacing times stiffness, in the stored axes.
     stiffness: Matrix,
-    /// Attitudes; behind them that of the first top of a ring.
+    /// Attitudes, followed by the attitude of the first top of a ring.
     q: Columns<4>,
-    /// Momenta of the present node, in space.
+    /// Spatial momenta of the current node.
     m: Columns<3>,
-    /// Momenta of the edges that begin here, in space.
+    /// Spatial momenta of the outgoing edges.
     edges: Columns<3>,
-    /// Impulses of the bonds on the top before them, in space: before the first top, between tops, behind the last one.
+    /// Spatial impulses of the bonds on the preceding top: before the first top, between tops, after the last.
     bonds: Columns<3>,
 }
 
 impl CoupledTops {
-    /// Starts a trajectory; momenta are those of node 0 in body axes.
+    /// Starts a trajectory with the body momenta of node 0.
     pub fn start(
         row: &Row,
         attitudes: &[Quaternion],
@@ -81,12 +81,12 @@ impl CoupledTops {
         Ok(tops)
     }
 
-    /// One step of the motion; attitudes are of no meaning when one of the equations has no solution.
+    /// Steps once; if one of the equations has no solution, attitudes are meaningless.
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         widest(self)
     }
 
-    /// Impulses of all bonds at the present attitudes.
+    /// Computes the impulses of all bonds at the current attitudes.
     #[inline(always)]
     fn bond(&mut self) {
         let count = match self.ring {
@@ -114,7 +114,7 @@ impl CoupledTops {
         self.bonds.write(first + 1, &all);
     }
 
-    /// What acts at a node on the top between two bonds: half of it before the node, half after.
+    /// The impulse at a node on the top between two bonds: half of it before the node, half after.
     #[inline(always)]
     fn kicked(&self, q: [f64; 4], before: &Vector, after: &Vector) -> Vector {
         let arm = apply(&Quaternion(q).matrix(), &self.weight);
@@ -144,12 +144,12 @@ impl CoupledTops {
         self.edges.write(first, &edges);
     }
 
-    /// Attitudes body -> space at the present node.
+    /// Attitudes body -> space at the current node.
     pub fn attitudes(&self) -> impl Iterator<Item = Quaternion> {
         (0..self.count).map(|i| self.bodies.leave_attitude(&Quaternion(self.q.get(i))))
     }
 
-    /// Spatial momenta at the present node.
+    /// Spatial momenta at the current node.
     pub fn spatial_momenta(&self) -> impl Iterator<Item = Vector> {
         (0..self.count).map(|i| self.m.get(i))
     }

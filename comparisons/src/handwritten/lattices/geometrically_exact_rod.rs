@@ -1,6 +1,6 @@
-//! A geometrically exact elastic rod: places of its centreline at nodes, attitudes of its sections at segments; potentials
-//! split over both ends of a step. Takes what the rod is made of, places, attitudes and momenta at a node, and the step;
-//! gives places, attitudes and momenta at the nodes.
+//! A geometrically exact elastic rod: positions of the centreline at nodes, attitudes of sections at segments; potentials are split
+//! over both ends of a step. Takes the data of the rod, positions, attitudes, momenta and the step size; gives positions, attitudes
+//! and momenta at the nodes.
 
 use super::columns::{Columns, lane, of_sites, put_lane};
 use super::instruction_set::{Steps, widest};
@@ -10,64 +10,64 @@ use crate::handwritten::attitude::{
     Matrix, Quaternion, Vector, add_scaled, apply, apply_transposed, cross, scaled, scaled_matrix,
 };
 
-/// What the rod is made of.
+/// The data of the rod.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rod {
     /// Length of a segment.
     pub spacing: f64,
     /// Mass of each node.
     pub masses: Vec<f64>,
-    /// Second moments of mass of a unit length, of each segment in the axes of its section.
+    /// Second moments of mass per unit length for each segment, section axes.
     pub poinsots: Vec<Matrix>,
-    /// Stiffness against shear and extension, axes of the section.
+    /// Stiffness against shear and extension, section axes.
     pub shear: Matrix,
     /// Stiffness against bending and twist, as second moments.
     pub bending: Matrix,
     /// Acceleration of gravity, space axes.
     pub gravity: Vector,
-    /// How it ends.
+    /// Its ends.
     pub ends: Ends,
 }
 
-/// How a rod ends.
+/// The ends of a rod.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ends {
-    /// Two ends.
+    /// An open rod.
     Open {
-        /// The first.
+        /// The first end.
         first: End,
-        /// The last.
+        /// The last end.
         last: End,
     },
-    /// A ring, places growing by this once around.
+    /// A ring; positions increase by this once around.
     Ring(Vector),
 }
 
 /// One end of a rod.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End {
-    /// Nothing acts on it but this force, space axes.
+    /// Free except for this force, spatial axes.
     Loaded(Vector),
-    /// Its node is held where it is.
+    /// The node is fixed.
     Pinned,
-    /// Its node is held, its section bent against a wall.
+    /// The node is fixed, and the section is coupled to a wall.
     Clamped {
         /// Attitude of the wall.
         wall: Quaternion,
-        /// Stiffness of the bond to it by that between sections: two, as it is half as long.
+        /// Stiffness of the bond to the wall relative to a bond between sections: two, because it is half as long.
         bonds: f64,
     },
 }
 
 impl End {
-    /// An end on which nothing acts.
+    /// A free end.
     pub const FREE: End = End::Loaded([0.0; 3]);
 }
 
-/// An end with what does not change from step to step.
+/// Precomputed data of an end.
 #[derive(Clone, Copy, Debug)]
 struct Held {
-    /// The node whose momentum is none, if it is held.
+    /// The fixed node, if any; its momentum is zero.
     node: Option<usize>,
     /// Impulse of the load.
     load: Vector,
@@ -75,45 +75,45 @@ struct Held {
     bonds: f64,
 }
 
-/// A rod on its way.
+/// A moving rod.
 #[derive(Clone, Debug)]
 pub struct ElasticRod {
     bodies: Bodies,
     nodes: usize,
     segments: usize,
     ends: [Held; 2],
-    /// By what places grow around a ring.
+    /// The increase of positions around a ring.
     ring: Option<Vector>,
     per_length: f64,
-    /// Step times stiffness, in the axes whose attitudes are kept.
+    /// Step size times stiffness, in the stored axes.
     shear: Matrix,
-    /// The third axis of a section, in the same axes.
+    /// The third axis of a section, in the stored axes.
     along: Vector,
-    /// Step over spacing times second moments, in the same axes.
+    /// Step size over spacing times second moments, in the stored axes.
     bending: Matrix,
     gravity: Vector,
-    /// Step times mass, and step over mass.
+    /// Step size times mass, and step size over mass.
     masses: Columns<2>,
-    /// Places; behind them that of the first node once around.
+    /// Positions, followed by the first node of a ring once around.
     x: Columns<3>,
-    /// Momenta of the nodes, and those of their edges.
+    /// Momenta of the nodes, and of their outgoing edges.
     p: Columns<3>,
     edges: Columns<3>,
-    /// Attitudes; behind them that of the first section of a ring.
+    /// Attitudes, followed by the first section of a ring.
     q: Columns<4>,
-    /// Momenta of the sections in space, and those of their edges.
+    /// Spatial momenta of the sections, and of their outgoing edges.
     m: Columns<3>,
     section_edges: Columns<3>,
-    /// Impulses of the segments on the node before them: before the first node, of the segments, behind the last node.
+    /// Impulses of the segments on the preceding node: before the first node, for each segment, after the last node.
     forces: Columns<3>,
-    /// What they do to the section.
+    /// Torque impulses of the segments on their sections.
     torques: Columns<3>,
-    /// Impulses of the bonds on the section before them: before the first section, between, behind the last one.
+    /// Impulses of the bonds on the preceding section: before the first section, between sections, after the last.
     bonds: Columns<3>,
 }
 
 impl ElasticRod {
-    /// Starts a trajectory; momenta of sections are those of node 0 in their own axes. Those of held nodes stay zero.
+    /// Starts a trajectory with the section momenta of node 0 in section axes. Momenta of fixed nodes stay zero.
     pub fn start(
         rod: &Rod,
         places: &[Vector],
@@ -194,12 +194,12 @@ impl ElasticRod {
         Ok(rod)
     }
 
-    /// One step of the motion; attitudes are of no meaning when one of the equations has no solution.
+    /// Steps once; if one of the equations has no solution, attitudes are meaningless.
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         widest(self)
     }
 
-    /// Impulses of all segments and bonds at the present places and attitudes.
+    /// Computes the impulses of all segments and bonds in the current configuration.
     #[inline(always)]
     fn pull(&mut self) {
         if let Some(growth) = self.ring {
@@ -246,20 +246,20 @@ impl ElasticRod {
         self.bonds.write(first + 1, &bonds);
     }
 
-    /// What acts on a node at a node in time: half of it before, half after.
+    /// The impulse on a site at a time node: half of it before the node, half after.
     fn kick_of_node(&self, i: usize) -> Vector {
         let [mass, _] = self.masses.get(i);
         let pulled = add_scaled(&self.forces.get(i + 1), -1.0, &self.forces.get(i));
         add_scaled(&pulled, mass, &self.gravity)
     }
 
-    /// The same of a section, in space.
+    /// The spatial impulse on a section.
     fn kick_of_section(&self, i: usize) -> Vector {
         let bent = add_scaled(&self.bonds.get(i + 1), -1.0, &self.bonds.get(i));
         add_scaled(&self.torques.get(i), 1.0, &bent)
     }
 
-    /// Held nodes have no momentum.
+    /// Sets the momenta of fixed nodes to zero.
     #[inline(always)]
     fn hold(&mut self) {
         for node in self.ends.iter().filter_map(|end| end.node) {
@@ -315,22 +315,22 @@ impl ElasticRod {
         self.section_edges.write(first, &edges);
     }
 
-    /// Places of the nodes.
+    /// Positions of the nodes.
     pub fn places(&self) -> impl Iterator<Item = Vector> {
         (0..self.nodes).map(|i| self.x.get(i))
     }
 
-    /// Momenta of the nodes at the present one in time; none of those that are held.
+    /// Momenta of the nodes at the current time; zero for fixed nodes.
     pub fn momenta(&self) -> impl Iterator<Item = Vector> {
         (0..self.nodes).map(|i| self.p.get(i))
     }
 
-    /// Attitudes section -> space at the present node.
+    /// Attitudes section -> space at the current time node.
     pub fn attitudes(&self) -> impl Iterator<Item = Quaternion> {
         (0..self.segments).map(|i| self.bodies.leave_attitude(&Quaternion(self.q.get(i))))
     }
 
-    /// Spatial momenta of the sections at the present node.
+    /// Spatial momenta of the sections at the current time node.
     pub fn spatial_momenta(&self) -> impl Iterator<Item = Vector> {
         (0..self.segments).map(|i| self.m.get(i))
     }

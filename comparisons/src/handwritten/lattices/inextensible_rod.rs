@@ -1,7 +1,7 @@
-//! Kirchhoff's rod, inextensible and without shear: nodes of the centreline, attitudes of segments, and a force in each
-//! segment that keeps it along the third axis of its section. Newton's method for the forces from none, with a
-//! block-tridiagonal matrix; momenta at the nodes are projected. Takes data of the rod, places, attitudes, momenta and h;
-//! gives them at the nodes, with the forces of the last step.
+//! Kirchhoff's rod, inextensible and unshearable: nodes of the centreline, attitudes of segments, and a force in each segment that
+//! keeps it along the third axis of its section. Newton's method solves for the forces, starting from zero, with a
+//! block-tridiagonal matrix; the momenta at the nodes are projected. Takes the data of the rod, positions, attitudes, momenta and
+//! h; gives these at the nodes, and the forces of the last step.
 
 use super::block_tridiagonal::BlockTridiagonal;
 use super::section::{Section, Turn, apart, axial_of_product};
@@ -10,47 +10,47 @@ use crate::handwritten::attitude::{
     Matrix, Quaternion, Vector, add_scaled, apply, largest, scaled, transposed, transposed_product,
 };
 
-/// How the rod begins.
+/// The first end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum First {
-    /// Nothing holds it.
+    /// Free.
     Free,
-    /// Its first node stays where it is.
+    /// The first node is fixed.
     Pinned,
-    /// So does it, and half a bond ties the first section to this frame.
+    /// The first node is fixed, and half a bond couples the first section to this frame.
     Clamped(Matrix),
 }
 
-/// How it ends.
+/// The last end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Last {
-    /// Nothing holds it.
+    /// Free.
     Free,
-    /// Its last node stays where it is.
+    /// The last node is fixed.
     Pinned,
-    /// This force acts there, space axes.
+    /// This force acts on the last node, spatial axes.
     Load(Vector),
 }
 
-/// Both ends, or none.
+/// The ends of a rod.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ends {
-    /// A first node and a last one.
+    /// An open rod.
     Open(First, Last),
-    /// Closed: the node after the last is the first, further on by this; at least two segments.
+    /// A ring of at least two segments: the last node is followed by the first, displaced by this vector.
     Ring(Vector),
 }
 
-/// What a rod is made of: masses of nodes, J of segments by their length, in section axes.
+/// The data of a rod: masses of nodes, and J of segments per unit length in section axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rod {
     /// Length of a segment.
     pub spacing: f64,
     /// Masses of the nodes.
     pub masses: Vec<f64>,
-    /// Poinsot (second moment) matrices of a unit length, one for all segments or one for each.
+    /// Poinsot (second moment) matrices per unit length, one for all segments or one for each.
     pub poinsots: Vec<Matrix>,
-    /// B, with tr(B) Id - B the stiffness against bending and twist.
+    /// B, where tr(B) Id - B is the stiffness against bending and twist.
     pub stiffness: Matrix,
     /// Acceleration of gravity, space axes.
     pub gravity: Vector,
@@ -58,40 +58,40 @@ pub struct Rod {
     pub ends: Ends,
 }
 
-/// Most trials of one step.
+/// Maximum number of trials per step.
 const MOST_TRIALS: usize = 40;
 
-/// A segment is along its axis where it is so by this many roundings of its terms.
+/// Constraint tolerance of a segment, in rounding errors of its terms.
 const ROUNDINGS: f64 = 32.0;
 
-/// By so many where trials do not come nearer: attitudes and places have roundings of their own.
+/// Tolerance if trials no longer improve, because attitudes and positions have rounding errors of their own.
 const STALLED: f64 = 4096.0;
 
-/// A rod on its way. Lists of nodes end with a place for the first one of a ring, again.
+/// A moving rod. Lists of nodes end with a copy of the first node of a ring.
 #[derive(Clone, Debug)]
 pub struct InextensibleRod {
     spacing: f64,
     stiffness: Matrix,
     ends: Ends,
     sections: Vec<Section>,
-    /// h/m of nodes, zero where one is held.
+    /// h/m for each node; zero if the node is fixed.
     answers: Vec<f64>,
-    /// h times the force of gravity and loads on nodes.
+    /// h times the gravity and load on each node.
     forces: Vec<Vector>,
     places: Vec<Vector>,
-    /// Momenta of nodes, and those of the edges that begin there.
+    /// Momenta of nodes, and of their outgoing edges.
     p: Vec<Vector>,
     leaving: Vec<Vector>,
     q: Vec<Quaternion>,
     rotations: Vec<Matrix>,
-    /// Momenta of segments, section axes, and those of the edges that begin there.
+    /// Momenta of segments in section axes, and of their outgoing edges.
     mu: Vec<Vector>,
     turning: Vec<Vector>,
-    /// Impulses along segments, h times the force, one place more on either side.
+    /// Impulses along segments, h times the force, with one extra entry at either end.
     impulses: Vec<Vector>,
-    /// Forces of the last step, as its projection has changed them.
+    /// Forces of the last step, including the projection.
     tensions: Vec<Vector>,
-    /// Of a trial: places of nodes, body momenta, turns.
+    /// Positions, body momenta and rotations of a trial.
     trial: Vec<Vector>,
     kicked: Vec<Vector>,
     turns: Vec<Turn>,
@@ -102,7 +102,7 @@ pub struct InextensibleRod {
     h: f64,
 }
 
-/// Where the parts of a section's momentum that a projection takes come from: A u = s (Lam^T u) x E3.
+/// The map from a segment impulse to the section momentum: A u = s (Lam^T u) x E3.
 #[inline(always)]
 fn across(r: &Matrix, spacing: f64, u: &Vector) -> [f64; 2] {
     let along = |k: usize| r[0][k] * u[0] + r[1][k] * u[1] + r[2][k] * u[2];
@@ -110,7 +110,7 @@ fn across(r: &Matrix, spacing: f64, u: &Vector) -> [f64; 2] {
 }
 
 impl InextensibleRod {
-    /// Starts a trajectory; momenta are those of node 0, of segments in section axes, and are projected.
+    /// Starts a trajectory with the momenta of node 0, in section axes for segments. The momenta are projected.
     pub fn start(
         rod: &Rod,
         places: &[Vector],
@@ -187,13 +187,13 @@ impl InextensibleRod {
         }
     }
 
-    /// One step of the motion; unchanged when no forces are found.
+    /// Steps once; the state is unchanged if no forces are found.
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         self.find()?;
         let n = self.q.len();
         for i in 0..n {
             let (turn, r) = (&self.turns[i], &mut self.rotations[i]);
-            // The momentum stays what it is in space.
+            // The spatial momentum is constant along the edge.
             self.mu[i] = turn.seen_from_the_end(&self.kicked[i]);
             self.q[i] = turn.after(&self.q[i]);
             *r = self.q[i].matrix();
@@ -228,7 +228,7 @@ impl InextensibleRod {
         &self.sections[i.min(self.sections.len() - 1)]
     }
 
-    /// The first node of a ring, again, behind the last.
+    /// Copies the first node of a ring behind the last.
     fn around(&mut self) {
         let n = self.q.len();
         if let Ends::Ring(across) = self.ends {
@@ -237,7 +237,7 @@ impl InextensibleRod {
         }
     }
 
-    /// The impulses at the end of a list that is a ring, again, on either side.
+    /// Copies the impulses at the ends of a ring's list to the other side.
     fn impulses_around(&mut self) {
         let n = self.q.len();
         if let Ends::Ring(_) = self.ends {
@@ -245,7 +245,7 @@ impl InextensibleRod {
         }
     }
 
-    /// Impulses with which segments are along their axes at the end of the step.
+    /// Finds the impulses for which segments are along their section axes at the end of the step.
     #[inline(always)]
     fn find(&mut self) -> Result<(), Unsolvable> {
         self.impulses.fill([0.0; 3]);
@@ -258,7 +258,7 @@ impl InextensibleRod {
             if !off.is_finite() {
                 return Err(Unsolvable);
             }
-            // The matrix of the trial before leaves as small a part of what is off as it did then.
+            // The previous matrix reduces the residual by the same factor as before, which is enough.
             if trial > 0 && off * (off / before) <= ROUNDINGS {
                 self.system.solve(&mut self.right);
             } else {
@@ -273,7 +273,7 @@ impl InextensibleRod {
         Err(Unsolvable)
     }
 
-    /// Where the impulses lead: how far segments are off their axes, in roundings.
+    /// Evaluates a trial: returns the largest deviation of a segment from its axis, in rounding errors.
     #[inline(always)]
     fn reach(&mut self) -> Result<f64, Unsolvable> {
         let n = self.q.len();
@@ -303,7 +303,7 @@ impl InextensibleRod {
         Ok(worst + lost)
     }
 
-    /// Newton's matrix at a trial, factored, and the correction.
+    /// Factors Newton's matrix at a trial and computes the correction.
     #[inline(always)]
     fn factor(&mut self) {
         for i in 0..self.q.len() {
@@ -342,7 +342,7 @@ impl InextensibleRod {
         }
     }
 
-    /// Takes from the momenta of the node what would move segments off their axes.
+    /// Removes the momentum components that would move segments off their axes.
     #[inline(always)]
     fn project(&mut self) {
         let n = self.q.len();
@@ -375,7 +375,7 @@ impl InextensibleRod {
         }
     }
 
-    /// Momenta of the edges that begin at the node; what holds a node takes its momentum.
+    /// Momenta of the outgoing edges; a fixed node has zero momentum.
     #[inline(always)]
     fn leave(&mut self) {
         let last = self.p.len() - 1;
@@ -392,12 +392,12 @@ impl InextensibleRod {
         }
     }
 
-    /// How many nodes there are.
+    /// The number of nodes.
     fn nodes(&self) -> usize {
         self.places.len() - usize::from(matches!(self.ends, Ends::Ring(_)))
     }
 
-    /// Places at the present node in time.
+    /// Positions at the current time node.
     pub fn places(&self) -> &[Vector] {
         &self.places[..self.nodes()]
     }
@@ -418,7 +418,7 @@ impl InextensibleRod {
         all.map(|(r, mu)| apply(r, mu))
     }
 
-    /// Forces in segments, space axes, of the step that ended; zero at the start.
+    /// Forces in segments during the last step, spatial axes; zero at the start.
     pub fn tensions(&self) -> &[Vector] {
         &self.tensions
     }

@@ -1,15 +1,15 @@
-//! Runs a step on the widest instruction set of the processor with the feature `simd`, otherwise on that of the build.
-//! Takes what steps; gives what the step gives. No number depends on it: nothing is contracted.
+//! Runs a step on the widest instruction set of the processor with the feature `simd`, otherwise on that of the build. The choice
+//! does not change any result, because no operations are fused.
 
 use crate::handwritten::Unsolvable;
 
-/// What has a step. Its functions are to be marked `#[inline(always)]`, as all that they call.
+/// A stepper. Mark its functions, and all that they call, `#[inline(always)]`.
 pub trait Steps {
-    /// One step.
+    /// Steps once.
     fn stepped(&mut self) -> Result<(), Unsolvable>;
 }
 
-/// The step, on the widest instruction set.
+/// Steps on the widest instruction set.
 #[cfg(feature = "simd")]
 pub fn widest(line: &mut impl Steps) -> Result<(), Unsolvable> {
     struct Dispatched<'a, S>(&'a mut S);
@@ -24,7 +24,7 @@ pub fn widest(line: &mut impl Steps) -> Result<(), Unsolvable> {
     pulp::Arch::new().dispatch(Dispatched(line))
 }
 
-/// The step, on the instruction set of the build.
+/// Steps on the instruction set of the build.
 #[cfg(not(feature = "simd"))]
 pub fn widest(line: &mut impl Steps) -> Result<(), Unsolvable> {
     line.stepped()

@@ -1,5 +1,5 @@
-//! Lattices stepped by hand: loops over sites, a list for each number of a site or an array for each site, nothing allocated
-//! in a step. Take data of the sites and of the ends; give places, attitudes and momenta at the nodes.
+//! Hand-written chain steppers: loops over sites, with one list per component of a site or one array per site, and no allocation in
+//! a step. They take data of the sites and the ends, and give positions, attitudes and momenta at the nodes.
 
 pub mod block_tridiagonal;
 pub mod body_chain;

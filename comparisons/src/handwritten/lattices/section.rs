@@ -1,5 +1,5 @@
-//! One section of Kirchhoff's rod: how it turns over a step, and how the end of its third axis answers to a force on the
-//! segment. Takes J of a unit length, the length s of the segment and h; gives turns and answers, 3 x 3.
+//! One section of Kirchhoff's rod: its rotation over a step, and the response of the end of its third axis to a force on the
+//! segment. Takes J per unit length, the length s of the segment and h; gives rotations and 3 x 3 response matrices.
 
 use crate::handwritten::Unsolvable;
 use crate::handwritten::attitude::{
@@ -9,16 +9,16 @@ use crate::handwritten::attitude::{
 use crate::handwritten::principal_axes::PrincipalAxes;
 use crate::handwritten::principal_root::{self, Quartic};
 
-/// A section, with what its data make once and for all.
+/// A section with precomputed data.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Section {
     poinsot: Matrix,
     moments: Vector,
     gyration: Vector,
     quartic: Quartic,
-    /// Principal axes in section axes; none where they are the same.
+    /// Principal axes in section axes; `None` if they coincide.
     frame: Option<Matrix>,
-    /// h/(2 s), by which the momentum is that of Moser's and Veselov's equation.
+    /// h/(2 s), which scales the momentum for the Moser-Veselov equation.
     scale: f64,
     spacing: f64,
     h: f64,
@@ -26,11 +26,11 @@ pub(super) struct Section {
     rates: [Vector; 2],
 }
 
-/// A rotation over a step, as a quaternion of any length, and where it takes the third axis.
+/// The rotation of a step, as an unnormalised quaternion, and the image of the third axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn {
     quaternion: Quaternion,
-    /// 2 over the square of its length.
+    /// 2 over the squared length of the quaternion.
     twice: f64,
     /// Om E3.
     pub axis: Vector,
@@ -55,7 +55,7 @@ pub(super) fn axial_of_product(a: &Matrix, b: &Matrix) -> Vector {
 }
 
 impl Turn {
-    /// None.
+    /// The identity rotation.
     pub const NONE: Turn = Turn {
         quaternion: Quaternion::IDENTITY,
         twice: 2.0,
@@ -81,10 +81,10 @@ impl Turn {
         add_scaled(v, self.twice, &apply_transposed(&e, v))
     }
 
-    /// The attitude that a section has after it.
+    /// The attitude of a section after this rotation.
     #[inline(always)]
     pub fn after(&self, q: &Quaternion) -> Quaternion {
-        // |q|^2 = 1 up to rounding; the factor takes that out again, to first order.
+        // Removes the rounding error of |q|^2 = 1, to first order.
         let correction = 1.5 - 0.5 * q.norm_squared();
         let turned = q.times(&self.quaternion);
         turned.scaled(correction * (0.5 * self.twice).sqrt())
@@ -113,7 +113,7 @@ impl Section {
         })
     }
 
-    /// The principal rotation of this momentum.
+    /// The principal rotation for this momentum.
     #[inline(always)]
     pub fn turn(&self, momentum: &Vector) -> Result<Turn, Unsolvable> {
         let mut u = scaled(self.scale, momentum);
@@ -143,8 +143,8 @@ impl Section {
         })
     }
 
-    /// How minus s times the third axis at the end of the step answers to an impulse y that gives the momentum
-    /// s (Lam^T y) x E3 at its beginning: -h s Lam hat(Om E3) (tr(S) Id - S)^-1 hat(E3) Lam^T with S = Om J.
+    /// The response of minus s times the third axis at the end of the step to an impulse y, which gives the momentum s (Lam^T y) x
+    /// E3 at its start: -h s Lam hat(Om E3) (tr(S) Id - S)^-1 hat(E3) Lam^T with S = Om J.
     #[inline(always)]
     pub fn answer(&self, turn: &Turn, r: &Matrix) -> Matrix {
         let s = product(&turn.matrix(), &self.poinsot);
@@ -160,7 +160,7 @@ impl Section {
         add_outer(&add_outer(&none, &second, &column(0)), &first, &column(1))
     }
 
-    /// The same in the limit of small steps.
+    /// The response in the limit of small steps.
     #[inline(always)]
     pub fn answer_at_rest(&self, r: &Matrix) -> Matrix {
         let [[a, b, _], [c, d, _]] = self.rates;
@@ -174,7 +174,7 @@ impl Section {
         [row(0), row(1), row(2)]
     }
 
-    /// h times the velocity of minus s times the third axis along the first two.
+    /// h times the velocity of minus s times the third axis, along the first two axes.
     #[inline(always)]
     pub fn axis_velocity(&self, momentum: &Vector) -> [f64; 2] {
         let [x, y] = self.rates.map(|row| dot(&row, momentum));

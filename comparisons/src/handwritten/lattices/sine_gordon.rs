@@ -1,56 +1,55 @@
-//! The sine-Gordon equation on a line of points with free or pinned ends, or a ring.
-//! Takes spacing, weights of the nodes and the square of the frequency, angles and momenta at a node, and the step; gives
-//! both at the nodes.
+//! The sine-Gordon equation on a chain of points with free or pinned ends, or a ring. Takes spacing, node weights, the square of
+//! the frequency, angles, momenta and the step size; gives angles and momenta at the nodes.
 
-/// What the line is made of.
+/// The data of the chain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wire {
-    /// From point to point.
+    /// Distance between points.
     pub spacing: f64,
-    /// Weight of each node in the sum over the line.
+    /// Weight of each node in the sum over the chain.
     pub weights: Vec<f64>,
-    /// Square of the frequency of a pendulum by itself.
+    /// Square of the frequency of an uncoupled pendulum.
     pub stiffness: f64,
-    /// How it ends.
+    /// Its ends.
     pub ends: Ends,
 }
 
-/// How the line ends.
+/// The ends of the chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ends {
-    /// Two ends; whether the first and the last node are held where they are.
+    /// Two ends; each may fix its node.
     Open {
-        /// Whether the first one is.
+        /// Whether the first node is fixed.
         first_pinned: bool,
-        /// Whether the last one is.
+        /// Whether the last node is fixed.
         last_pinned: bool,
     },
-    /// A ring, angles growing by this once around.
+    /// A ring; angles increase by this once around.
     Ring(f64),
 }
 
-/// A line on its way.
+/// A moving chain.
 #[derive(Clone, Debug)]
 pub struct SineGordon {
     ends: Ends,
-    /// Angles; behind them that of the first node once around.
+    /// Angles, followed by the first node once around.
     u: Vec<f64>,
-    /// Momenta of the present node.
+    /// Momenta of the current node.
     p: Vec<f64>,
-    /// Momenta of the edges that begin here.
+    /// Momenta of the outgoing edges.
     edges: Vec<f64>,
-    /// Step over weight; zero where a node is held.
+    /// Step size over weight; zero for a fixed node.
     rates: Vec<f64>,
-    /// Step times weight times the square of the frequency.
+    /// Step size times weight times the square of the frequency.
     weights: Vec<f64>,
-    /// Step over spacing.
+    /// Step size over spacing.
     stiffness: f64,
-    /// Impulses of the wire: before the first node, between nodes, behind the last one.
+    /// Impulses between neighbours: before the first node, between nodes, after the last.
     pull: Vec<f64>,
 }
 
 impl SineGordon {
-    /// Starts a trajectory from angles and momenta at node 0; those of held nodes stand still.
+    /// Starts a trajectory from angles and momenta at node 0; fixed nodes do not move.
     pub fn start(wire: &Wire, angles: &[f64], momenta: &[f64], h: f64) -> Self {
         let n = angles.len();
         let mut line = SineGordon {
@@ -86,7 +85,7 @@ impl SineGordon {
         line
     }
 
-    /// Impulses of the wire at the present angles.
+    /// Computes the impulses between neighbours at the current angles.
     fn pulled(&mut self) {
         let n = self.p.len();
         let bonds = match self.ends {
@@ -104,7 +103,7 @@ impl SineGordon {
         }
     }
 
-    /// What the momentum of a node changes by at it.
+    /// The change of a node's momentum at a time node.
     #[inline(always)]
     fn kick(&self, i: usize) -> f64 {
         (self.pull[i + 1] - self.pull[i]) - self.weights[i] * self.u[i].sin()
@@ -128,7 +127,7 @@ impl SineGordon {
         &self.u[..self.p.len()]
     }
 
-    /// Momenta of the nodes at the present one in time; of a held node the sum of what acted on it.
+    /// Momenta of the nodes at the current time; for a fixed node, the sum of the impulses on it.
     pub fn momenta(&self) -> &[f64] {
         &self.p
     }

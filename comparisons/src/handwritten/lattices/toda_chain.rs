@@ -1,44 +1,44 @@
-//! Toda's chain: point masses joined by springs of exponential force, on a line with free ends or a ring.
-//! Takes mass, stiffness a and softening b, places and momenta at a node, and the step; gives both at the nodes.
+//! Toda's chain: point masses coupled by springs of exponential force, on a chain with free ends or a ring. Takes mass, stiffness a
+//! and softening b, positions, momenta and the step size; gives positions and momenta at the nodes.
 
-/// What the chain is made of.
+/// The data of the chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Springs {
     /// Mass of a point.
     pub mass: f64,
-    /// Stiffness at rest, divided by `softening`.
+    /// Stiffness at equilibrium, divided by `softening`.
     pub stiffness: f64,
     /// Inverse length over which a spring softens.
     pub softening: f64,
 }
 
-/// How the chain ends.
+/// The ends of the chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ends {
-    /// Both free.
+    /// Both ends free.
     Open,
-    /// A ring, places growing by this once around.
+    /// A ring; positions increase by this once around.
     Ring(f64),
 }
 
-/// A chain on its way.
+/// A moving chain.
 #[derive(Clone, Debug)]
 pub struct TodaChain {
     springs: Springs,
     ends: Ends,
     h: f64,
-    /// Places; behind them that of the first point once around.
+    /// Positions, followed by the first point once around.
     q: Vec<f64>,
-    /// Momenta of the present node.
+    /// Momenta of the current node.
     p: Vec<f64>,
-    /// Momenta of the edges that begin here.
+    /// Momenta of the outgoing edges.
     edges: Vec<f64>,
-    /// Impulses of the springs: before the first point, between the points, behind the last one.
+    /// Impulses of the springs: before the first point, between points, after the last.
     pull: Vec<f64>,
 }
 
 impl TodaChain {
-    /// Starts a trajectory from places and momenta at node 0.
+    /// Starts a trajectory from positions and momenta at node 0.
     pub fn start(springs: Springs, ends: Ends, places: &[f64], momenta: &[f64], h: f64) -> Self {
         let mut chain = TodaChain {
             springs,
@@ -56,7 +56,7 @@ impl TodaChain {
         chain
     }
 
-    /// Impulses of all springs at the present places.
+    /// Computes the impulses of all springs at the current positions.
     fn pulled(&mut self) {
         let Springs {
             stiffness,
@@ -94,12 +94,12 @@ impl TodaChain {
         }
     }
 
-    /// Places of the points.
+    /// Positions of the points.
     pub fn places(&self) -> &[f64] {
         &self.q[..self.p.len()]
     }
 
-    /// Momenta of the points at the present node.
+    /// Momenta of the points at the current node.
     pub fn momenta(&self) -> &[f64] {
         &self.p
     }

@@ -1,5 +1,5 @@
-//! Many bodies turned by the principal solution of the discrete Moser-Veselov equation, several together where one pass
-//! finds the root of each. Takes unit quaternions and momenta of the edges in space; turns the quaternions.
+//! Rotates many bodies by the principal solution of the discrete Moser-Veselov equation, several together if a single pass finds
+//! each root. Takes unit quaternions and spatial edge momenta; updates the quaternions.
 
 use super::columns::{Columns, LANES, lane, put_lane};
 use crate::handwritten::Unsolvable;
@@ -10,7 +10,7 @@ use crate::handwritten::principal_axes::PrincipalAxes;
 use crate::handwritten::principal_root::{self, Quartic};
 use std::ops::Range;
 
-/// A body and the step.
+/// A body and the step size.
 #[derive(Clone, Copy, Debug)]
 pub struct Body {
     moments: Vector,
@@ -33,7 +33,7 @@ impl Body {
         })
     }
 
-    /// h/2 times the momentum of the edge as the body sees it, R^T m.
+    /// h/2 times the body momentum of the edge, R^T m.
     #[inline(always)]
     fn seen(&self, q: &Quaternion, momentum: &Vector) -> Vector {
         let [w, x, y, z] = q.0;
@@ -43,13 +43,13 @@ impl Body {
         add_scaled(&add_scaled(&m, -w, &across), 1.0, &cross(&v, &across))
     }
 
-    /// The turn for u in principal axes and kappa, not normalised.
+    /// The unnormalised rotation for u in principal axes and kappa.
     #[inline(always)]
     fn turn(&self, u: &Vector, squares: &Vector, a: f64, kappa: f64) -> Quaternion {
         principal_root::turn(&self.moments, &self.gyration, u, squares, a, kappa)
     }
 
-    /// An attitude of the principal axes where the edge ends, and whether one pass found the root.
+    /// The attitude of the principal axes at the end of the edge, and whether a single pass found the root.
     #[inline(always)]
     fn turned_at_once(&self, q: &Quaternion, momentum: &Vector) -> (Quaternion, bool) {
         let u = self.seen(q, momentum);
@@ -60,7 +60,7 @@ impl Body {
         (q.times(&turn).normalised(), found)
     }
 
-    /// The attitude where the edge ends, of any axes: `axes` is none where they are the principal ones.
+    /// The attitude at the end of the edge, for any axes; `axes` is `None` if they are the principal axes.
     fn turned(
         &self,
         axes: Option<&PrincipalAxes>,
@@ -79,17 +79,17 @@ impl Body {
     }
 }
 
-/// The bodies of a line.
+/// The bodies of a chain.
 #[derive(Clone, Debug)]
 pub enum Bodies {
-    /// All alike: attitudes are those of their principal axes.
+    /// Identical bodies; stored attitudes are those of their principal axes.
     Alike(Box<Body>),
-    /// One for each site: attitudes are those of the axes in which they are given.
+    /// One body per site; stored attitudes are those of the given axes.
     Each(Vec<Body>),
 }
 
 impl Bodies {
-    /// Bodies with these second moments of mass, for steps of `h`.
+    /// Bodies with these second moments of mass, for step size `h`.
     pub fn new(poinsots: &[Matrix], h: f64) -> Result<Bodies, Unsolvable> {
         let [first, rest @ ..] = poinsots else {
             return Ok(Bodies::Each(Vec::new()));
@@ -101,7 +101,7 @@ impl Bodies {
         Ok(Bodies::Each(each.collect::<Result<_, _>>()?))
     }
 
-    /// The common principal axes, where attitudes are those.
+    /// The common principal axes, if attitudes are stored in these.
     fn axes(&self) -> Option<&PrincipalAxes> {
         match self {
             Bodies::Alike(body) => Some(&body.axes),
@@ -109,29 +109,29 @@ impl Bodies {
         }
     }
 
-    /// The attitude that is kept for a given one.
+    /// The stored attitude of a given one.
     pub fn enter_attitude(&self, q: &Quaternion) -> Quaternion {
         self.axes().map_or(*q, |axes| axes.enter_attitude(q))
     }
 
-    /// The attitude that was given, for one that is kept.
+    /// The given attitude of a stored one.
     pub fn leave_attitude(&self, q: &Quaternion) -> Quaternion {
         self.axes().map_or(*q, |axes| axes.leave_attitude(q))
     }
 
-    /// Components in the axes whose attitudes are kept, of a vector that all bodies carry.
+    /// Components in the stored axes of a vector that is the same for all bodies.
     pub fn enter(&self, v: &Vector) -> Vector {
         self.axes().map_or(*v, |axes| axes.enter(v))
     }
 
-    /// The same of a symmetric matrix.
+    /// The symmetric matrix in the stored axes.
     pub fn enter_matrix(&self, m: &Matrix) -> Matrix {
         let half = m.map(|row| self.enter(&row));
         let columns = [0, 1, 2].map(|j| self.enter(&[half[0][j], half[1][j], half[2][j]]));
         [0, 1, 2].map(|i| [columns[0][i], columns[1][i], columns[2][i]])
     }
 
-    /// Turns so many bodies from one end of their edges to the other; where one cannot be, those after it stay.
+    /// Rotates `count` bodies from one end of their edges to the other; after a failure, the remaining bodies are unchanged.
     #[inline(always)]
     pub fn turn(
         &self,
@@ -190,8 +190,8 @@ fn singly(
     Ok(())
 }
 
-/// What a bond of second moments `B` between attitudes R and R' does to the body at R, in space: the axial vector of
-/// `R' B R^T` less its transpose. To the body at R' it does the opposite.
+/// The spatial torque of a bond with second moments `B` between attitudes R and R' on the body at R: the axial vector of `R' B R^T`
+/// minus its transpose. The torque on the body at R' is the opposite.
 #[inline(always)]
 pub fn bond(here: &Matrix, next: &Matrix, moments: &Matrix) -> Vector {
     let m = product(next, moments);

@@ -8,9 +8,8 @@ use crate::linalg::{determinant, symmetric_eigenvalues};
 use crate::validate::{ROUNDINGS, mirrored_difference};
 use nalgebra::Matrix3;
 
-/// A body in unit quaternions: the symmetric matrix `A` and the number `β` of
-/// `w A v + v x A v + β v = h N / 2`, in body axes (moments, mass times length squared). Includes the
-/// constants that the solver derives from them once.
+/// A body in unit quaternions: the symmetric matrix `A` and the number `β` in `w A v + v x A v + β v = h N / 2`, in body axes. The
+/// dimension is mass times length squared. Includes the constants that the solver derives from them once.
 ///
 /// `I = A + β`, the inertia of small steps, is positive definite; `A` itself need not be.
 #[derive(Clone, Copy, Debug, PartialEq)]

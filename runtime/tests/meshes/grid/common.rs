@@ -1,4 +1,4 @@
-//! Settings and numbers that the tests share.
+//! Settings and numbers for the tests.
 
 use clebsch::Real;
 use clebsch::mesh::{Domain, Functional, Setting, Wall};
@@ -54,7 +54,7 @@ pub fn setting<const D: usize>(
     }
 }
 
-/// Places all over a domain and near its ends: up to 0.9 of a cell beyond walls, some periods away.
+/// Positions throughout a domain and near its ends: up to 0.9 of a cell beyond walls, and several periods away.
 pub fn places<const D: usize>(of: &Setting<D>, seed: u64) -> Vec<[f64; D]> {
     let mut numbers = Numbers::new(seed);
     let grid = of.grid.expect("a grid");
@@ -76,7 +76,7 @@ pub fn places<const D: usize>(of: &Setting<D>, seed: u64) -> Vec<[f64; D]> {
     (0..of.particles).map(one).collect()
 }
 
-/// A field of particles in the form that a functional takes.
+/// A particle field in the form that a functional takes.
 pub trait Field<T, const D: usize>: Copy {
     fn of(place: [T; D]) -> Self;
     fn parts(self) -> [T; D];
@@ -102,7 +102,7 @@ impl<T: Real> Field<T, 2> for SVector<T, 2> {
     }
 }
 
-/// A functional's values.
+/// The values of a functional.
 pub fn values<T: Real, const D: usize, F: Functional<T, D>>(
     of: &mut F,
     at: &[F::Argument],
@@ -112,7 +112,7 @@ pub fn values<T: Real, const D: usize, F: Functional<T, D>>(
     out
 }
 
-/// The sum, in two numbers.
+/// The sum, accumulated in two numbers.
 pub fn sum(all: impl IntoIterator<Item = f64>) -> f64 {
     let (mut sum, mut rest) = (0.0_f64, 0.0);
     for x in all {

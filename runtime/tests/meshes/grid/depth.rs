@@ -1,4 +1,4 @@
-//! Deposit against images of particles that are written out, and the mass on the grid.
+//! Deposit against explicit images of particles, and the mass on the grid.
 
 use super::common::*;
 use clebsch::Dual;
@@ -18,7 +18,7 @@ pub fn spline(p: usize, x: f64) -> f64 {
     ((half + x) * spline(p - 1, x + 0.5) + (half - x) * spline(p - 1, x - 0.5)) / p as f64
 }
 
-/// The splines of a node at a particle and at all of its images, over the spacing.
+/// The splines of a node at a particle and at all of its images, divided by the spacing.
 fn along(p: usize, length: f64, cells: usize, wall: Wall, node: f64, x: f64) -> f64 {
     let spacing = length / cells as f64;
     let near = |image: f64| spline(p, image / spacing - node) / spacing;
@@ -55,7 +55,7 @@ where
             m * (0..D).map(factor).product::<f64>()
         };
         let expected: f64 = at.iter().zip(&mass).map(one).sum();
-        // Coordinates some periods away have lost two bits, which slopes of 1 / spacing multiply.
+        // Coordinates several periods away have lost two bits, which slopes of size 1 / spacing amplify.
         let scale = at.len() as f64 / of.domain.measure();
         assert!(
             (found - expected).abs() < 1e-13 * scale,
@@ -67,20 +67,20 @@ where
     let weights = nodes.weights::<f64>();
     let on_grid = sum(found.iter().zip(&weights).map(|(h, w)| h * w));
     let whole = sum(mass.iter().copied());
-    // The errors of one rounding each, of random sign, of 16 or 36 values of splines per particle.
+    // One rounding error of random sign for each of 16 or 36 spline values per particle.
     assert!(
         (on_grid / whole - 1.0).abs() < 1e-15,
         "{}",
         on_grid / whole - 1.0
     );
-    // Every value of the splines is positive, and so is the depth.
+    // The splines are nonnegative, and so is the depth.
     assert!(found.iter().all(|h| *h >= 0.0));
 }
 
 #[test]
 fn depth_is_that_of_particles_and_their_images() {
     for domain in lines() {
-        // Also grids that are narrower than a spline.
+        // Includes grids narrower than a spline.
         for cells in [1, 2, 3, 5, 24] {
             let of = setting(domain, [cells], 200);
             compare::<1, deposit<f64, 1>, f64>(3, &of);
@@ -103,7 +103,7 @@ fn weights_are_those_of_the_trapezoid_rule() {
         let nodes = Nodes::new(&of).expect("a grid");
         let (weights, places) = (nodes.weights::<f64>(), nodes.places());
         assert!((sum(weights.iter().copied()) / domain.measure() - 1.0).abs() < 1e-15);
-        // Exact for x y wherever it is between walls; around a period, for what vanishes at its ends.
+        // Exact for x y between walls; in a periodic direction, for functions that vanish at its ends.
         let halves = |d: usize, x: f64| match domain.walls[d] {
             Wall::Solid => x,
             Wall::Periodic => (core::f64::consts::PI * x / domain.lengths[d])
@@ -137,7 +137,7 @@ fn what_cannot_be_deposited_is_an_error_with_the_particle() {
         let at = [inside, SVector::from(x), inside];
         assert_eq!(deposit.value(&at, &mut out), Err(expected));
     }
-    // Far away around the period is a place like others.
+    // A position many periods away is equivalent to one inside.
     for far in [1e9, -1e9, 1e300, -1e300] {
         let at = [inside, SVector::from([0.5, far]), inside];
         assert_eq!(deposit.value(&at, &mut out), Ok(()));
@@ -157,7 +157,7 @@ fn what_cannot_be_deposited_is_an_error_with_the_particle() {
     assert!(clebsch::mesh::deposit::<f64, 2>::new(&empty, (&[1.0; 3],)).is_err());
 }
 
-/// Values and derivatives with so many threads.
+/// Values and derivatives with this number of threads.
 fn shared(threads: usize, of: &Setting<2>, at: &[SVector<f64, 2>], mass: &[f64]) -> Vec<f64> {
     let mut deposit = deposit::<f64, 2>::new(of, (mass,)).expect("a grid");
     deposit.share(Threads(threads));
@@ -185,11 +185,11 @@ fn threads_change_no_bit() {
     }
 }
 
-/// What interpolates nodal values.
+/// A function that interpolates nodal values.
 type Interpolate<F, T> = fn(&mut F, &[T], &mut [T]) -> Result<(), MeshError>;
 
-/// Nodal values at particles beside splines that are written out, their derivatives by dual numbers beside the pull-back of the
-/// weighted values, and the sum of them over masses beside that over nodes.
+/// Compares nodal values at particles with explicit splines, derivatives by dual numbers with the pull-back of weighted values, and
+/// their sum over masses with the sum over nodes.
 fn interpolated<const D: usize, A, B, F, G>(
     of: &Setting<D>,
     own: Interpolate<F, f64>,
@@ -222,7 +222,7 @@ fn interpolated<const D: usize, A, B, F, G>(
             s * weights[i] * (0..D).map(factor).product::<f64>()
         };
         let expected: f64 = nodal.iter().enumerate().map(one).sum();
-        // As above; a mean of numbers up to 1.
+        // As above, for a mean of numbers up to 1.
         assert!((found - expected).abs() < 1e-12, "{found} {expected}");
     }
     let at_particles = sum(found.iter().zip(&mass).map(|(s, m)| s * m));
@@ -234,7 +234,7 @@ fn interpolated<const D: usize, A, B, F, G>(
     deposit
         .pull_back(&fields, &seed, &mut slopes)
         .expect("a gradient");
-    // Of numbers up to 1, a cell apart: around a period a grid of one cell has no slope.
+    // For numbers up to 1, one cell apart. In a periodic direction, a grid of one cell has zero slope.
     let cells = of.grid.expect("a grid");
     let scale = largest((0..D).map(|d| cells[d] as f64 / of.domain.lengths[d]));
     let wide = vec![Dual::constant(1.0); at.len()];

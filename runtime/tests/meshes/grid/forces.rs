@@ -1,5 +1,5 @@
-//! Forces of particles: the gradient of the discrete potential `V = (c0²/2) Σ w H (S H)`, composed of pull-backs as a
-//! stepper does, beside the derivatives of V by dual numbers and by central differences.
+//! Forces on particles: the gradient of the discrete potential `V = (c0²/2) Σ w H (S H)`, composed of pull-backs as in a stepper.
+//! Compared with derivatives of V by dual numbers and by central differences.
 
 use super::common::*;
 use clebsch::mesh::*;
@@ -11,7 +11,7 @@ const SPEED_SQUARED: f64 = 1.7;
 
 const ALPHA: f64 = 0.23;
 
-/// The potential and, where asked for, its derivative with respect to each place.
+/// The potential and, if requested, its derivative with respect to each position.
 pub fn potential<T: Real, const D: usize, F, S, A: Field<T, D> + Send + Sync>(
     of: &Setting<D>,
     mass: &[T],
@@ -51,7 +51,7 @@ where
     energy
 }
 
-/// Particles whose derivatives are compared: of each kind of place.
+/// Number of particles whose derivatives are compared, with every kind of position.
 const COMPARED: usize = 12;
 
 fn compare<const D: usize, A, B, F, S, G, R>(of: &Setting<D>)
@@ -83,8 +83,8 @@ where
             let error = (dual.dual[0] - force).abs() / scale;
             assert!(error < 1e-12, "particle {a} along {d} of {of:?}: {error:e}");
             assert!((dual.real / v - 1.0).abs() < 1e-13);
-            // Of fourth order: differences of 1e-3 cells leave 1e-11 of the fifth derivative (infinite at the knots of
-            // cubic splines, whose third jumps: 1e-9 of the jump), and rounding of V over the step.
+            // Fourth-order differences of 1e-3 cells have an error of 1e-11 times the fifth derivative, plus the rounding of V
+            // divided by the step. At the knots of cubic splines, where the third derivative jumps, the error is 1e-9 of the jump.
             let step = 1e-4 * cell;
             let shifted = |steps: f64| {
                 let mut moved = at.clone();
@@ -147,13 +147,13 @@ fn forces_are_the_gradient_of_the_potential_in_the_plane() {
 
 #[test]
 fn on_a_wall_nothing_pulls_along_the_normal() {
-    // The depth is even about a wall: its slope there vanishes, on whichever side the particle is.
+    // The depth is even about a wall, so its slope vanishes there, on whichever side the particle is.
     let of = setting(Domain::basin([1.0, 1.0]), [8, 8], 2);
     let at = [[0.0, 0.37], [0.61, 1.0]];
     let mut forces = [SVector::<f64, 2>::zeros(); 2];
     type Cubic = deposit<f64, 2>;
     potential::<f64, 2, Cubic, smooth<f64, 2>, _>(&of, &[1.0; 2], &at, Some(&mut forces));
-    // Slopes of the splines, of size 1, cancel in pairs with the values of the other direction.
+    // Spline slopes of order 1 cancel in pairs with the values of the other direction.
     assert!(
         forces[0][0].abs() < 1e-13 && forces[1][1].abs() < 1e-13,
         "{forces:?}"

@@ -1,5 +1,5 @@
-//! Functionals on a grid against formulas of these tests' own: deposit, smoothers, the forces that follow from them, and
-//! particle-mesh shallow water stepped by hand.
+//! Grid functionals against independent formulas: deposit, smoothers, their forces, and particle-mesh shallow water with a
+//! hand-written step.
 
 mod common;
 mod depth;

@@ -1,5 +1,5 @@
-//! What chapter 5 of the thesis prints about particles on a grid, beside what is right: each test evaluates both, and the
-//! printed form is off while the right one holds to rounding.
+//! Errata of chapter 5 of the thesis, particles on a grid. Each test evaluates the printed and the correct form; the printed form
+//! fails, and the correct form holds to rounding.
 
 use super::common::*;
 use super::depth::spline;
@@ -11,7 +11,7 @@ const LENGTH: f64 = 1.5;
 
 const CELLS: usize = 12;
 
-/// A basin along a line, with particles of unequal masses all over it.
+/// A one-dimensional basin with particles of different masses.
 fn basin() -> (Setting<1>, Vec<f64>, Vec<f64>) {
     let of = setting(Domain::basin([LENGTH]), [CELLS], 40);
     let mut numbers = Numbers::new(51);
@@ -20,7 +20,7 @@ fn basin() -> (Setting<1>, Vec<f64>, Vec<f64>) {
     (of, at, mass)
 }
 
-/// (5.8) without its factor: the splines of a node and of its images at all particles.
+/// (5.8) without its factor: the splines of a node and its images at all particles.
 fn gathered(at: &[f64], mass: &[f64]) -> Vec<f64> {
     let spacing = LENGTH / CELLS as f64;
     let node = |i: usize| {
@@ -52,7 +52,7 @@ fn five_8_weighs_by_the_inverse_of_the_integral_of_the_spline() {
     }
 }
 
-/// The potential energy with these weights of nodes, and its derivative with respect to one place.
+/// The potential energy with these node weights, and its derivative with respect to one position.
 fn slope(of: &Setting<1>, at: &[f64], mass: &[f64], weights: &[f64], particle: usize) -> f64 {
     type T = Dual<1>;
     let wide = |all: &[f64]| all.iter().map(|x| T::constant(*x)).collect::<Vec<_>>();
@@ -77,13 +77,13 @@ fn five_15_gives_nodes_on_walls_a_whole_weight() {
     let mut smooth = smooth::<f64, 1>::new(&of, (0.3,)).expect("a grid");
     let h = values(&mut deposit, &at);
     let s = values(&mut smooth, &h);
-    // (5.14): the smoothed depth continued evenly to the node behind each wall, with the slopes of all splines.
+    // (5.14): the smoothed depth, continued evenly to the node behind each wall, with the slopes of all splines.
     let force = |a: usize| {
         let change = |x: f64| {
             let along = |i: i32| {
                 let node = (i.unsigned_abs() as usize).min(2 * CELLS - i.unsigned_abs() as usize);
                 let u = x / spacing - f64::from(i);
-                // The slope of a cubic spline is the difference of two quadratic ones.
+                // The slope of a cubic spline is a difference of two quadratic splines.
                 s[node] * (spline(2, u + 0.5) - spline(2, u - 0.5)) / spacing
             };
             (-1..=CELLS as i32 + 1).map(along).sum::<f64>()
@@ -113,7 +113,7 @@ fn section_5_3_the_smoothing_matrix_is_not_symmetric() {
     assert!(largest(pairs().map(|(i, j)| s(i, j) - s(j, i))) > 0.05);
     let weighted = pairs().map(|(i, j)| weights[i] * s(i, j) - weights[j] * s(j, i));
     assert!(largest(weighted) < 1e-16);
-    // So (5.25) needs the transpose on the right: without it, it does not keep a constant.
+    // (5.25) therefore needs the transpose on the right; otherwise it does not preserve constants.
     let all = || 0..=CELLS;
     let rows = all().map(|i| sum(all().map(|j| s(i, j))) - 1.0);
     let columns = all().map(|j| sum(all().map(|i| s(i, j))) - 1.0);
@@ -134,7 +134,7 @@ fn five_28_has_the_wave_numbers_of_a_period_of_2_pi() {
     assert!((found[0] - 1.0 / (1.0 + alpha * alpha)).abs() > 0.3);
 }
 
-/// One step of (5.16) of a particle of unit mass in the potential `|X|²/2`, the term of rotation with this sign.
+/// One step of (5.16) for a particle of unit mass in the potential `|X|²/2`, with this sign of the rotation term.
 fn step(state: Vector4<f64>, f: f64, dt: f64, sign: f64) -> Vector4<f64> {
     let [x, y, u, v] = [state[0], state[1], state[2], state[3]];
     // `P1 = P0 - dt/2 (X + sign f k x (P0 + P1)/2)`, with `k x P = (-v, u)`.
@@ -150,7 +150,7 @@ fn step(state: Vector4<f64>, f: f64, dt: f64, sign: f64) -> Vector4<f64> {
     Vector4::new(at[0], at[1], u, v)
 }
 
-/// The centred rotation between kicks, `(X1 - X0)/dt` being the mean of the velocities before and after.
+/// The centred rotation between kicks, where `(X1 - X0)/dt` is the mean of the velocities before and after.
 fn centred(state: Vector4<f64>, f: f64, dt: f64) -> Vector4<f64> {
     let b = f * dt / 2.0;
     let [x, y] = [state[0], state[1]];
@@ -176,7 +176,7 @@ fn exact(state: Vector4<f64>, f: f64, dt: f64) -> Vector4<f64> {
 
 #[test]
 fn five_16_turns_the_wrong_way() {
-    // (5.14) at rest in the middle: `P' = -f k x P = f (v, -u)`, at rounding over the step and terms of its first order.
+    // (5.14) at rest in the middle: `P' = -f k x P = f (v, -u)`, up to rounding over the step size and first-order terms.
     let (f, dt) = (1.3, 1e-6);
     let state = Vector4::new(0.0, 0.0, 0.7, -0.4);
     let wanted = [f * state[3], -f * state[2]];
@@ -190,7 +190,7 @@ fn five_16_turns_the_wrong_way() {
 #[test]
 fn five_16_is_not_symplectic() {
     let (f, dt) = (1.3, 0.3);
-    // `dX ∧ dU - f dX ∧ dY`, with X and U = P/m; the two-form in canonical momenta is the same.
+    // `dX ∧ dU - f dX ∧ dY`, with X and U = P/m, which equals the two-form in canonical momenta.
     let mut form = Matrix4::zeros();
     for (i, j, entry) in [(0, 2, 1.0), (1, 3, 1.0), (0, 1, -f)] {
         form[(i, j)] = entry;

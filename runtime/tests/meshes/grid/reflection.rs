@@ -1,4 +1,4 @@
-//! Particles beyond walls, put back by mirror images.
+//! Reflection of particles that cross walls.
 
 use super::common::*;
 use clebsch::mesh::*;
@@ -42,7 +42,7 @@ fn too_far_is_an_error_that_leaves_the_particle() {
 
 #[test]
 fn reflection_is_symplectic() {
-    // A mirror image of position and momentum: determinant 1 in each pair.
+    // Mirrors position and momentum: determinant 1 in each pair.
     let mut x = [Dual::<2>::variable(-0.05, 0)];
     let mut u = [Dual::<2>::variable(-1.0, 1)];
     let count = Domain::basin([1.0]).reflect(0, &[0.1], &mut x, &mut u);
@@ -72,6 +72,6 @@ fn reflection_changes_no_depth() {
     assert!(crossed > 10);
     let after = values(&mut deposit, &after);
     let scale = largest(before.iter().copied());
-    // A coordinate is rounded once more where it is put back from the far wall.
+    // Reflection at the far wall rounds a coordinate once more.
     assert!(largest(before.iter().zip(&after).map(|(b, a)| b - a)) < 1e-14 * scale);
 }

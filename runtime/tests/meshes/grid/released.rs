@@ -1,5 +1,5 @@
-//! What a run of particles on a grid owes to its smoother and to its start: a round hill released at rest stays round by the
-//! smoother that prefers no direction; vortices in balance with the smoothed depth, whose gradient is the force, send out no waves.
+//! Effects of the smoother and the initial data on particles on a grid. A round hill released at rest stays round with an isotropic
+//! smoother. Vortices balanced with the smoothed depth, whose gradient is the force, emit no waves.
 
 use super::common::*;
 use super::verlet::Run;
@@ -9,8 +9,8 @@ use core::f64::consts::TAU;
 
 type Place = SVector<f64, 2>;
 
-/// The fourfold part of the ring of waves of a round hill of water on a torus of length 4π, in units of the wave in it, after a
-/// time in which waves run through 1.5.
+/// The fourfold component of the wave ring from a round hill of water on a torus of length 4π, relative to the wave, after waves
+/// have travelled a distance of 1.5.
 fn fourfold<S>(cells: usize, alpha: f64) -> f64
 where
     S: for<'a> Functional<f64, 2, Argument = f64, Data<'a> = (f64,)>,
@@ -44,7 +44,7 @@ where
 
 #[test]
 fn a_round_hill_stays_round_by_the_isotropic_smoother() {
-    // 3.9e-2 of the split smoother, of which finer grids take nothing away at this length; of the isotropic one 2.5e-5.
+    // 3.9e-2 with the split smoother, independent of the grid at this smoothing length; 2.5e-5 with the isotropic one.
     let [split, whole] = [
         fourfold::<smooth<f64, 2>>(64, 0.4),
         fourfold::<smooth_isotropic<f64, 2>>(64, 0.4),
@@ -52,13 +52,13 @@ fn a_round_hill_stays_round_by_the_isotropic_smoother() {
     assert!(split > 2e-2 && whole < 1e-4, "{split:e} {whole:e}");
 }
 
-/// A velocity turned by a quarter of a circle, as rotation turns it.
+/// A velocity rotated by a quarter turn, in the sense of the Coriolis force.
 fn turned(v: Place) -> Place {
     Place::new(v[1], -v[0])
 }
 
-/// Two vortices in a rotating channel: the largest relative error of the energy up to time 1, by the balance of the depth of a
-/// formula or of the smoothed one, by a centred rotation or by the flow of a free particle.
+/// Two vortices in a rotating channel: the largest relative energy error up to time 1. The initial balance uses a depth from
+/// a formula or the smoothed depth; the rotation is centred or the exact flow of a free particle.
 fn vortices(smoothed: bool, centred: bool, dt: f64) -> f64 {
     let (side, cells, f) = (64, [31, 32], TAU);
     let of = setting(Domain::channel([TAU; 2]), cells, side * side);
@@ -110,7 +110,7 @@ fn vortices(smoothed: bool, centred: bool, dt: f64) -> f64 {
 fn balance_with_the_smoothed_depth_sends_out_no_waves() {
     for centred in [true, false] {
         let [depth, smoothed] = [false, true].map(|start| vortices(start, centred, 0.005));
-        // 1.0e-7 and 3.6e-10 by the centred rotation, 8.0e-8 and 3.3e-10 by the exact one.
+        // 1.0e-7 and 3.6e-10 with the centred rotation, 8.0e-8 and 3.3e-10 with the exact one.
         assert!(smoothed < 0.05 * depth, "{smoothed:e} {depth:e}");
         let order = (vortices(true, centred, 0.01) / smoothed).log2();
         assert!((1.8..2.3).contains(&order), "{order}");

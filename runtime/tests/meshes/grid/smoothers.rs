@@ -1,12 +1,12 @@
-//! Smoothers: eigenfunctions with their exact factors, the inner product in which each is its own adjoint, and scalars
-//! with derivatives beside plain numbers.
+//! Smoothers: exact factors of eigenfunctions, the inner product in which each is self-adjoint, and scalars with derivatives
+//! against plain numbers.
 
 use super::common::*;
 use clebsch::mesh::*;
 use clebsch::{DoubleDouble, Dual, Real};
 use core::f64::consts::PI;
 
-/// The factor of `cos(q π x / L)` between walls, `cos(q 2π x / L)` around a period.
+/// The factor of `cos(q π x / L)` between walls, and of `cos(q 2π x / L)` in a periodic direction.
 fn factor(of: &Setting<2>, d: usize, q: usize) -> f64 {
     let cells = of.grid.expect("a grid")[d] as f64;
     let spacing = of.domain.lengths[d] / cells;
@@ -48,7 +48,7 @@ fn waves_are_damped_by_exact_factors() {
             let (s, i) = (values(&mut split, &h), values(&mut whole, &h));
             for ((h, s), i) in h.iter().zip(s).zip(i) {
                 assert!((s - h / ((1.0 + a) * (1.0 + b))).abs() < 1e-14);
-                // Conjugate gradients: a residual of rounding over the smallest eigenvalue, 0.05.
+                // Conjugate gradients: the residual, at rounding level, divided by the smallest eigenvalue 0.05.
                 assert!((i - h / (1.0 + a + b)).abs() < 1e-13);
             }
         }
@@ -63,7 +63,7 @@ fn between_walls_constants_stay_to_the_last_bit() {
     assert_eq!(values(&mut split, &h), h);
 }
 
-/// How far an operator is from its own adjoint in a product with weights, relative to the product.
+/// The asymmetry of an operator in a weighted inner product, relative to the product.
 fn asymmetry(apply: &mut dyn FnMut(&[f64]) -> Vec<f64>, weights: &[f64]) -> f64 {
     let mut numbers = Numbers::new(11);
     let product =
@@ -80,7 +80,7 @@ where
     let mut smooth = F::new(of, (alpha,)).expect("a grid");
     let nodes = Nodes::new(of).expect("a grid");
     let weights = nodes.weights::<f64>();
-    // Rounding of sums, or that of a solution, which the condition of the matrix multiplies.
+    // Rounding error of sums, or of a solution times the condition number of the matrix.
     let ratio = largest(nodes.axes().iter().map(|axis| alpha / axis.spacing()));
     let tolerance = 1e-14_f64.max(1e-16 * (1.0 + 12.0 * ratio * ratio));
     assert!(asymmetry(&mut |h| values(&mut smooth, h), &weights) < tolerance);
@@ -92,7 +92,7 @@ where
     let product = |a: &[f64], b: &[f64]| sum(a.iter().zip(b).map(|(a, b)| a * b));
     let error = (product(&s, &seed) / product(&h, &back) - 1.0).abs();
     assert!(error < tolerance, "{of:?}, {alpha}: {error:e}");
-    // It keeps the mass.
+    // The smoother conserves the mass.
     let error = (product(&s, &weights) / product(&h, &weights) - 1.0).abs();
     assert!(error < tolerance, "{of:?}, {alpha}: {error:e}");
 }
@@ -114,7 +114,7 @@ fn each_smoother_is_its_own_adjoint_in_the_weights_of_nodes() {
     }
 }
 
-/// Solves `(1 + α²K) s = h` with the symmetric second difference of nodes from wall to wall, by elimination.
+/// Solves `(1 + α²K) s = h` with the symmetric second difference between walls, by elimination.
 pub fn naive(h: &[f64], ratio: f64) -> Vec<f64> {
     let n = h.len();
     let diagonal = |i: usize| match i == 0 || i + 1 == n {
@@ -144,7 +144,7 @@ fn a_symmetric_matrix_is_not_its_own_adjoint_in_the_weights() {
     assert!(asymmetry(&mut apply, &weights) > 1e-3);
 }
 
-/// The same values, and the derivatives with respect to an amplitude, by other scalars.
+/// Checks values, and derivatives with respect to an amplitude, for other scalars.
 fn scalars<const D: usize, S, P, W>(of: &Setting<D>, tolerance: f64)
 where
     S: for<'a> Functional<f64, D, Argument = f64, Data<'a> = (f64,)>,
@@ -174,7 +174,7 @@ where
         assert!((both[i].dual[0] - t[i]).abs() < tolerance);
         assert!((wider[i].high() - s[i]).abs() < tolerance);
     }
-    // Smoothing is linear: twice the values, to all digits of the scalar.
+    // Smoothing is linear: checks a multiple of the values to all digits of the scalar.
     let third = DoubleDouble::one_third();
     let thirds: Vec<_> = h
         .iter()

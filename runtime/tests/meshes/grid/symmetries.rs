@@ -1,5 +1,5 @@
-//! What a grid takes from the symmetries of the plane: the force on all particles together, which vanishes without a grid,
-//! and the torque, which vanishes for a smoother that prefers no direction.
+//! Symmetry breaking by a grid: the total force on all particles, which vanishes without a grid, and the torque, which vanishes for
+//! an isotropic smoother.
 
 use super::common::*;
 use clebsch::mesh::*;
@@ -8,8 +8,7 @@ use core::f64::consts::TAU;
 
 type Place = SVector<f64, 2>;
 
-/// Particles of a torus and their masses, four a cell, at random within cells of a lattice of theirs: an elliptical hill
-/// of depth that stands askew.
+/// Particles on a torus and their masses, four per cell, random within the cells of a lattice: an elliptical hill with tilted axes.
 fn hill(cells: usize) -> (Setting<2>, Vec<Place>, Vec<f64>) {
     let side = 2 * cells;
     let of = setting(Domain::torus([TAU; 2]), [cells; 2], side * side);
@@ -30,7 +29,7 @@ fn hill(cells: usize) -> (Setting<2>, Vec<Place>, Vec<f64>) {
     (of, at, mass)
 }
 
-/// The force and the torque about the middle on all particles, relative to the sums of their sizes.
+/// The total force and the torque about the centre, relative to the sums of their absolute values.
 fn totals<F, S>(cells: usize, alpha: f64) -> [f64; 2]
 where
     F: for<'a> Functional<f64, 2, Argument = Place, Data<'a> = (&'a [f64],)>,
@@ -86,7 +85,7 @@ fn the_torque_of_the_isotropic_smoother_falls_with_the_grid() {
         let [_, whole] = totals::<deposit<f64, 2>, smooth_isotropic<f64, 2>>(cells, alpha);
         [split, whole]
     });
-    // 7e-4 of both on the coarse grid, of which the split smoother, whose axes are those of the grid, keeps 4e-4.
+    // 7e-4 with both smoothers on the coarse grid. On the fine grid the split smoother, aligned with the grid axes, still has 4e-4.
     assert!(fine[1] < 0.25 * coarse[1], "{coarse:?} {fine:?}");
     assert!(
         fine[0] > 0.5 * coarse[0] && fine[0] > 3.0 * fine[1],

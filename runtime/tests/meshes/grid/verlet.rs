@@ -1,5 +1,5 @@
-//! Particle-mesh shallow water stepped by hand (Stoermer-Verlet, and with rotation the exact flow of the magnetic part
-//! between kicks): energy over many steps, mass, walls.
+//! Particle-mesh shallow water with a hand-written step (Störmer-Verlet; with rotation, the exact magnetic flow between kicks):
+//! energy over many steps, mass, walls.
 
 use super::common::*;
 use super::smoothers::naive;
@@ -55,14 +55,14 @@ where
         self.speed / 2.0 * sum(all.map(|((w, h), s)| w * h * s))
     }
 
-    /// Derivatives of the potential at the places of its last evaluation: the smoother is its own adjoint.
+    /// Derivatives of the potential at the positions of its last evaluation; the smoother is self-adjoint.
     pub fn slopes(&mut self, x: &[A], out: &mut [A]) {
         let all = self.weights.iter().zip(&self.smoothed);
         let seed: Vec<f64> = all.map(|(w, s)| self.speed * w * s).collect();
         self.deposit.pull_back(x, &seed, out).expect("inside");
     }
 
-    /// Half a kick, the flow without potential, half a kick, reflection; `slopes` are those at `x`, before and after.
+    /// Half a kick, the flow without potential, half a kick, reflection; `slopes` are the values at `x`, before and after.
     pub fn step(
         &mut self,
         x: &mut [A],
@@ -97,12 +97,12 @@ where
         }
     }
 
-    /// The smoothed depth at the places of the last evaluation of the potential.
+    /// The smoothed depth at the positions of the last evaluation.
     pub fn smoothed(&self) -> &[f64] {
         &self.smoothed
     }
 
-    /// At the places of the last evaluation of the potential.
+    /// The energy at the positions of the last evaluation.
     pub fn energy(&self, u: &[A]) -> f64 {
         let all = self.weights.iter().zip(&self.depth).zip(&self.smoothed);
         self.kinetic(u) + self.speed / 2.0 * sum(all.map(|((w, h), s)| w * h * s))
@@ -113,15 +113,15 @@ where
         sum(all.map(|(m, u)| m / 2.0 * u.parts().iter().map(|u| u * u).sum::<f64>()))
     }
 
-    /// Mass on the grid, relative to that of particles, less 1.
+    /// Relative error of the mass on the grid.
     fn mass_error(&self) -> f64 {
         let grid = sum(self.weights.iter().zip(&self.depth).map(|(w, h)| w * h));
         grid / sum(self.mass.iter().copied()) - 1.0
     }
 }
 
-/// The largest relative error of the energy, and how often walls reflected: a Gaussian of depth on unit depth, of 256
-/// particles at rest in a basin of length 2π with 63 intervals, with waves of unit speed and steps of 5e-3.
+/// The largest relative energy error, and the number of reflections at walls. The initial depth is a Gaussian on unit depth, of 256
+/// particles at rest in a basin of length 2π with 63 intervals; the wave speed is 1 and the step size 5e-3.
 fn along_a_line<S>(amplitude: f64, steps: usize) -> (f64, usize)
 where
     S: for<'a> Functional<f64, 1, Argument = f64, Data<'a> = (f64,)>,
@@ -143,14 +143,14 @@ where
         worst = largest([worst, run.energy(&u) / start - 1.0]);
         mass_error = largest([mass_error, run.mass_error()]);
     }
-    // Each of 64 nodes is a sum of some twenty values; their errors are of random sign.
+    // Each of 64 nodes sums about twenty values, with rounding errors of random sign.
     assert!(mass_error < 2e-15, "{mass_error:e}");
     (worst, run.crossings)
 }
 
 #[test]
 fn energy_along_a_line_stays_within_the_bound_of_its_amplitude() {
-    // The error is of the size of the square of the amplitude. Over 3e5 steps it is 1.0e-10, 1.3e-8 and 4.9e-8: it does not drift.
+    // The error scales with the square of the amplitude. Over 3e5 steps it is 1.0e-10, 1.3e-8 and 4.9e-8: no drift.
     for (amplitude, expected) in [(0.01, 1.0e-10), (0.1, 1.2e-8), (0.2, 5.0e-8)] {
         let (worst, crossings) = along_a_line::<smooth<f64, 1>>(amplitude, 10_000);
         assert_eq!(crossings, 0);
@@ -161,8 +161,7 @@ fn energy_along_a_line_stays_within_the_bound_of_its_amplitude() {
     }
 }
 
-/// The inverse of a symmetric matrix of second differences from wall to wall, which a stepper takes for its own
-/// adjoint in the weights.
+/// The inverse of a symmetric second-difference matrix between walls, which a stepper would treat as self-adjoint in the weights.
 #[derive(Clone, Debug)]
 struct Naive(f64);
 

@@ -1,10 +1,10 @@
-//! The limit of steps, beside steps within it and beyond.
+//! The stability limit of the step size, with step sizes below and above it.
 
 use super::common::*;
 use super::verlet::Run;
 use clebsch::mesh::*;
 
-/// The largest velocity after 400 steps of particles of a periodic line that are disturbed by rounding alone.
+/// The largest velocity after 400 steps of particles on a periodic line, perturbed by rounding alone.
 fn after_rounding(alpha: f64, dt: f64, of: &Setting<1>) -> f64 {
     let length = of.domain.lengths[0];
     let place =
@@ -25,14 +25,14 @@ fn after_rounding(alpha: f64, dt: f64, of: &Setting<1>) -> f64 {
 fn steps_are_limited_by_the_fastest_wave() {
     let of = setting(Domain::torus([1.0]), [32], 128);
     for alpha in [0.0, 1.0 / 32.0, 4.0 / 32.0] {
-        // The square of the speed of long waves is that of the potential.
+        // The potential gives the square of the speed of long waves.
         let fastest = fastest_wave(&of, alpha, 2.0, 0.0).expect("a grid");
         let slow = after_rounding(alpha, 0.95 * 2.0 / fastest, &of);
         assert!(slow < 1e-6, "{alpha}: {slow:e}");
-        // The grid has not all wave numbers.
+        // The grid does not represent all wave numbers.
         let quick = after_rounding(alpha, 1.1 * 2.0 / fastest, &of);
         assert!(quick > 1e-3, "{alpha}: {quick:e}");
     }
-    // The rotation alone.
+    // Rotation alone.
     assert_eq!(fastest_wave(&of, 0.1, 0.0, 3.0), Ok(3.0));
 }

@@ -16,41 +16,41 @@ use clebsch::{
 pub struct Problem<M: Model<Scalar = f64>> {
     /// The model.
     pub model: M,
-    /// The state with this part of the momenta.
+    /// The state with this fraction of the momenta.
     pub state: Box<dyn Fn(f64) -> M::State>,
-    /// The whole momenta.
+    /// The full momenta.
     pub momenta: DVector<f64>,
-    /// The step of about one radian.
+    /// The step size for a rotation of about one radian.
     pub unit: f64,
 }
 
-/// A model with problems.
+/// A model with random problems.
 pub trait Judged {
     /// The model.
     type M: Model<Scalar = f64>;
-    /// All velocities.
+    /// The velocities of all configurations.
     type E: Clone;
-    /// A problem.
+    /// A random problem.
     fn draw(random: &mut Random) -> Problem<Self::M>;
-    /// How many coordinates there are.
+    /// Number of coordinates.
     const DIMENSION: usize;
-    /// At rest.
+    /// Zero velocity.
     fn rest() -> Self::E;
-    /// What leads from one state to the next.
+    /// The velocity from one state to the next.
     fn between(
         from: &<Self::M as clebsch::integrate::Stepper>::State,
         to: &<Self::M as clebsch::integrate::Stepper>::State,
     ) -> Self::E;
-    /// Moved from the right.
+    /// The velocity after a retraction on the right.
     fn moved(velocity: &Self::E, xi: &[f64]) -> Self::E;
-    /// The derived equations, the edge before being at rest.
+    /// The derived equations, with zero velocity on the previous edge.
     fn balance(
         model: &Self::M,
         h: f64,
         here: &<Self::M as clebsch::integrate::Stepper>::State,
         velocity: &Self::E,
     ) -> DVector<f64>;
-    /// How far apart two velocities are.
+    /// The distance of two velocities.
     fn distance(a: &Self::E, b: &Self::E) -> f64;
 }
 
@@ -160,7 +160,7 @@ pub fn vector(random: &mut Random, length: f64) -> Vector3<f64> {
     random.vector().normalize() * length
 }
 
-/// Symmetric, its eigenvalues from 0.2 to 1.2.
+/// A random symmetric matrix with eigenvalues from 0.2 to 1.2.
 pub fn positive(random: &mut Random) -> Matrix3<f64> {
     let frame = random.rotation().matrix();
     let values = Vector3::from_fn(|_, _| between(random, 0.2, 1.2));

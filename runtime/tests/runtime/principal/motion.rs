@@ -1,5 +1,4 @@
-//! Whole motions, in which a step may be accepted by what was proved in an earlier one: every step
-//! of every motion is judged.
+//! Whole motions, in which a step may reuse the proof of an earlier one; every step of every motion is checked.
 
 use super::models::*;
 use super::oracle::{Curve, follow};
@@ -9,16 +8,16 @@ use clebsch::integrate::Stepper;
 use clebsch::solvers::moser_veselov::largest_step;
 use std::cell::{Cell, RefCell};
 
-/// Steps of a motion, at most.
+/// Maximum number of steps of a motion.
 const STEPS: usize = 40;
 
-/// Motions of each model: `PRINCIPAL_MOTIONS=1000` judges more.
+/// Motions per model; `PRINCIPAL_MOTIONS=1000` requests more.
 fn motions() -> u64 {
     let asked = std::env::var("PRINCIPAL_MOTIONS").ok();
     asked.and_then(|n| n.parse().ok()).unwrap_or(40)
 }
 
-/// Random problems, from small steps to about twice what can be solved.
+/// Random problems, from small step sizes to about twice the solvable ones.
 fn judge<J: Judged>(name: &str) {
     let mut random = Random(77);
     let unit = even::<J>();
@@ -32,7 +31,7 @@ fn judge<J: Judged>(name: &str) {
         };
         for step in 0..STEPS {
             let here = state;
-            // Within a search no other step is looked for.
+            // Inside a search, a failed step does not start another search.
             let moving = RefCell::new((state, work.clone()));
             let made = Cell::new(false);
             let _ = largest_step(1.0, |_| {

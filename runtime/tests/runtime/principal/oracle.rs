@@ -1,6 +1,6 @@
-//! The principal root by other means: the curve from rest is followed in small steps, its tangent
-//! taken by differences, and the smallest singular value watched.
-//! Takes the derived equations at three configurations; gives the end of the curve, or the fold.
+//! An independent computation of the principal root. It follows the curve from zero velocity in small steps, with a
+//! finite-difference Jacobian, and monitors the smallest singular value. Takes the derived equations at three configurations; gives
+//! the end of the curve, or the fold.
 
 use clebsch::nalgebra::{DMatrix, DVector};
 
@@ -8,29 +8,29 @@ use clebsch::nalgebra::{DMatrix, DVector};
 pub trait Curve {
     /// A velocity.
     type E: Clone;
-    /// How many coordinates it has.
+    /// Number of coordinates.
     fn dimension(&self) -> usize;
-    /// At rest.
+    /// Zero velocity.
     fn rest(&self) -> Self::E;
-    /// Moved from the right along coordinates.
+    /// The velocity after a retraction on the right along `xi`.
     fn moved(&self, velocity: &Self::E, xi: &DVector<f64>) -> Self::E;
     /// The equations, up to a constant.
     fn value(&self, velocity: &Self::E) -> DVector<f64>;
 }
 
-/// Where the curve leads.
+/// The end of continuation.
 pub struct Followed<E> {
     /// Its end, or the last point before a fold.
     pub end: E,
-    /// How much of it there is: 1 for all.
+    /// The fraction of the curve that was followed; 1 for all.
     pub share: f64,
-    /// The smallest singular value of the tangent at the end, that at rest being 1.
+    /// The smallest singular value of the Jacobian at the end, relative to zero velocity.
     pub smallest: f64,
 }
 
 const DIFFERENCE: f64 = 1e-5;
 
-/// The tangent, by central differences: to some 1e-10 of itself.
+/// The Jacobian by central differences, with a relative error of about 1e-10.
 fn tangent<C: Curve>(curve: &C, at: &C::E, unit: &DVector<f64>) -> DMatrix<f64> {
     let n = curve.dimension();
     let mut all = DMatrix::zeros(n, n);
@@ -46,8 +46,7 @@ fn tangent<C: Curve>(curve: &C, at: &C::E, unit: &DVector<f64>) -> DMatrix<f64> 
     all
 }
 
-/// Follows the curve to where the equations have the value `goal`. `unit` is what is a small move of
-/// each coordinate.
+/// Follows the curve until the equations have the value `goal`. `unit` gives a small displacement for each coordinate.
 pub fn follow<C: Curve>(
     curve: &C,
     goal: &DVector<f64>,
@@ -58,7 +57,7 @@ pub fn follow<C: Curve>(
     let way = goal - &first;
     let scale = DMatrix::from_diagonal(unit);
     let back = (tangent(curve, &at, unit) * &scale).try_inverse()?;
-    // Relative to the tangent at rest, in the units of the coordinates.
+    // Relative to the Jacobian at zero velocity, in the units of the coordinates.
     let relative = |at: &C::E| &back * tangent(curve, at, unit) * &scale;
     let (mut share, mut length) = (0.0_f64, 0.1_f64);
     let mut here = relative(&at);
@@ -80,7 +79,7 @@ pub fn follow<C: Curve>(
             }
             let mut next = curve.moved(&at, &predicted.component_mul(unit));
             let mut size = f64::INFINITY;
-            // The tangent of the beginning serves: it changes by a fifth at most.
+            // The Jacobian at the beginning suffices, because it changes by at most a fifth.
             for _ in 0..40 {
                 let correction = &inverse * (&back * (&target - curve.value(&next)));
                 size = correction.norm();
@@ -94,7 +93,7 @@ pub fn follow<C: Curve>(
                 }
             }
             let there = relative(&next);
-            // The tangent changes by a fifth of itself at most.
+            // The Jacobian must change by at most a fifth of itself.
             let changed =
                 (&inverse * &there - DMatrix::identity(there.nrows(), there.ncols())).norm();
             (size < 1e-8 && changed < 0.2).then_some((next, there))

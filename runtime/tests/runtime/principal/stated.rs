@@ -1,5 +1,4 @@
-//! Models that are solved by Newton's method, on every group, with potentials and terms linear in
-//! the velocity.
+//! Models that use Newton's method, on every group, with potentials and terms linear in the velocity.
 
 clebsch::model! {
     /// Two bodies with a joint.
@@ -145,7 +144,7 @@ clebsch::model! {
     }
 }
 
-/// Lagrangians on SO(3) that nobody has thought of.
+/// Generic Lagrangians on SO(3), not chosen with the solver in mind.
 macro_rules! random {
     ($($name:ident: [$($lagrangian:tt)+];)+) => {$(
         clebsch::model! {

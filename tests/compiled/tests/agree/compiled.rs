@@ -1,8 +1,8 @@
-//! Random models on every group of the language, compiled as a user's are. The package is built
-//! without optimisation, in every profile: it is run once, and compiling is what it costs.
+//! Random models on every group of the language, compiled like a user's models. Every profile builds this package without
+//! optimisation, because the tests run once and compilation dominates the cost.
 //!
-//! `CLEBSCH_RANDOM_MODELS=300 cargo test -p clebsch-compiled` compiles and runs three hundred,
-//! `CLEBSCH_RANDOM_FIRST=1000` others.
+//! `CLEBSCH_RANDOM_MODELS=300 cargo test -p clebsch-compiled` compiles and runs three hundred models; `CLEBSCH_RANDOM_FIRST=1000`
+//! selects other seeds.
 
 use clebsch::card::Card;
 use clebsch::nalgebra::SMatrix;
@@ -10,8 +10,8 @@ use clebsch::{Additive, Linear, Orthogonal, PlaneMotion, RigidMotion, Rotation, 
 
 include!(concat!(env!("OUT_DIR"), "/models.rs"));
 
-/// A body on a spring, stated by its configurations at both ends of the step: a sum of carried points
-/// under a vector product, which was emitted with the columns of the matrix before it.
+/// A body on a spring, stated by its configurations at both ends of the step. Regression: in a cross product, a sum of rotated
+/// points was emitted with the columns of the preceding matrix.
 #[allow(missing_docs, non_snake_case)]
 pub mod spring {
     clebsch::model! {
@@ -31,11 +31,11 @@ pub mod spring {
 /// A compiled model.
 #[derive(Clone, Copy, Debug)]
 pub struct Compiled {
-    /// What it was made from.
+    /// The seed of the model.
     pub seed: u64,
-    /// Its residual at three nodes, the step first.
+    /// The residual at three nodes; the first argument is the step size.
     pub residual: fn(f64, &Given) -> Result<Vec<f64>, String>,
-    /// Its description, by which it is stepped.
+    /// The card through which the test steps the model.
     pub card: &'static Card,
 }
 
@@ -44,10 +44,10 @@ pub struct Compiled {
 pub struct Given(pub Vec<(String, i8, Vec<f64>)>);
 
 impl Given {
-    /// The value in the type that is asked for.
+    /// Returns the value as type `V`.
     ///
     /// # Errors
-    /// When there is none, or it is no such value.
+    /// If the name and level have no value, or if the value does not have type `V`.
     pub fn get<V: Typed>(&self, name: &str, level: i8) -> Result<V, String> {
         let found = self.0.iter().find(|(n, l, _)| n == name && *l == level);
         let (.., data) = found.ok_or_else(|| format!("`{name}` is not given at {level}"))?;
@@ -55,9 +55,9 @@ impl Given {
     }
 }
 
-/// A value that emitted code takes.
+/// A type that emitted code accepts.
 pub trait Typed: Sized {
-    /// From its entries, row by row.
+    /// Builds the value from its entries, row by row.
     fn typed(data: &[f64]) -> Option<Self>;
 }
 
@@ -93,7 +93,7 @@ impl Typed for Rotation<f64> {
 
 impl Typed for UnitQuaternion<f64> {
     fn typed(data: &[f64]) -> Option<Self> {
-        // The first column of the left multiplication.
+        // The components are the first column of the left-multiplication matrix.
         let at = |i: usize| data.get(4 * i).copied();
         Self::from_components([at(0)?, at(1)?, at(2)?, at(3)?]).ok()
     }

@@ -1,6 +1,6 @@
-//! Every compiled random model against the oracle: residuals at random points that solve nothing, and
-//! two steps whose nodes leave the unreduced action stationary. Takes the models of the package; gives
-//! agreement to rounding. The oracle knows the model as a tree, never as text.
+//! Compares every compiled random model with the oracle. The test checks residuals at random points that solve nothing, and checks
+//! that two steps make the unreduced action stationary at the middle node. Both must agree to rounding. The oracle builds the model
+//! as a tree and never parses text.
 
 mod compiled;
 
@@ -12,15 +12,14 @@ use clebsch_oracle::oracle::wide::model::{Family, Model};
 use clebsch_oracle::oracle::wide::point::{Node, Point};
 use compiled::{Compiled, Given, MODELS};
 
-/// Random points for every model.
+/// Random points per model.
 const POINTS: u64 = 4;
-/// Agreement of residuals, relative to the sum of the sizes of the summands: a few roundings,
-/// magnified by inverses and determinants of random matrices, whose condition is seldom above 1e4.
+/// Tolerance of residuals relative to the sum of the absolute summands. Inverses and determinants of random matrices, whose
+/// condition number seldom exceeds 1e4, amplify a few rounding errors.
 const AGREEMENT: f64 = 1e-12;
-/// What two steps leave: Newton's method stops at a few roundings of the momentum, which is of the size
-/// of the summands.
+/// Tolerance for two steps: Newton's method stops at a few rounding errors of the momentum, which has the size of the summands.
 const SOLVED: f64 = 1e-11;
-/// The step of the two steps: the kinetic terms dominate.
+/// Step size of the two steps, small enough for the kinetic terms to dominate.
 const STEP: f64 = 0.02;
 
 fn given(point: &Point<'_>, nodes: &[Node; 3]) -> Given {
@@ -28,7 +27,7 @@ fn given(point: &Point<'_>, nodes: &[Node; 3]) -> Given {
     Given(list.map(|g| (g.name, g.shift, g.data)).collect())
 }
 
-/// The worst disagreement of residuals.
+/// The largest disagreement of residuals.
 fn residuals(compiled: &Compiled) -> Result<f64, String> {
     let model = Model::of_seed(compiled.seed);
     let mut source = Source::seeded(compiled.seed ^ 0xa9ee);
@@ -51,7 +50,7 @@ fn residuals(compiled: &Compiled) -> Result<f64, String> {
     Ok(worst)
 }
 
-/// The initial values by field, from the oracle's letters; momenta, body after body, are drawn.
+/// Initial values by field, from the oracle's symbols; momenta are random, one body after another.
 fn initial(
     model: &Model,
     card: &Card,
@@ -75,7 +74,7 @@ fn initial(
         let (count, n) = (field.rows * field.cols, field.cols);
         let draws: Vec<f64> = (0..count).map(|_| source.between(-0.3, 0.3)).collect();
         match family {
-            // The momentum of a body of other than three dimensions is a skew matrix.
+            // In dimensions other than three, the momentum of a body is a skew matrix.
             Some(Family::Rotation(_)) if n > 1 => (0..count)
                 .map(|k| draws[k] - draws[k % n * n + k / n])
                 .collect(),
@@ -85,7 +84,7 @@ fn initial(
     card.initial.iter().map(&mut value).collect()
 }
 
-/// A value in the numbers of its field: a unit quaternion by its four components.
+/// A value in the entries of its field: four components for a unit quaternion.
 fn as_field(field: &Field, value: &Grid<f64>) -> Vec<f64> {
     match field.rows * field.cols {
         4 if value.data.len() == 16 => (0..4).map(|i| value.at(i, 0)).collect(),
@@ -93,7 +92,7 @@ fn as_field(field: &Field, value: &Grid<f64>) -> Vec<f64> {
     }
 }
 
-/// What an element is, from the numbers of its field.
+/// Builds a group element from the entries of its field.
 fn element(family: Family, data: &[f64]) -> Grid<f64> {
     match (family, data) {
         (Family::Quaternion, [w, x, y, z]) => Grid::quaternion(*w, [*x, *y, *z]),
@@ -115,7 +114,7 @@ fn is_momentum(field: &Field) -> bool {
     )
 }
 
-/// The momenta of a start along the bases of their Lie algebras.
+/// Initial momenta in the bases of their Lie algebras.
 fn coordinates(card: &Card, values: &[Vec<f64>]) -> Vec<f64> {
     let momenta = card.initial.iter().zip(values);
     let momenta = momenta.filter(|(field, _)| is_momentum(field));
@@ -132,8 +131,7 @@ fn coordinates(card: &Card, values: &[Vec<f64>]) -> Vec<f64> {
     each.collect()
 }
 
-/// How far two emitted steps leave the action from being stationary, and their start from its momentum; nothing where a
-/// step is refused.
+/// How far two emitted steps leave the action from stationarity, and the start from its momentum. Returns `None` if a step fails.
 fn steps(compiled: &Compiled) -> Result<Option<f64>, String> {
     let model = Model::of_seed(compiled.seed);
     let mut source = Source::seeded(compiled.seed ^ 0x57e9);
@@ -241,7 +239,7 @@ fn steps_leave_the_action_stationary() {
         MODELS.len()
     );
     report(&failures);
-    // Some actions are far from convex; most are not.
+    // Some actions are far from convex, but most are not.
     assert!(refused.len() * 10 <= MODELS.len(), "refused: {refused:?}");
 }
 
@@ -294,6 +292,6 @@ fn every_group_and_function_stands_in_some_model() {
             "no model has `{wanted}`"
         );
     }
-    // Each function around a number of its own, so that one taken for another is seen.
+    // Each function is sampled around its own number, so that the test detects one function in place of another.
     assert_eq!(AROUND.len(), 16);
 }

@@ -1,5 +1,4 @@
-//! Toda's chain and the sine-Gordon equation, compiled and by hand. Takes a random source; gives states, and what both make
-//! of them.
+//! Toda's chain and the sine-Gordon equation: random states, with the results of the compiled and the hand-written stepper.
 
 use super::{Shown, System, stretched};
 use clebsch::nalgebra::SMatrix;
@@ -110,7 +109,7 @@ pub struct Pendulums {
 }
 
 impl Pendulums {
-    /// Whether the first and the last node are held.
+    /// Whether an end prescribes the first and the last node.
     fn held(&self) -> [bool; 2] {
         match self.wire.ends {
             pendulums::Ends::Ring(_) => [false; 2],
@@ -121,7 +120,7 @@ impl Pendulums {
         }
     }
 
-    /// Those of nodes that move.
+    /// The momenta of the free nodes.
     fn of_moving(&self, momenta: Vec<f64>) -> Vec<f64> {
         let [first, last] = self.held().map(usize::from);
         momenta[first..momenta.len() - last].to_vec()
@@ -165,7 +164,7 @@ impl System for Pendulums {
             _ => last,
         };
         match kind {
-            // The weight of a held node is in no equation.
+            // The weight of a prescribed node appears in no equation.
             0..3 if first_held && at == 0 || last_held && at == last => return None,
             0..3 => wire.weights[at] *= 1.0 + share,
             3 => wire.spacing *= 1.0 + share,

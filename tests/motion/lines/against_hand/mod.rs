@@ -1,5 +1,5 @@
-//! Compiled lattices against the same steppers written by hand: one step and fifty, from random states with random data of
-//! every site, at every end. Takes nothing but seeds; any datum that the hand-written one has wrong by a millionth is noticed.
+//! Compares compiled chains with hand-written steppers: one step and fifty steps from random states with random data at every site,
+//! for all ends. A test checks that the comparison detects a relative change of 1e-6 in every datum.
 
 mod chains;
 mod rod;
@@ -12,33 +12,32 @@ use clebsch_oracle::physics::measure::worse;
 use rod::Elastic;
 use tops::Coupled;
 
-/// Numbers of segments: fewer and more than the sites that either stepper takes together.
+/// Numbers of segments: fewer and more than the block size of either stepper.
 const SIZES: [usize; 5] = [2, 3, 5, 12, 50];
 
-/// States of each size and end; ends are two to thirteen.
+/// States for each size and each of two to thirteen ends.
 const STATES: usize = 40;
 
-/// Some thirty roundings of each of two steppers, of numbers of order one that are not magnified.
+/// About thirty rounding errors in each of the two steppers, for numbers of order one without amplification.
 const ONE_STEP: f64 = 1e-14;
 
-/// Steps of a short trajectory.
+/// Number of steps of a short trajectory.
 const STEPS: usize = 50;
 
-/// Relative change of a datum by which conditioning is measured, and by which it is mistaken: far above rounding, far
-/// below one.
+/// Relative change of a datum, both to measure conditioning and to plant a mistake: far above rounding, far below one.
 const NUDGE: f64 = 1e-6;
 
-/// What is compared, each quantity by itself: numbers of all sites.
+/// The compared values: one list over all sites per quantity.
 type Shown = Vec<Vec<f64>>;
 
-/// A state of a lattice with its data.
+/// A state of a chain with its data.
 trait System: Clone {
-    /// Kinds of data; not each of them is there at each end.
+    /// Kinds of data; some kinds exist only for some ends.
     const KINDS: usize;
-    /// How many ways there are to end.
+    /// Number of end conditions.
     const ENDS: usize;
     fn draw(source: &mut Source, n: usize, ends: usize) -> Self;
-    /// The same with one kind of datum larger by this share; none if there is no such datum.
+    /// The same state with one kind of datum increased by this fraction; `None` if the state has no such datum.
     fn nudged(&self, kind: usize, share: f64) -> Option<Self>;
     fn by_hand(&self, steps: usize) -> Option<Shown>;
     fn generated(&self, steps: usize) -> Option<Shown>;
@@ -54,7 +53,7 @@ fn apart(a: &Shown, b: &Shown) -> Vec<f64> {
     each.collect()
 }
 
-/// By how much relative changes of its data change each quantity, at least by its size.
+/// The change of each quantity per relative change of the data, at least the size of the quantity.
 fn conditioning<S: System>(state: &S, result: &Shown, steps: usize) -> Vec<f64> {
     let sizes = result
         .iter()
@@ -71,7 +70,7 @@ fn conditioning<S: System>(state: &S, result: &Shown, steps: usize) -> Vec<f64> 
     all
 }
 
-/// The largest difference of two results over the conditioning of a state.
+/// The largest difference of two results divided by the conditioning of the state.
 fn off<S: System>(state: &S, hand: &Shown, generated: &Shown, steps: usize) -> f64 {
     let scales = conditioning(state, hand, steps);
     let differences = apart(hand, generated).into_iter().zip(scales);
@@ -111,7 +110,7 @@ fn agree<S: System>(name: &str) {
             "{name}, end {ends}: {one:.1e} after a step, {many:.1e} after {STEPS}; a wrong datum at least {least:.1e}"
         );
         assert!(one < ONE_STEP, "{name}, end {ends}: {one:e}");
-        // Every step adds as much, which the steps after it magnify by no more than all steps magnify the data.
+        // Every step adds the error of one step, and later steps amplify it at most as much as all steps amplify the data.
         assert!(
             many < STEPS as f64 * ONE_STEP,
             "{name}, end {ends}: {many:e}"
@@ -127,13 +126,13 @@ fn stretched<const N: usize>(v: [f64; N], share: f64) -> [f64; N] {
     v.map(|x| x * (1.0 + share))
 }
 
-/// A turn about an axis by an angle.
+/// The quaternion of a rotation about an axis.
 fn turn(axis: Vector, angle: f64) -> Quaternion {
     let [x, y, z] = axis.map(|c| 0.5 * angle * c);
     Quaternion([1.0, x, y, z]).normalised()
 }
 
-/// Attitudes, every second one turned by an angle.
+/// The attitudes, with every second one rotated by an angle.
 fn turned(attitudes: &[Quaternion], angle: f64) -> Vec<Quaternion> {
     let each = attitudes.iter().enumerate();
     each.map(|(i, q)| match i % 2 {
@@ -143,7 +142,7 @@ fn turned(attitudes: &[Quaternion], angle: f64) -> Vec<Quaternion> {
     .collect()
 }
 
-/// Second moments, mostly in no principal axes.
+/// Second moments, mostly not diagonal.
 fn moments(source: &mut Source) -> [[f64; 3]; 3] {
     match source.chance(30) {
         true => [

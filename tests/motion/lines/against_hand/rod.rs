@@ -1,4 +1,4 @@
-//! The elastic rod, compiled and by hand. Takes a random source; gives states, and what both make of them.
+//! The elastic rod: random states, with the results of the compiled and the hand-written stepper.
 
 use super::tops::{body_momenta, entries, entries_of, matrix, rotations};
 use super::{Shown, System, attitude, moments, stretched, turn, turned};
@@ -19,7 +19,7 @@ pub struct Elastic {
     h: f64,
 }
 
-/// The first end of an open rod and the last one, of twelve pairs.
+/// The first and the last end of an open rod, from twelve pairs.
 fn ends(source: &mut Source, pair: usize) -> [End; 2] {
     let mut end = |which: usize| match which {
         0 => End::FREE,
@@ -34,7 +34,7 @@ fn ends(source: &mut Source, pair: usize) -> [End; 2] {
 }
 
 impl Elastic {
-    /// Whether nodes at the ends are held.
+    /// Whether an end prescribes the first and the last node.
     fn held(&self) -> [bool; 2] {
         match self.rod.ends {
             Ends::Ring(_) => [false; 2],
@@ -42,7 +42,7 @@ impl Elastic {
         }
     }
 
-    /// Those of nodes that move.
+    /// The momenta of the free nodes.
     fn of_moving(&self, momenta: Vec<f64>) -> Vec<f64> {
         let [first, last] = self.held().map(|held| 3 * usize::from(held));
         momenta[first..momenta.len() - last].to_vec()
@@ -79,7 +79,7 @@ impl Elastic {
     }
 }
 
-/// An end with its datum larger by a share, `bonds` for the strength of a clamp and otherwise for its wall.
+/// An end with one datum increased by a fraction: the clamp stiffness if `bonds`, otherwise the wall.
 fn other_end(end: &mut End, bonds: bool, share: f64) -> Option<()> {
     match end {
         End::Clamped {
@@ -101,7 +101,7 @@ impl System for Elastic {
         let nodes = n + usize::from(!ring);
         let s = source.between(0.4, 1.0);
         let (along, off): (Vector, Vector) = (source.vector(), source.vector());
-        // One kind of section or one for each segment.
+        // One section type for all segments, or one per segment.
         let alike = source.chance(50).then(|| moments(source));
         let places: Vec<Vector> = (0..nodes)
             .map(|i| {
@@ -155,7 +155,7 @@ impl System for Elastic {
             5 => rod.shear = scaled_matrix(factor, &rod.shear),
             6 => rod.bending = scaled_matrix(factor, &rod.bending),
             7 => rod.gravity = stretched(rod.gravity, share),
-            // The mass of a held node is in no equation.
+            // The mass of a prescribed node appears in no equation.
             8 if first_held => return None,
             8 => rod.masses[0] *= factor,
             9 if last_held => return None,
@@ -179,7 +179,7 @@ impl System for Elastic {
                 };
                 *growth = stretched(*growth, share);
             }
-            // A single entry, which no factor hides.
+            // Adds to a single entry, because a common factor might cancel.
             _ => {
                 rod.bending[0][2] += share;
                 rod.bending[2][0] += share;

@@ -1,4 +1,4 @@
-//! Coupled tops, compiled and by hand. Takes a random source; gives states, and what both make of them.
+//! Coupled tops: random states, with the results of the compiled and the hand-written stepper.
 
 use super::{Shown, System, attitude, moments, stretched, turned};
 use clebsch::nalgebra::{Matrix3, Vector3};
@@ -8,7 +8,7 @@ use clebsch_oracle::handwritten::attitude::{Quaternion, Vector, scaled_matrix};
 use clebsch_oracle::handwritten::lattices::coupled_tops as hand;
 use clebsch_oracle::oracle::points::Source;
 
-/// Tops in a row or a ring.
+/// Tops in an open chain or a ring.
 #[derive(Clone)]
 pub struct Coupled {
     row: hand::Row,
@@ -17,18 +17,18 @@ pub struct Coupled {
     h: f64,
 }
 
-/// A matrix of the runtime.
+/// A matrix as a runtime type.
 pub fn matrix(m: &[[f64; 3]; 3]) -> Matrix3<f64> {
     Matrix3::from_fn(|i, j| m[i][j])
 }
 
-/// Attitudes of the runtime.
+/// Attitudes as runtime types.
 pub fn rotations(attitudes: &[Quaternion]) -> Vec<Rotation> {
     let each = attitudes.iter().map(|q| Rotation::from_quaternion(q.0));
     each.map(|q| q.expect("a unit quaternion")).collect()
 }
 
-/// Body momenta of the runtime.
+/// Body momenta as runtime types.
 pub fn body_momenta(momenta: &[Vector]) -> Vec<BodyMomentum> {
     let each = momenta.iter().map(|m| BodyMomentum(Vector3::from(*m)));
     each.collect()
@@ -39,7 +39,7 @@ pub fn entries(attitudes: impl Iterator<Item = Quaternion>) -> Vec<f64> {
     attitudes.flat_map(|q| q.matrix().concat()).collect()
 }
 
-/// The same of attitudes of the runtime.
+/// The entries of all runtime attitudes, row by row.
 pub fn entries_of(attitudes: impl Iterator<Item = Rotation>) -> Vec<f64> {
     let each = attitudes.map(|r| r.matrix().transpose());
     each.flat_map(|m| m.as_slice().to_vec()).collect()
@@ -62,7 +62,8 @@ impl System for Coupled {
                 up: source.vector(),
                 ring: ends == 1,
             },
-            // The longest need more than one pass for the root of some tops, so that a block is also done one by one.
+            // With the largest step size, some tops need more than one iteration for the root, so that the stepper also processes a
+            // block one by one.
             h: source.between(0.02, 0.2),
         }
     }

@@ -1,5 +1,5 @@
-//! Sites whose velocities are found by Newton's method: beads whose masses change with a place that moves
-//! as well, in a potential that is taken in the middle of the step; stated here.
+//! Sites whose velocities need Newton's method: beads whose masses depend on a dynamic position, in a potential evaluated at the
+//! midpoint of the step. The model is defined in this file.
 
 use super::{Line, Random, c, keeping, numbers, stepped};
 use crate::action::{Configuration, D};
@@ -72,7 +72,7 @@ impl Line for Bent {
         format!("bent {} ring {}", self.n, self.ring)
     }
     fn terms(&self) -> usize {
-        // The neighbour of a lone site of a ring is itself.
+        // In a ring of one site, the site is its own neighbour.
         if self.ring && self.n == 1 { 3 } else { 5 }
     }
     fn weighed(&self, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D {

@@ -1,4 +1,4 @@
-//! Shallow water on a plane whose rotation changes with the latitude, on Voronoi cells; stated here.
+//! Shallow water on a beta plane, on Voronoi cells. The model is defined in this file.
 
 use super::cells::{DT, area, at, cell, mass, momenta, places, seen};
 use super::{Line, Random, c, keeping, stepped};

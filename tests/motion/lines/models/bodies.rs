@@ -1,5 +1,5 @@
-//! Bodies whose velocities stand in one term with those of their neighbours, found together along the line: those of the
-//! gallery, and some stated here that are held at their ends.
+//! Bodies with a velocity coupling between neighbours, solved together along the chain: the gallery model, and models defined in
+//! this file with prescribed ends.
 
 use super::{Line, Random, attitudes, c, keeping, numbers, stepped, vector};
 use crate::action::{Configuration, D, trace};
@@ -56,14 +56,14 @@ fn arm() -> Vector3<f64> {
     Vector3::new(0.3, 0.4, 0.5)
 }
 
-/// Minus `e` times the products of changes of `Λ d` over the step, of neighbours.
+/// `-e` times the product of the changes of `Λ d` of neighbours over the step.
 fn dragged(n: usize, a: &[Matrix3<D>], b: &[Matrix3<D>]) -> D {
     let d = vector(&arm());
     let change = |i: usize| (b[i % b.len()] - a[i % a.len()]) * d;
     (0..n).fold(c(0.0), |s, i| s - c(EPS) * change(i).dot(&change(i + 1)))
 }
 
-/// The bodies of the gallery: a ring or a row.
+/// The bodies of the gallery: a ring or an open chain.
 pub struct Bodies {
     pub n: usize,
     pub ring: bool,
@@ -120,7 +120,7 @@ impl Line for Bodies {
     stepped!([body_momentum_Λ], 0.04, 2e-2, 2.0 / 0.04);
 }
 
-/// The bodies stated here: a ring, free, held first, held last, clamped first and held last.
+/// The bodies of this file, by end: ring, free, first prescribed, last prescribed, first clamped and last prescribed.
 pub struct Dragged {
     pub n: usize,
     pub ends: usize,
@@ -217,7 +217,7 @@ impl Line for Dragged {
     stepped!([body_momentum_Λ], 0.03, 2e-2, 2.0 / 0.03);
 }
 
-/// The bodies with beads: a ring or a row.
+/// The bodies with beads: a ring or an open chain.
 pub struct Beaded {
     pub n: usize,
     pub ring: bool,

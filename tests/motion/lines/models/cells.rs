@@ -1,5 +1,5 @@
-//! Shallow water in the plane on Voronoi cells: areas here are those of squares cut by the bisectors of all
-//! particles and their images, the smoothed depth solves its dense system; nothing is shared with the runtime.
+//! Shallow water in the plane on Voronoi cells. Here a cell is the square cut by the bisectors with all particles and their images,
+//! and the smoothed depth solves a dense linear system. The runtime shares none of this code.
 
 use super::dense::solved;
 use super::{Line, Random, c, keeping, stepped};
@@ -11,11 +11,10 @@ use clebsch_models::fluids::shallow_water_2d_regularised::*;
 
 pub(super) type Place = Vector2<D>;
 
-/// Edges of the cell of a particle on the unit torus: their ends, seen from the particle, the neighbour and how far
-/// it is.
+/// The edges of a particle's cell on the unit torus: both end points relative to the particle, the neighbour, and the vector to it.
 pub(super) fn cell(at: &[Place], a: usize) -> Vec<(Place, Place, usize, Place)> {
     let half = c(0.5);
-    // Sides of the square belong to no neighbour; none is left where there are enough particles.
+    // The sides of the initial square belong to no neighbour; with enough particles, none remains.
     let corner = |x: f64, y: f64| Vector2::new(c(x) * half, c(y) * half);
     let corners = [
         corner(-1.0, -1.0),
@@ -33,7 +32,7 @@ pub(super) fn cell(at: &[Place], a: usize) -> Vec<(Place, Place, usize, Place)> 
             if square.value() < 1e-20 {
                 continue;
             }
-            // Kept is what is nearer to the particle: <x, d> <= |d|^2/2.
+            // Keeps the half plane nearer to the particle: <x, d> <= |d|^2/2.
             let beyond = |x: &Place| x.dot(&d) - square * half;
             let mut kept = Vec::new();
             let (mut left, mut entered) = (None, None);
@@ -61,7 +60,7 @@ pub(super) fn cell(at: &[Place], a: usize) -> Vec<(Place, Place, usize, Place)> 
             edges = kept;
         }
     }
-    // The order of edges does not matter: each is a triangle with the particle.
+    // The order of the edges does not matter: each forms a triangle with the particle.
     edges
 }
 
@@ -72,7 +71,7 @@ pub(super) fn area(edges: &[(Place, Place, usize, Place)]) -> D {
     each.fold(c(0.0), |s, x| s + x)
 }
 
-/// The depth of Voronoi cells smoothed over a length: `(A + alpha^2 K) phi = m`.
+/// The Voronoi depth smoothed over the length alpha: `(A + alpha^2 K) phi = m`.
 fn smoothed(at: &[Place], m: &[f64], alpha: f64) -> Vec<D> {
     let n = at.len();
     let mut a = vec![vec![c(0.0); n]; n];
@@ -89,7 +88,7 @@ fn smoothed(at: &[Place], m: &[f64], alpha: f64) -> Vec<D> {
     solved(a, m.iter().map(|m| c(*m)).collect())
 }
 
-/// Pairs within a radius, each once.
+/// The core energy of all pairs within a radius, each pair once.
 fn core(at: &[Place], rc: f64) -> D {
     let mut sum = c(0.0);
     for a in 0..at.len() {
@@ -107,12 +106,12 @@ fn core(at: &[Place], rc: f64) -> D {
     sum
 }
 
-/// Cells, with the depth as it is or smoothed.
+/// Cells with the unsmoothed depth.
 pub struct Cells {
     pub n: usize,
 }
 
-/// The same with the depth smoothed.
+/// Cells with the smoothed depth.
 pub struct Smoothed {
     pub n: usize,
 }
@@ -125,7 +124,7 @@ pub(super) fn mass(n: usize, i: usize) -> f64 {
     (1.0 + 0.2 * (i % 3) as f64) / n as f64
 }
 
-/// Places that are as far apart as they can be drawn.
+/// Random positions with a large minimum distance.
 pub(super) fn places(n: usize, r: &mut Random) -> Vec<Vector2<f64>> {
     let mut out: Vec<Vector2<f64>> = Vec::new();
     let near = 0.6 / (n as f64).sqrt();
@@ -174,7 +173,7 @@ fn edge(n: usize, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D {
     s
 }
 
-/// What translations keep: the kinetic momentum turned with half of the frame's.
+/// The total that translations conserve: the kinetic momentum, rotated with half of the frame's momentum.
 fn total(n: usize, x: &[Vector2<f64>], p: &[Vector2<f64>]) -> f64 {
     let each = x.iter().zip(p).enumerate();
     each.map(|(i, (x, p))| p[0] - mass(n, i) * F / 2.0 * x[1])
@@ -204,7 +203,7 @@ impl Cells {
     }
     keeping!(ShallowWater2D, |model, s: &ShallowWater2DState| {
         let own = total(s.X().len(), s.X(), s.momentum_X());
-        // The total that the engine states is this one.
+        // The total momentum of the engine equals this one.
         assert!((model.momentum(s)[0] - own).abs() < 1e-14);
         own
     });

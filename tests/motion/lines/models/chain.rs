@@ -5,7 +5,7 @@ use crate::action::{Configuration, D};
 use clebsch::nalgebra::Vector3;
 use clebsch_models::lattices::hanging_chain::*;
 
-/// A chain: free, hung up at its first bead, at its last, at both; or a ring.
+/// A chain: free, fixed at the first bead, at the last, or at both; or a ring.
 pub struct Chain {
     pub n: usize,
     pub ends: usize,
@@ -60,9 +60,9 @@ impl Chain {
         };
         HangingChain::new(parameters, HangingChainSites { N: self.n, ends }).expect("a chain")
     }
-    /// Links that turn, each by itself; a ring as a whole; at rest where both ends are held.
+    /// Links that rotate independently, or a ring that moves as a whole; at rest if both ends are fixed.
     pub fn initial(&self, seed: u64) -> HangingChainInitial {
-        // One shape; what moves is random.
+        // One shape for all seeds, with random velocities.
         let (mut shape, mut r) = (Random::new(21), Random::new(seed));
         let (mut x, mut v) = (vec![shape.vector()], vec![r.vector() * 0.3]);
         if self.ends == 1 || self.ends == 3 {

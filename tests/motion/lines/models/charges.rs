@@ -1,4 +1,4 @@
-//! Charges in the plane, stated here.
+//! Charges in the plane. The model is defined in this file.
 
 use super::{Line, Random, c, keeping, numbers, stepped};
 use crate::action::{Configuration, D};
@@ -17,7 +17,7 @@ clebsch::model! {
     }
 }
 
-/// Charges joined by springs, free at both ends.
+/// Charges coupled by springs, free at both ends.
 pub struct Charges {
     pub n: usize,
 }
@@ -53,7 +53,7 @@ impl Charges {
     fn seen(&self, s: &ChargeChainState) -> Configuration<f64> {
         Configuration::of(numbers(s.X()), vec![], vec![])
     }
-    // With half of the field's impulse: what translations keep.
+    // Translations conserve the momentum plus half of the field's impulse.
     keeping!(ChargeChain, |_, s: &ChargeChainState| {
         s.momentum_X()
             .iter()

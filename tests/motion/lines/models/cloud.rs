@@ -1,5 +1,5 @@
-//! Particles in the plane with functionals of all of them: one made of their places, another made of that
-//! one. Both are defined here; the engine knows their names alone.
+//! Particles in the plane with two functionals of all particles: one of their positions, and one of the first functional. This file
+//! defines both; the engine knows only their names.
 
 use super::{Line, Random, c, keeping, numbers, stepped};
 use crate::action::{Configuration, D};
@@ -60,7 +60,7 @@ impl<T: Real> Functional<T, 2> for soft_depth<T> {
     }
 }
 
-/// Of another functional: `S_a = D_a^2 + q D_{a+1}`, the last site followed by the first.
+/// A functional of another functional: `S_a = D_a^2 + q D_{a+1}`, cyclic in the sites.
 #[allow(non_camel_case_types)]
 #[derive(Clone, Debug)]
 pub struct spread<T> {
@@ -152,7 +152,7 @@ impl Cloud {
     fn seen(&self, s: &CloudsState) -> Configuration<f64> {
         Configuration::of(numbers(s.X()), vec![], vec![])
     }
-    // Neither translations nor turns leave the functionals as they are.
+    // The functionals are not invariant under translations or rotations.
     keeping!(Clouds, |_, _: &CloudsState| 0.0);
 }
 

@@ -1,4 +1,4 @@
-//! Systems of linear equations of dual numbers, by elimination with the largest pivot.
+//! Linear systems over dual numbers, by elimination with partial pivoting.
 
 use crate::action::D;
 use clebsch::Real;

@@ -1,4 +1,4 @@
-//! Rotations whose kinetic energy is no quadratic form, each found by Newton's method at its site; stated here.
+//! Rotations whose kinetic energy is not quadratic, each solved by Newton's method at its site. The model is defined in this file.
 
 use super::{Line, Random, attitudes, c, keeping_between, stepped, vector};
 use crate::action::{Configuration, D, trace};
@@ -27,7 +27,7 @@ const H: f64 = 0.06;
 const B: f64 = 0.2;
 const A: f64 = 0.5;
 
-/// The bodies: a ring, free, held first, held last.
+/// The bodies, by end: ring, free, first prescribed, last prescribed.
 pub struct Fast {
     pub n: usize,
     pub ends: usize,
@@ -82,7 +82,7 @@ impl Fast {
     fn seen(&self, s: &FastTopsState) -> Configuration<f64> {
         Configuration::of(vec![], s.Λ().map(|r| r.matrix()).collect(), vec![])
     }
-    /// The energy between two nodes, by the rotation of the edge and the mean of both potentials.
+    /// The energy between two nodes, from the rotation of the edge and the mean of both potentials.
     fn energy(&self, a: &[Matrix3<f64>], b: &[Matrix3<f64>], h: f64) -> f64 {
         let z = Self::vertical();
         let mut e = 0.0;
@@ -103,7 +103,7 @@ impl Fast {
         }
         e
     }
-    // The kinetic energy of each is about one.
+    // The kinetic energy per body is about one.
     keeping_between!(
         r,
         |line: &Self, s: &FastTopsState| match line.ends {

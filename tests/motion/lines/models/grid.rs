@@ -1,5 +1,5 @@
-//! Particle-mesh shallow water: the depth on the grid here is a sum of B-splines over particles and their images, the
-//! smoother a dense system along walls and a sum of Fourier modes around; nothing is shared with the runtime.
+//! Particle-mesh shallow water. Here the grid depth is a sum of B-splines over particles and their images; the smoother is a dense
+//! system between walls and a sum of Fourier modes in periodic directions. The runtime shares none of this code.
 
 use super::dense::solved;
 use super::{Line, Random, c, keeping, numbers, stepped};
@@ -10,7 +10,7 @@ use clebsch::nalgebra::{SMatrix, Vector2};
 use clebsch_models::fluids::particle_mesh_1d::*;
 use clebsch_models::fluids::particle_mesh_2d::*;
 
-/// The cubic B-spline of unit spacing about 0, whose translates by whole numbers add up to one.
+/// The cubic B-spline of unit spacing centred at 0; its integer translates sum to one.
 fn spline(x: D) -> D {
     let x = if x.value() < 0.0 { -x } else { x };
     match x.value() {
@@ -23,7 +23,7 @@ fn spline(x: D) -> D {
     }
 }
 
-/// One direction: its length, cells, and whether it ends in walls.
+/// One direction: its length, its number of cells, and whether it ends in walls.
 #[derive(Clone, Copy)]
 struct Axis {
     length: f64,
@@ -38,12 +38,12 @@ impl Axis {
     fn spacing(self) -> f64 {
         self.length / self.cells as f64
     }
-    /// The weight of a node in the trapezoid sum.
+    /// The weight of a node in the trapezoidal rule.
     fn weight(self, i: usize) -> f64 {
         let end = self.walls && (i == 0 || i == self.cells);
         self.spacing() * if end { 0.5 } else { 1.0 }
     }
-    /// What a particle adds to a node: with its images behind walls, or turned around.
+    /// The contribution of a particle to a node, including images behind walls or periodic images.
     fn basis(self, x: D, i: usize) -> D {
         let n = self.cells as f64;
         let u = x * c(1.0 / self.spacing());
@@ -152,12 +152,12 @@ fn potential(axes: &[Axis], places: &[Vec<D>], m: &[f64], c0: f64, alpha: f64) -
     sum * c(c0 * c0 / 2.0)
 }
 
-/// Particles on a line between walls.
+/// Particles on an interval between walls.
 pub struct Basin {
     pub n: usize,
 }
 
-/// Particles in a plane with a turning frame, walls across the first direction or none.
+/// Particles in a rotating plane, with or without walls across the first direction.
 pub struct Plane {
     pub n: usize,
     pub walls: bool,
@@ -211,7 +211,7 @@ impl Basin {
             q: Vec::new(),
         }
     }
-    // On a grid no momentum is kept.
+    // The grid breaks translation invariance, so no momentum is conserved.
     keeping!(ParticleMesh1D, |_, _: &ParticleMesh1DState| 0.0);
 }
 

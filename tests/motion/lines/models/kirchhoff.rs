@@ -1,4 +1,4 @@
-//! The rod that cannot be stretched.
+//! The inextensible rod.
 
 use super::{Line, Random, c, diagonal, keeping, numbers, stepped, vector};
 use crate::action::{Configuration, D, trace};
@@ -6,12 +6,12 @@ use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Real, Rotation};
 use clebsch_models::lattices::kirchhoff_rod::*;
 
-/// Ends: free, pinned, clamped at the first one; free, pinned, loaded at the last; or a ring.
+/// Ends: the first is free, pinned or clamped, and the last is free, pinned or loaded; or the rod is a ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
-    /// Both by their numbers.
+    /// The numbers of the first and the last end.
     Open(usize, usize),
-    /// Closed, from one end to the other by what the sections say.
+    /// A ring, closed by the vector that the sections add up to.
     Ring,
 }
 
@@ -58,7 +58,7 @@ impl Kirchhoff {
             .map(|_| Rotation::exp(&(r.vector() * 0.3)))
             .collect()
     }
-    /// From one end to the other.
+    /// The vector from one end to the other.
     fn across(&self) -> Vector3<f64> {
         let each = self.attitudes();
         each.iter().map(|r| r.matrix() * Vector3::z() * S).sum()
@@ -95,7 +95,7 @@ impl Kirchhoff {
         };
         KirchhoffRod::new(parameters, KirchhoffRodSites { N: self.n, ends }).expect("a rod")
     }
-    /// Sections that turn, nodes that go with them; at rest where both ends are held.
+    /// Rotating sections and the matching node velocities; at rest if both ends are fixed.
     pub fn initial(&self, seed: u64) -> KirchhoffRodInitial {
         let (attitudes, mut r) = (self.attitudes(), Random::new(seed + 100));
         let mut x = vec![r.vector()];
@@ -110,7 +110,7 @@ impl Kirchhoff {
         for (i, turn) in attitudes.iter().enumerate() {
             let turn = turn.matrix();
             let spin = match self.ends {
-                // One that leaves the closed line as it is.
+                // A spin that leaves the closed curve unchanged.
                 Ends::Ring => Vector3::z() * r.number(),
                 Ends::Open(_, 1) => Vector3::z() * r.number(),
                 Ends::Open(..) => r.vector(),
@@ -194,7 +194,7 @@ impl Line for Kirchhoff {
         let at = |i: usize| Vector3::new(q.x[3 * i], q.x[3 * i + 1], q.x[3 * i + 2]);
         let each = (0..self.n).flat_map(|i| {
             let j = (i + 1) % self.nodes();
-            // Across the seam by a constant.
+            // Across the seam, positions differ by a constant.
             let d = at(j) - at(i) - q.r[i] * vector(&Vector3::z()) * c(S);
             [d[0], d[1], d[2]]
         });
@@ -210,10 +210,10 @@ impl Line for Kirchhoff {
     stepped!([momentum_φ body_momentum_Λ], 0.02, 5e-2, 0.7 / H);
 }
 
-/// Rods of so many sections, with every end that leaves their constraints independent.
+/// Rods with `n` sections, for all ends with independent constraints.
 pub fn all(n: usize) -> Vec<Kirchhoff> {
     let open = (0..9).map(|ends| Ends::Open(ends / 3, ends % 3));
-    // One section between two held places turns about them alone.
+    // A single section between two fixed positions can only rotate about its own axis.
     let open = open.filter(|ends| n > 1 || !matches!(ends, Ends::Open(1.., 1)));
     let ring = (n > 1).then_some(Ends::Ring);
     open.chain(ring).map(|ends| Kirchhoff { n, ends }).collect()

@@ -1,4 +1,4 @@
-//! Velocities of neighbours in one term, found together along the line; stated here.
+//! Velocity coupling of neighbours, solved together along the chain. The models are defined in this file.
 
 use super::{Line, Random, Wide, c, keeping_between, numbers, stepped};
 use crate::action::{Configuration, D};
@@ -40,7 +40,7 @@ const H: f64 = 0.05;
 const C: f64 = 0.3;
 const E: f64 = 0.6;
 
-/// The chain of numbers: a ring, free, held first, held last.
+/// The scalar chain, by end: ring, free, first prescribed, last prescribed.
 pub struct Linked {
     pub n: usize,
     pub ends: usize,
@@ -83,7 +83,7 @@ impl Linked {
             momentum_q: r.list(n, 1.0),
         }
     }
-    /// Three steps of derivatives by all places and momenta.
+    /// Three steps, with derivatives with respect to all positions and momenta.
     pub fn moved(&self, q: Vec<Wide>, p: Vec<Wide>) -> [Vec<Wide>; 2] {
         let k = Wide::constant;
         let parameters = LinkedChainParameters {
@@ -114,11 +114,11 @@ impl Linked {
     fn seen(&self, s: &LinkedChainState) -> Configuration<f64> {
         Configuration::of(numbers(s.q()), vec![], vec![])
     }
-    /// By how much the neighbour of a link is farther than it is stored.
+    /// The offset of the neighbour across the seam of the ring.
     fn beyond(&self, [_, j]: [usize; 2]) -> f64 {
         if self.ends == 0 && j == 0 { 2.0 } else { 0.0 }
     }
-    /// The energy between two nodes, by the velocity of the edge and the mean of both potentials.
+    /// The energy between two nodes, from the velocity of the edge and the mean of both potentials.
     fn energy(&self, a: &[f64], b: &[f64], h: f64) -> f64 {
         let v: Vec<f64> = a.iter().zip(b).map(|(a, b)| (b - a) / h).collect();
         let own = v.iter().enumerate().map(|(i, v)| mass(i) * v * v / 2.0);
@@ -147,7 +147,7 @@ impl Line for Linked {
         format!("linked {} ends {}", self.n, self.ends)
     }
     fn terms(&self) -> usize {
-        // The spring of a lone site of a ring has a constant length.
+        // In a ring of one site, the spring has constant length.
         if self.ends == 0 && self.n == 1 { 2 } else { 3 }
     }
     fn weighed(&self, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D {
@@ -171,7 +171,7 @@ impl Line for Linked {
     stepped!([momentum_q], 0.05, 2e-2, 1.9 / H);
 }
 
-/// Beads in the plane, open or on a ring.
+/// Beads in the plane, in an open chain or a ring.
 pub struct Woven {
     pub n: usize,
     pub ring: bool,
@@ -215,7 +215,7 @@ impl Woven {
         |_: &Self, s: &WovenChainState| s.momentum_X().iter().map(|p| p[0]).sum(),
         0.0
     );
-    /// The energy between two nodes, by the velocities of the edge and the mean of both ends.
+    /// The energy between two nodes, from the velocities of the edge and the mean of both ends.
     fn energy(&self, a: &[f64], b: &[f64], h: f64) -> f64 {
         let n = self.nodes();
         let v: Vec<f64> = a.iter().zip(b).map(|(a, b)| (b - a) / h).collect();

@@ -1,4 +1,4 @@
-//! The lines that are tried: their steppers, random states, and their actions as sums typed by hand.
+//! The tested chains: their steppers, random states, and hand-written sums of their actions.
 
 use super::action::{Configuration, D};
 use clebsch::nalgebra::{Matrix3, SVector, Vector3};
@@ -48,53 +48,53 @@ pub use toda::Toda;
 pub use tops::Tops;
 pub use water::Water;
 
-/// A number with derivatives by the places and momenta of six sites.
+/// A number with derivatives with respect to the positions and momenta of six sites.
 pub type Wide = Dual<12>;
 
-/// A line that is tried.
+/// A tested chain.
 pub trait Line {
-    /// What it is.
+    /// A description for failure messages.
     fn name(&self) -> String;
-    /// How many terms its action has.
+    /// The number of terms of its action.
     fn terms(&self) -> usize;
-    /// The action of an edge, each term times a number.
+    /// The action of an edge, with a weight for each term.
     fn weighed(&self, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D;
-    /// Whether an end holds this coordinate.
+    /// Whether an end prescribes this coordinate.
     fn held(&self, _: usize) -> bool {
         false
     }
-    /// Three nodes from a random start.
+    /// Three consecutive nodes from a random start.
     fn three(&self, seed: u64) -> [Configuration<f64>; 3];
-    /// The momenta at its first node.
+    /// The momenta at the first node.
     fn given(&self, seed: u64) -> Vec<f64>;
-    /// How far steps forward and back end from where they began.
+    /// The distance between the start and the end of a run forward and back.
     fn there_and_back(&self, steps: u64) -> f64;
-    /// The largest relative change of the energy and of a conserved total.
+    /// The largest relative changes of the energy and of a conserved total.
     fn kept(&self, steps: u64) -> [f64; 2];
-    /// What that of the energy may be.
+    /// The bound on the energy change.
     fn energy_bound(&self) -> f64;
-    /// That of the energy by that at half the step.
+    /// The energy change divided by the change at half the step size.
     fn energy_ratio(&self) -> f64;
-    /// The largest mass over the step, by which the rounding of places shows in momenta.
+    /// The largest mass divided by the step size, which converts position rounding to momentum rounding.
     fn mass_by_step(&self) -> f64;
 
-    /// What is held at a node, less constants.
+    /// The constraint functions at a node, up to constants.
     fn constraints(&self, _: &Configuration<D>) -> Vec<D> {
         Vec::new()
     }
 
-    /// Whether its potential has two derivatives everywhere. Those of cells jump where neighbours change, and
-    /// particles with nothing between them pair: no bound of the energy is promised then.
+    /// Whether its potential is twice differentiable. Cell potentials jump where neighbours change, and particles without
+    /// short-range repulsion form pairs; then the energy has no guaranteed bound.
     fn is_smooth(&self) -> bool {
         true
     }
 
-    /// The weights of its terms as they are typed.
+    /// The weights of the unmodified action.
     fn weights(&self) -> Vec<f64> {
         vec![1.0; self.terms()]
     }
 
-    /// Those with the sign of one term changed.
+    /// The weights with the sign of one term flipped.
     fn flipped(&self, term: usize) -> Vec<f64> {
         let mut weights = self.weights();
         weights[term] = -1.0;
@@ -102,7 +102,7 @@ pub trait Line {
     }
 }
 
-/// Every line of this size, with every end.
+/// Every chain of this size, with every end.
 pub fn all(n: usize) -> Vec<Box<dyn Line>> {
     let mut out: Vec<Box<dyn Line>> = vec![
         Box::new(Toda::ring(n)),
@@ -114,7 +114,7 @@ pub fn all(n: usize) -> Vec<Box<dyn Line>> {
         Box::new(Cloud { n }),
         Box::new(Plane { n, walls: false }),
     ];
-    // Cells of fewer than five particles meet themselves around the torus.
+    // With fewer than five particles, a cell meets its own images around the torus.
     if n >= 5 {
         out.push(Box::new(Cells { n }));
         out.push(Box::new(Smoothed { n }));
@@ -129,7 +129,7 @@ pub fn all(n: usize) -> Vec<Box<dyn Line>> {
         out.push(Box::new(Woven { n, ring }));
         out.push(Box::new(Bodies { n, ring }));
         if n > 1 {
-            // The potential of a bead in a ring of one is none.
+            // In a ring of one site, a bead has no potential.
             out.push(Box::new(Beaded { n, ring }));
         }
     }
@@ -170,7 +170,7 @@ pub fn all(n: usize) -> Vec<Box<dyn Line>> {
     out
 }
 
-/// Numbers between -1 and 1.
+/// Random numbers in (-1, 1).
 pub struct Random(u64);
 
 impl Random {
@@ -184,7 +184,7 @@ impl Random {
             .wrapping_add(1_442_695_040_888_963_407);
         ((self.0 >> 11) as f64 / (1u64 << 53) as f64).mul_add(2.0, -1.0)
     }
-    /// As many columns, of numbers up to a size.
+    /// `count` columns with entries up to `size`.
     fn list<const R: usize>(&mut self, count: usize, size: f64) -> Vec<SVector<f64, R>> {
         let mut column = || SVector::from_fn(|_, _| size * self.number());
         (0..count).map(|_| column()).collect()
@@ -194,14 +194,14 @@ impl Random {
     }
 }
 
-/// Attitudes of so many bodies, and their momenta.
+/// The attitudes of `n` bodies, and their momenta.
 fn attitudes(n: usize, r: &mut Random) -> (Vec<Rotation>, Vec<BodyMomentum>) {
     let turns = (0..n).map(|_| Rotation::exp(&(r.vector() * 0.7)));
     let turns = turns.collect();
     (turns, (0..n).map(|_| BodyMomentum(r.vector())).collect())
 }
 
-/// The numbers of a list.
+/// The scalars of a list.
 fn numbers<T: Shown + Copy>(list: &[T]) -> Vec<f64> {
     list.iter().copied().flat_map(Shown::numbers).collect()
 }
@@ -214,7 +214,7 @@ fn diagonal(x: f64, y: f64, z: f64) -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::new(x, y, z))
 }
 
-/// What every line does with its stepper.
+/// Implements the methods that use the stepper alone.
 macro_rules! stepped {
     ([$($momentum:ident)*], $h:expr, $bound:expr, $mass:expr) => {
         stepped!([$($momentum)*], $h, $bound);
@@ -288,8 +288,8 @@ macro_rules! keeping {
     };
 }
 
-/// The same with the energy between two nodes, as a function of their numbers or rotations, over its size at the start and
-/// so much of each site.
+/// Like `keeping`, but for the energy between two nodes as a function of their field values or rotations. The scale is its initial
+/// value plus `$each` per node.
 macro_rules! keeping_between {
     ($part:ident, $total:expr, $each:expr) => {
         fn kept_with(&self, h: f64, steps: u64) -> [f64; 2] {

@@ -1,4 +1,4 @@
-//! A line whose names a stepper might take for its own, stated here.
+//! A chain whose names could collide with names in the generated stepper. The model is defined in this file.
 
 use super::{Line, Random, c, keeping, stepped};
 use crate::action::{Configuration, D};
@@ -22,7 +22,7 @@ clebsch::model! {
     }
 }
 
-/// Names that a stepper might take for its own.
+/// A model with names that could collide.
 pub struct Named {
     pub n: usize,
     pub end: bool,

@@ -1,4 +1,4 @@
-//! A chain whose kinetic energy has a fourth power of the velocity, free or held at its ends; stated here.
+//! A chain whose kinetic energy is quartic in the velocity, with free or prescribed ends. The model is defined in this file.
 
 use super::{Line, Random, Wide, c, keeping_between, numbers, stepped};
 use crate::action::{Configuration, D};
@@ -18,7 +18,7 @@ clebsch::model! {
     }
 }
 
-/// The chain: a ring, free, held first, held last.
+/// The chain, by end: ring, free, first prescribed, last prescribed.
 pub struct Quartic {
     pub n: usize,
     pub ends: usize,
@@ -56,7 +56,7 @@ impl Quartic {
             momentum_q: r.list(n, 2.0),
         }
     }
-    /// Three steps of derivatives by all places and momenta.
+    /// Three steps, with derivatives with respect to all positions and momenta.
     pub fn moved(&self, q: Vec<Wide>, p: Vec<Wide>) -> [Vec<Wide>; 2] {
         let k = Wide::constant;
         let parameters = QuarticChainParameters {
@@ -90,7 +90,7 @@ impl Quartic {
     fn springs(&self) -> bool {
         self.ends != 0 || self.n > 1
     }
-    /// The energy between two nodes, by the velocity of the edge and the mean of both potentials.
+    /// The energy between two nodes, from the velocity of the edge and the mean of both potentials.
     fn energy(&self, a: &[f64], b: &[f64], h: f64) -> f64 {
         let mut e = 0.0;
         for i in 0..self.nodes() {
@@ -142,7 +142,7 @@ impl Line for Quartic {
         self.ends == 2 && at == 0 || self.ends == 3 && at == self.n
     }
     stepped!([momentum_q], 0.05, 2e-2);
-    // At velocities of one, with the derivative of the cube.
+    // At velocities of one, including the derivative of the cube.
     fn mass_by_step(&self) -> f64 {
         (1.3 + 3.0 * 0.8) / 0.05
     }

@@ -1,4 +1,4 @@
-//! The elastic rod in unit quaternions, and coupled spins in whose terms the sign of a quaternion is seen.
+//! The elastic rod in unit quaternions, and coupled spins with terms that depend on the quaternion sign.
 
 use super::{Line, Random, c, keeping, numbers, stepped, vector};
 use crate::action::{Configuration, D, conjugate, hamilton, imaginary, seen_from_body};
@@ -28,7 +28,7 @@ clebsch::model! {
     }
 }
 
-/// A quaternion of a rotation vector.
+/// The unit quaternion of a rotation vector.
 pub fn turn(v: Vector3<f64>) -> UnitQuaternion {
     UnitQuaternion::from_components(Rotation::exp(&v).quaternion()).expect("of unit length")
 }
@@ -43,8 +43,8 @@ fn bending(k: &Matrix3<D>, s: f64, x: [D; 4], y: [D; 4]) -> D {
     c(2.0 / s) * u.dot(&(k * u))
 }
 
-/// An elastic rod in quaternions: free, pinned, clamped at its first end; free, pinned, loaded at its last; the
-/// tenth is a ring.
+/// An elastic rod in quaternions. The first end is free, pinned or clamped, the last end free, pinned or loaded; the tenth case is
+/// a ring.
 pub struct QRod {
     pub n: usize,
     pub ends: usize,
@@ -165,7 +165,7 @@ impl Line for QRod {
             s += c(w[0] * self.mass(i) / (2.0 * h)) * d.dot(&d);
         }
         for (i, (x, y)) in a.q.iter().zip(&b.q).enumerate() {
-            // The same form as of bending, of the step for the spacing.
+            // The same expression as for bending, with the step size instead of the spacing.
             s += c(w[2] * l) * bending(&Self::inertia(i).map(c), h, *x, *y);
         }
         for q in [a, b] {
@@ -203,7 +203,7 @@ impl Line for QRod {
     stepped!([momentum_φ body_momentum_q], 0.02, 5e-2, 0.5 / 0.02);
 }
 
-/// Spins, open or in a ring.
+/// Spins, in an open chain or a ring.
 pub struct Spins {
     pub n: usize,
     pub ring: bool,
@@ -250,7 +250,7 @@ impl Spins {
     keeping!(TwistedSpins, |_, _: &TwistedSpinsState| 0.0);
 }
 
-/// Spins in which nothing but inertia and stiffness acts, the same at all sites.
+/// Spins with inertia and stiffness only, equal at all sites.
 pub struct TwistedSpinsOf {
     pub model: TwistedSpins,
     pub s: f64,

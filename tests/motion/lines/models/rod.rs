@@ -6,7 +6,7 @@ use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Rotation};
 use clebsch_models::lattices::geometrically_exact_rod::*;
 
-/// What holds an end.
+/// The condition at an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Held {
     Free,
@@ -24,7 +24,7 @@ impl Held {
     }
 }
 
-/// An elastic rod, open or closed to a ring on which its centreline grows once around.
+/// An elastic rod, open or closed to a ring; once around the ring, the centreline advances by a constant vector.
 pub struct Rod {
     pub n: usize,
     ends: Option<[Held; 2]>,
@@ -56,7 +56,7 @@ impl Rod {
     fn force() -> Vector3<f64> {
         Vector3::new(0.2, -0.1, 0.3)
     }
-    /// Once around a ring.
+    /// The advance of the centreline once around the ring.
     fn grows(&self) -> Vector3<f64> {
         Vector3::new(0.05, -0.02, 0.5 * self.n as f64)
     }

@@ -5,7 +5,7 @@ use crate::action::{Configuration, D};
 use clebsch::Real;
 use clebsch_models::lattices::sine_gordon::*;
 
-/// The sine-Gordon equation: a ring, free, held first, held last, held at both ends.
+/// The sine-Gordon equation, by end: ring, free, first prescribed, last prescribed, both prescribed.
 pub struct Sine {
     pub n: usize,
     ends: usize,

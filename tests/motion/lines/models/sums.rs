@@ -1,4 +1,5 @@
-//! Constraints on sums over sites: the centre of mass, the length of a line and the sum of squares of a number; stated here.
+//! Constraints on sums over sites: the centre of mass, the length of the chain, and the sum of squares of a field. The model is
+//! defined in this file.
 
 use super::{Line, Random, c, keeping, stepped};
 use crate::action::{Configuration, D};
@@ -32,7 +33,7 @@ const F: f64 = 0.4;
 const E: f64 = 0.2;
 const K: f64 = 0.3;
 
-/// The beads: a ring, free, loaded at the last.
+/// The beads: a ring, free, or loaded at the last.
 pub struct Sums {
     pub n: usize,
     pub ends: usize,
@@ -87,7 +88,7 @@ impl Sums {
         };
         WeighedBeads::new(parameters, WeighedBeadsSites { N: self.n, ends }).expect("beads")
     }
-    /// Random velocities less what moves the sums.
+    /// Random velocities, projected so that the sums stay constant.
     fn velocities(&self, seed: u64) -> DVector<f64> {
         let at = self.at_start();
         let mut r = Random::new(seed + 40);
@@ -189,7 +190,7 @@ impl Line for Sums {
     stepped!([momentum_φ momentum_q], 0.01, 5e-2, 0.9 / H);
 }
 
-/// Beads of so many segments: of one node nothing moves.
+/// Chains with `n` segments; a single node cannot move.
 pub fn all(n: usize) -> Vec<Sums> {
     let all = (0..3).map(|ends| Sums { n, ends });
     all.filter(|line| n > 1 || line.ends > 0).collect()

@@ -1,4 +1,4 @@
-//! The rod of one tension.
+//! The rod with uniform tension.
 
 use super::{Line, Random, c, diagonal, keeping, stepped, vector};
 use crate::action::{Configuration, D, trace};
@@ -6,7 +6,7 @@ use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Rotation};
 use clebsch_models::lattices::uniform_tension_rod::*;
 
-/// A ring, or open with a free or a clamped first and last end.
+/// A ring, or an open rod whose first and last ends are free or clamped.
 pub struct Tension {
     pub n: usize,
     pub ends: Option<[bool; 2]>,
@@ -61,8 +61,8 @@ impl Tension {
         let sites = UniformTensionRodSites { N: self.n, ends };
         UniformTensionRod::new(parameters, sites).expect("a rod")
     }
-    /// Sections with random spins that leave the ends where they are: what moves them is taken away by turns about axes
-    /// across each section.
+    /// Sections with random spins that keep the end-to-end vector; rotations about axes perpendicular to each section cancel its
+    /// rate of change.
     pub fn initial(&self, seed: u64) -> UniformTensionRodInitial {
         let (attitudes, mut r) = (self.attitudes(), Random::new(seed + 300));
         let z = Vector3::z();
@@ -131,7 +131,7 @@ impl Line for Tension {
     stepped!([body_momentum_Λ], 0.02, 5e-2, 0.0);
 }
 
-/// Rods of so many sections: of one the two ends are three numbers, and it has two directions.
+/// Rods with `n` sections. A single section has two directions, fewer than the three end-to-end constraints.
 pub fn all(n: usize) -> Vec<Tension> {
     let ends = [
         None,

@@ -27,7 +27,7 @@ impl Toda {
         };
         TodaChain::new(parameters, TodaChainSites { N: self.n, ends }).expect("a chain")
     }
-    /// A ring of harder springs.
+    /// A ring of stiffer springs.
     pub fn hard(n: usize) -> TodaChain {
         let ends = TodaChainEnds::Ring { L: 0.3 };
         let parameters = TodaChainParameters {
@@ -59,7 +59,7 @@ impl Line for Toda {
         format!("Toda {} ring {}", self.n, self.ring)
     }
     fn terms(&self) -> usize {
-        // Around a ring the linear term is the offset, which nothing changes.
+        // Around a ring, the linear term is a constant offset.
         if self.ring { 2 } else { 3 }
     }
     fn weighed(&self, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D {

@@ -1,6 +1,5 @@
-//! The unreduced discrete action and its variation at one node.
-//! Takes the action of one step as a function of the two group elements it joins; gives the discrete
-//! Euler-Lagrange residual, the two discrete momenta and the scale they are to be compared on.
+//! The unreduced discrete action and its variation at one node. Takes the action of one step as a function of the group elements at
+//! both ends. Gives the discrete Euler-Lagrange residual, the two discrete momenta and the scale for comparisons.
 
 pub mod bodies;
 pub mod coupled;
@@ -18,7 +17,7 @@ use super::square::{Square, hat};
 use crate::physics::measure::worse;
 use std::array::from_fn;
 
-/// The action of one step, unreduced: `G` group elements, each an `N` by `N` matrix, at either end.
+/// The unreduced action of one step, with `G` group elements at either end, each an `N` by `N` matrix.
 pub trait DiscreteAction<const N: usize, const G: usize> {
     /// The side on which the variations act.
     fn side(&self) -> Side {
@@ -37,8 +36,8 @@ pub fn rotations() -> Vec<Square<f64, 3>> {
         .collect()
 }
 
-/// The residual of the discrete Euler-Lagrange equations at the middle one of three nodes:
-/// the derivative of the action of both edges along each direction.
+/// The residual of the discrete Euler-Lagrange equations at the middle of three nodes: the derivative of the action of both edges
+/// along each direction.
 pub fn stationarity<const N: usize, const G: usize>(
     action: &impl DiscreteAction<N, G>,
     nodes: &[[Square<f64, N>; G]; 3],
@@ -47,7 +46,7 @@ pub fn stationarity<const N: usize, const G: usize>(
     stationarity_along(action, nodes, [basis; G])
 }
 
-/// The same with a basis of its own for each group.
+/// Like `stationarity`, with a separate basis for each group.
 pub fn stationarity_along<const N: usize, const G: usize>(
     action: &impl DiscreteAction<N, G>,
     nodes: &[[Square<f64, N>; G]; 3],
@@ -92,14 +91,14 @@ pub fn momentum_out<const N: usize, const G: usize>(
     variation
 }
 
-/// How much a result changes at most when entries of the group elements change: the factor by which it
-/// magnifies their rounding. Differences are good enough for a bound.
+/// The largest change of a result relative to changes of the group entries: the factor by which it amplifies their rounding. Finite
+/// differences suffice for this bound.
 pub fn sensitivity<const N: usize, const G: usize, const M: usize>(
     nodes: &[[Square<f64, N>; G]; M],
     basis: &[Square<f64, N>],
     result: impl Fn(&[[Square<f64, N>; G]; M]) -> Vec<f64>,
 ) -> f64 {
-    // The root of the rounding unit balances rounding and curvature.
+    // The square root of the rounding unit balances rounding and curvature.
     let epsilon = 1e-8;
     let here = result(nodes);
     let mut sum = 0.0;
@@ -127,7 +126,7 @@ fn steady<const N: usize, const G: usize>(node: &[Square<f64, N>; G]) -> [Square
 
 /// Derivatives of the summands of `action` at `node`, by dual numbers.
 ///
-/// The tangent of `Λ exp(ε X)` at `ε = 0` is `Λ X`: the exponential is not needed.
+/// The tangent of `Λ exp(ε X)` at `ε = 0` is `Λ X`, so the exponential is not needed.
 fn vary<const N: usize, const G: usize>(
     side: Side,
     node: &[Square<f64, N>; G],

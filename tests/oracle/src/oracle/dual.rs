@@ -1,12 +1,11 @@
-//! Dual numbers of the oracle: a value and one exact directional derivative.
-//! Takes arithmetic on `Number`s; gives derivatives exact to rounding, with no step size to choose.
-//! A dual number of dual numbers has second derivatives, one of pairs derivatives in 32 digits.
-//! Written apart from the dual numbers of the runtime, so that a mistake there cannot hide a mistake here.
+//! Dual numbers of the oracle: a value and one exact directional derivative, with no step size to choose. A dual number of dual
+//! numbers gives second derivatives; a dual number of pairs gives derivatives to 32 digits. The implementation is independent of
+//! the runtime's dual numbers, so that a mistake in one cannot hide a mistake in the other.
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A scalar on which an unreduced action can be evaluated.
+/// A scalar that can evaluate an unreduced action.
 pub trait Number:
     Copy
     + Debug
@@ -16,7 +15,7 @@ pub trait Number:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// A number that does not vary.
+    /// A constant.
     fn constant(value: f64) -> Self;
     /// The value without its derivative.
     fn value(self) -> f64;
@@ -43,7 +42,7 @@ pub trait Number:
         (self.exp() + (-self).exp()) * Self::constant(0.5)
     }
 
-    /// The sign, which does not vary.
+    /// The sign, with zero derivative.
     #[must_use]
     fn sign(self) -> Self {
         Self::constant(if self.value() == 0.0 {
@@ -53,16 +52,16 @@ pub trait Number:
         })
     }
 
-    /// A power with a fractional exponent, of a positive number.
+    /// A rational power of a positive number.
     #[must_use]
     fn fraction(self, numerator: i32, denominator: i32) -> Self {
-        // A quotient of two constants: one third is no double.
+        // A quotient of two constants, because one third is not exact in double precision.
         let exponent =
             Self::constant(f64::from(numerator)) / Self::constant(f64::from(denominator));
         (self.ln() * exponent).exp()
     }
 
-    /// An integer power by repeated multiplication; a negative exponent inverts.
+    /// An integer power by repeated multiplication; a negative exponent inverts the result.
     #[must_use]
     fn power(self, exponent: i32) -> Self {
         let mut result = Self::constant(1.0);
@@ -106,7 +105,7 @@ impl Number for f64 {
 pub struct Dual<T = f64> {
     /// The value.
     pub value: T,
-    /// The derivative along the one direction that is varied.
+    /// The derivative along the chosen direction.
     pub slope: T,
 }
 

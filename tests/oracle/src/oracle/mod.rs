@@ -1,8 +1,8 @@
-//! The independent oracle: variations of unreduced discrete actions at points that solve nothing.
-//! Takes actions typed by hand, or random Lagrangians as expression trees; gives residuals and momenta
-//! exact to rounding. It shares no code with the engine that it judges.
+//! The independent oracle: variations of unreduced discrete actions at points that solve nothing. Takes hand-written actions, or
+//! random Lagrangians as expression trees; gives residuals and momenta exact to rounding. It shares no code with the engine under
+//! test.
 
-// Loops over the indices of small arrays read as the formulas they were typed from.
+// Index loops over small arrays keep the shape of the formulas.
 #![allow(clippy::needless_range_loop)]
 
 pub mod action;

@@ -1,6 +1,5 @@
-//! Numbers of 32 digits: the unevaluated sum of two doubles.
-//! Takes arithmetic on `Number`s; gives results whose error is some 1e-31 of their size.
-//! Written apart from the scalars of the runtime, so that a mistake there cannot hide a mistake here.
+//! Numbers of 32 digits: the unevaluated sum of two doubles, with a relative error of about 1e-31. The implementation is
+//! independent of the runtime's scalars, so that a mistake in one cannot hide a mistake in the other.
 
 use super::dual::Number;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -10,11 +9,11 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub struct Pair {
     /// The nearest double.
     pub high: f64,
-    /// What it leaves.
+    /// The remainder.
     pub low: f64,
 }
 
-/// A sum and what its rounding leaves, exactly.
+/// A sum and its exact rounding error.
 fn sum(a: f64, b: f64) -> Pair {
     let high = a + b;
     let of_b = high - a;
@@ -22,14 +21,14 @@ fn sum(a: f64, b: f64) -> Pair {
     Pair { high, low }
 }
 
-/// A double as the sum of two with 26 bits each.
+/// A double as an exact sum of two doubles with 26 bits each.
 fn halves(a: f64) -> (f64, f64) {
     let scaled = a * f64::from((1_u32 << 27) + 1);
     let high = scaled - (scaled - a);
     (high, a - high)
 }
 
-/// A product and what its rounding leaves, exactly.
+/// A product and its exact rounding error.
 fn product(a: f64, b: f64) -> Pair {
     let high = a * b;
     let ((a1, a2), (b1, b2)) = (halves(a), halves(b));
@@ -37,13 +36,13 @@ fn product(a: f64, b: f64) -> Pair {
     Pair { high, low }
 }
 
-/// One half of pi: a double and what it leaves.
+/// Half of pi: a double and its remainder.
 const QUARTER_TURN: Pair = Pair {
     high: std::f64::consts::FRAC_PI_2,
     low: 6.123_233_995_736_766e-17,
 };
 
-/// The logarithm of two: a double and what it leaves.
+/// The logarithm of two: a double and its remainder.
 const LOG_OF_TWO: Pair = Pair {
     high: std::f64::consts::LN_2,
     low: 2.319_046_813_846_299_6e-17,
@@ -59,11 +58,11 @@ impl Pair {
         }
     }
 
-    /// The power series whose n-th term is the one before times `x / divisor(n)`.
+    /// The power series whose n-th term is the previous term times `x / divisor(n)`.
     fn series(first: Pair, x: Pair, divisor: impl Fn(f64) -> f64) -> Pair {
         let mut total = first;
         let mut term = first;
-        // Forty terms of a series in a number below one: the last is beyond 32 digits.
+        // Forty terms of a series in a number below one; the last is below 32 digits.
         for n in 1..40 {
             term = term * x / Pair::constant(divisor(f64::from(n)));
             total = total + term;
@@ -71,7 +70,7 @@ impl Pair {
         total
     }
 
-    /// Sine and cosine of an angle of at most a quarter of half a turn.
+    /// Sine and cosine of an angle of at most pi/4.
     fn small_angle(self) -> [Pair; 2] {
         let square = -(self * self);
         let sine = Pair::series(self, square, |n| 2.0 * n * (2.0 * n + 1.0));
@@ -79,7 +78,7 @@ impl Pair {
         [sine, cosine]
     }
 
-    /// Sine and cosine; the angle loses what its whole quarter turns take of 32 digits.
+    /// Sine and cosine. Subtracting whole quarter turns costs the angle as many digits as they have.
     fn angle(self) -> [Pair; 2] {
         let quarters = (self.high / QUARTER_TURN.high).round();
         let [sine, cosine] = (self - QUARTER_TURN * Pair::constant(quarters)).small_angle();
@@ -106,7 +105,7 @@ impl Number for Pair {
         if self.high == 0.0 {
             return self;
         }
-        // One step of Newton doubles the digits of the root in double.
+        // One Newton step doubles the digits of the square root in double precision.
         let root = Pair::constant(self.high.sqrt());
         (root + self / root) * Pair::constant(0.5)
     }
@@ -168,7 +167,7 @@ impl Mul for Pair {
 impl Div for Pair {
     type Output = Self;
     fn div(self, other: Self) -> Self {
-        // Three digits of a long division whose base is 2^53.
+        // Three digits of a long division in base 2^53.
         let first = self.high / other.high;
         let rest = self - other * Pair::constant(first);
         let second = rest.high / other.high;
@@ -201,7 +200,7 @@ mod tests {
 
     #[test]
     fn constants_have_all_digits() {
-        // The sixth part of half a turn has the sine one half; e is the value of its series.
+        // The sine of pi/6 is one half; e equals the sum of its series.
         let third = QUARTER_TURN / Pair::constant(3.0);
         near(third.sin(), Pair::constant(0.5));
         near(Pair::constant(2.0).ln(), LOG_OF_TWO);

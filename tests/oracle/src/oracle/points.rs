@@ -1,14 +1,12 @@
-//! Random points of the oracle, reproducible from a seed.
-//! Takes a seed; gives rotations, vectors and matrices of order one, and the values that belong to the
-//! names of a model, as plain data for whoever evaluates it.
+//! Random points of the oracle, reproducible from a seed: rotations, vectors and matrices of order one, and the values of a model's
+//! names as plain data.
 
 use super::square::Square;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use std::array::from_fn;
 
-/// How many are asked for by an environment variable, for longer runs than those of the suite;
-/// `usual` where it is absent or no number.
+/// The number in an environment variable, for longer runs than the suite; `usual` if the variable is absent or not a number.
 #[must_use]
 pub fn asked_for(variable: &str, usual: u64) -> u64 {
     let asked = std::env::var(variable).ok();
@@ -20,7 +18,7 @@ pub fn asked_for(variable: &str, usual: u64) -> u64 {
 pub struct Source(Xoshiro256PlusPlus);
 
 impl Source {
-    /// The source that belongs to a seed.
+    /// The source of a seed.
     #[must_use]
     pub fn seeded(seed: u64) -> Self {
         Self(Xoshiro256PlusPlus::seed_from_u64(seed))
@@ -43,7 +41,7 @@ impl Source {
         self.below(100) < percent
     }
 
-    /// One of the choices.
+    /// One of the choices, uniformly.
     pub fn choose<'a, T>(&mut self, choices: &'a [T]) -> Option<&'a T> {
         choices.get(self.below(choices.len()))
     }
@@ -85,14 +83,14 @@ impl Source {
         let frame = self.orthogonal::<N>();
         let spectrum: [f64; N] = from_fn(|_| self.between(0.3, 2.0));
         let product = Square::from_entries(|i, j| frame.0[i][j] * spectrum[j]) * frame.transpose();
-        // Symmetric to the last bit: constructors may check it.
+        // Exactly symmetric, because constructors may check it.
         Square::from_entries(|i, j| product.0[i.min(j)][i.max(j)])
     }
 
     /// A rotation of N dimensions: orthogonal with determinant 1, far from the identity.
     pub fn orthogonal<const N: usize>(&mut self) -> Square<f64, N> {
         let mut rows = self.matrix::<N>().0;
-        // Modified Gram-Schmidt, twice: once leaves errors of the condition number times rounding.
+        // Modified Gram-Schmidt, twice: a single pass leaves an error of the condition number times rounding.
         for _ in 0..2 {
             for i in 0..N {
                 for j in 0..i {
@@ -123,19 +121,19 @@ impl Source {
     }
 }
 
-/// A derivative with the size of what was added up to it.
+/// A derivative, with the size of its summands.
 #[derive(Clone, Debug)]
 pub struct Variation {
-    /// The derivative along each direction, the configurations one after the other.
+    /// The derivative along each direction, one configuration after another.
     pub derivative: Vec<f64>,
-    /// The natural scale: the sum over all summands of the size of each or of its largest derivative. The
-    /// directions turn by one radian, so that both are comparable; the size counts where derivatives cancel.
+    /// The natural scale: the sum over all summands of the larger of the summand and its largest derivative. The directions rotate
+    /// by one radian, so both are comparable; the value matters if derivatives cancel.
     pub scale: f64,
 }
 
 impl Variation {
-    /// The largest difference of a component, relative to the natural scale; infinite for different lengths
-    /// and for anything that is not finite, which must never pass as agreement.
+    /// The largest difference of a component, relative to the natural scale. Infinite for different lengths and for non-finite
+    /// values, which must not count as agreement.
     #[must_use]
     pub fn disagreement(&self, found: &[f64]) -> f64 {
         if self.derivative.len() != found.len() {
@@ -153,7 +151,7 @@ impl Variation {
 pub struct Given {
     /// The name as written in the model.
     pub name: String,
-    /// The node relative to the one at which the residual is taken: -1, 0 or 1; 0 for parameters.
+    /// The node relative to the node of the residual: -1, 0 or 1; 0 for parameters.
     pub shift: i8,
     /// Rows of the value.
     pub rows: usize,

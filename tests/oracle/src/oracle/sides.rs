@@ -1,9 +1,8 @@
-//! On which side a variation acts, and to which edge a summand at one node belongs.
-//! Takes nothing; gives the two choices that a stated action leaves open.
+//! The two choices that a stated action leaves open: the side of a variation, and the edge of a summand at one node.
 
 use super::dual::Number;
 
-/// On which side of the group element a variation acts.
+/// The side of the group element on which a variation acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// `Λ exp(ε X)`: the velocity is `Λ_k⁻¹ Λ_{k+1}`.
@@ -17,9 +16,9 @@ pub enum Side {
 pub enum NodeRule {
     /// The mean of both ends: second order.
     Symmetric,
-    /// At node k+1, the node into which the edge comes.
+    /// At node k+1, the head of the edge.
     Incoming,
-    /// At node k, the node out of which the edge goes.
+    /// At node k, the tail of the edge.
     Outgoing,
 }
 
@@ -33,7 +32,7 @@ impl NodeRule {
         }
     }
 
-    /// The word of the model language.
+    /// The keyword of the model language.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {

@@ -1,11 +1,11 @@
-//! Square matrices and vectors of the oracle, generic over its numbers.
-//! Takes nested arrays, rows first; gives products, traces, determinants, inverses and the hat map.
-//! Deliberately plain: no shape is special-cased and no identity of the algebra is used.
+//! Square matrices and vectors of the oracle, generic over its numbers: products, traces, determinants, inverses and the hat map
+//! from nested arrays in row-major order. The code is deliberately plain, with no special cases by shape and no algebraic
+//! identities.
 
 use super::dual::Number;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// An `N` by `N` matrix, rows first.
+/// An `N` by `N` matrix, row-major.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Square<T, const N: usize>(pub [[T; N]; N]);
 
@@ -13,7 +13,7 @@ impl<T: Number, const N: usize> Square<T, N> {
     /// The matrix whose entry in row `i` and column `j` is `entry(i, j)`.
     pub fn from_entries(entry: impl Fn(usize, usize) -> T) -> Self {
         let mut entries = [[T::constant(0.0); N]; N];
-        // Loops: a function of arrays with its closures would be compiled anew for every caller.
+        // Loops, because an array function with a closure would be compiled again for every caller.
         for (i, row) in entries.iter_mut().enumerate() {
             for (j, place) in row.iter_mut().enumerate() {
                 *place = entry(i, j);
@@ -28,7 +28,7 @@ impl<T: Number, const N: usize> Square<T, N> {
         Self::from_entries(|i, j| T::constant(if i == j { 1.0 } else { 0.0 }))
     }
 
-    /// A matrix that does not vary.
+    /// A constant matrix.
     #[must_use]
     pub fn constant(values: &Square<f64, N>) -> Self {
         Self::from_entries(|i, j| T::constant(values.0[i][j]))
@@ -76,14 +76,14 @@ impl<T: Number, const N: usize> Square<T, N> {
         determinant
     }
 
-    /// The inverse, by elimination with row exchanges; entries are not finite if there is none.
+    /// The inverse, by elimination with row exchanges; non-finite if the matrix is singular.
     #[must_use]
     pub fn inverse(&self) -> Self {
         let (_, inverse) = self.eliminate();
         inverse
     }
 
-    /// Determinant and inverse by Gauss-Jordan elimination, the pivot chosen by magnitude.
+    /// Determinant and inverse by Gauss-Jordan elimination with partial pivoting.
     fn eliminate(&self) -> (T, Self) {
         let mut left = self.0;
         let mut right = Self::identity().0;
@@ -153,7 +153,7 @@ impl<T: Number, const N: usize> Neg for Square<T, N> {
     }
 }
 
-/// A column that does not vary.
+/// A constant column.
 #[must_use]
 pub fn constant_column<T: Number, const N: usize>(values: &[f64; N]) -> [T; N] {
     values.map(T::constant)
@@ -165,7 +165,7 @@ pub fn dot<T: Number, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
     (0..N).fold(T::constant(0.0), |sum, i| sum + a[i] * b[i])
 }
 
-/// The vector product.
+/// The cross product.
 #[must_use]
 pub fn cross<T: Number>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
     [
@@ -186,7 +186,7 @@ pub fn hat<T: Number>(v: &[T; 3]) -> Square<T, 3> {
     ])
 }
 
-/// The axial vector of the skew half `(A - Aᵀ)/2`.
+/// The axial vector of the skew part `(A - Aᵀ)/2`.
 #[must_use]
 pub fn vee<T: Number>(a: &Square<T, 3>) -> [T; 3] {
     let half = T::constant(0.5);

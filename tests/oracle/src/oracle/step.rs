@@ -1,6 +1,6 @@
-//! One step of a discrete action, solved apart from the engine: of `p = -D1 L(q, q')` the end `q'`, then `p' = D2 L(q, q')`.
-//! Takes an action typed by hand over any [`Number`](super::dual::Number), a start and its momenta; gives both in 32 digits.
-//! Elements of groups are matrices, varied by the basis of their Lie algebra in the frame of the momentum.
+//! Solves one step of a discrete action, independently of the engine: `q'` from `p = -D1 L(q, q')`, then `p' = D2 L(q, q')`. Takes
+//! a hand-written action over any [`Number`](super::dual::Number), an initial state and its momenta; gives `q'` and `p'` to 32
+//! digits. Group elements are matrices, varied by the basis of their Lie algebra in the frame of the momentum.
 
 pub mod action;
 pub mod compare;

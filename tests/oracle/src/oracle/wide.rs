@@ -1,7 +1,6 @@
-//! Random models on every group of the language: products of up to three groups, advected quantities
-//! of every shape, every function, reduced and unreduced statements.
-//! Takes a seed; gives the text of a model and, apart from it, the action as a tree that is evaluated
-//! on dual numbers. Nothing is read back from the text.
+//! Random models on every group of the language: products of up to three groups, advected quantities of every shape, every
+//! function, reduced and unreduced statements. From a seed, gives the text of a model and, independently, the action as a tree over
+//! dual numbers. The tree is not parsed from the text.
 
 pub mod grid;
 pub mod grow;

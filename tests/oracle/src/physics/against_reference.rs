@@ -1,5 +1,5 @@
-//! Reference runs replayed: starts a motion from the recorded data and compares it at the recorded nodes.
-//! Takes a way to start motions; gives the largest deviation of any recorded number (all of them of order one).
+//! Repeats the reference runs: starts a motion from the recorded data and compares it at the recorded nodes. Gives the largest
+//! deviation of any recorded number; all are of order one.
 
 use super::cases::{Start, lagrange_top, steady_body, symmetric_body};
 use super::measure::{at_reference_nodes, matrices, vectors, worse};
@@ -11,7 +11,7 @@ use crate::reference::{body_sym, steady_rotation, top_lagrange};
 pub fn symmetric<M: Motion>(start: impl Fn(&Start) -> M) -> Result<f64, String> {
     let mut once = start(&symmetric_body());
     once.step()?;
-    // Started at the identity, the first rotation is the first attitude.
+    // From the identity, the first rotation equals the first attitude.
     let first = matrices(&once.attitude(), &body_sym::OMEGA_1);
     at_reference_nodes(&mut start(&symmetric_body()), |motion, place| {
         let attitude = matrices(&motion.attitude(), &body_sym::ATTITUDE[place]);
@@ -40,7 +40,7 @@ pub fn lagrange<M: Motion>(start: impl Fn(&Start) -> M) -> Result<f64, String> {
     })
 }
 
-/// Least and largest energy deviation of the Lagrange top over a thousand steps, compared with the recorded ones.
+/// Smallest and largest energy deviation of the Lagrange top over a thousand steps, compared with the recorded values.
 pub fn lagrange_energy<M: Motion>(start: impl Fn(&Start) -> M) -> Result<f64, String> {
     let mut motion = start(&lagrange_top());
     let series = super::measure::energies(&mut motion, 1000)?;
@@ -66,14 +66,14 @@ pub fn one_sided<M: Motion>(start: impl Fn(&Start) -> M) -> Result<f64, String> 
     })
 }
 
-/// Angle of each of a hundred steps of the steady rotation, and the momentum, which must not change.
+/// Angle of each of a hundred steps of the steady rotation, and the momentum, which must be constant.
 pub fn steady<M: Motion>(start: impl Fn(&Start) -> M) -> Result<f64, String> {
     let mut motion = start(&steady_body());
     let mut worst = 0.0;
     for _ in 0..100 {
         let before = motion.attitude();
         motion.step()?;
-        // Columns of the old attitude, seen from the new one, turn back by the angle.
+        // In the new body frame, the columns of the old attitude are rotated back by the angle.
         let column = apply_transposed(
             &motion.attitude(),
             &[before[0][0], before[1][0], before[2][0]],

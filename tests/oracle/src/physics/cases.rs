@@ -1,5 +1,5 @@
-//! Starting data of the rigid-body tests: a body, its attitude and momentum at node 0, and a step length.
-//! Takes nothing; gives the cases of the reference runs, of the thesis's figures, and generic ones without symmetry.
+//! Initial data of the rigid-body tests: a body, its attitude and momentum at node 0, and a step size. Contains the reference runs,
+//! the figures of the thesis, and generic bodies without symmetry.
 
 use crate::handwritten::attitude::{Matrix, Quaternion, Vector};
 use crate::handwritten::heavy_top::Top;
@@ -14,12 +14,12 @@ pub struct Start {
     pub attitude: Quaternion,
     /// Node momentum in body axes.
     pub body_momentum: Vector,
-    /// Step length.
+    /// Step size.
     pub h: f64,
 }
 
 impl Start {
-    /// The same start with another step length.
+    /// The same start with another step size.
     pub fn with_step(&self, h: f64) -> Start {
         Start { h, ..*self }
     }
@@ -55,7 +55,7 @@ pub fn asymmetric_body() -> Start {
     free([3.5, 2.5, 2.0], [-0.5, 0.0, 1.0])
 }
 
-/// A flat body, I = (1, 2, 3): its J = diag(2, 1, 0) has no inverse.
+/// A flat body, I = (1, 2, 3): its J = diag(2, 1, 0) is singular.
 pub fn flat_body() -> Start {
     free([1.0, 2.0, 3.0], [-0.5, 0.3, 1.0])
 }
@@ -65,7 +65,7 @@ pub fn steady_body() -> Start {
     free([2.0, 2.0, 1.0], steady_rotation::M0)
 }
 
-/// The reference run of the Lagrange top; the one-sided run takes the momentum as that of the first edge.
+/// The reference run of the Lagrange top; the one-sided run uses the momentum as the momentum of the first edge.
 pub fn lagrange_top() -> Start {
     Start {
         top: Top {
@@ -79,7 +79,7 @@ pub fn lagrange_top() -> Start {
     }
 }
 
-/// A Lagrange top that hangs and swings: integrable, and without the saddle of the upright one near its path.
+/// A Lagrange top that hangs and swings: integrable, and far from the saddle of the upright top.
 pub fn hanging_top() -> Start {
     let upright = lagrange_top();
     Start {
@@ -91,7 +91,7 @@ pub fn hanging_top() -> Start {
     }
 }
 
-/// A top without any symmetry: full J, centre of mass off every axis, vertical off the third axis.
+/// A top without symmetry: full J, centre of mass off every axis, vertical off the third axis.
 pub fn generic_top() -> Start {
     Start {
         top: Top {

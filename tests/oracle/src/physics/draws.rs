@@ -1,5 +1,5 @@
-//! Random bodies and states for comparisons: full inertia matrices, any attitude, momenta within the solvability bound.
-//! Takes a seed; gives the same draws on every machine.
+//! Random bodies and states for comparisons: full inertia matrices, any attitude, momenta within the solvability bound. A seed
+//! gives the same draws on every machine.
 
 use super::cases::Start;
 use super::measure::worse;
@@ -10,7 +10,7 @@ use crate::handwritten::heavy_top::Top;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
-/// Share of the exact solvability bound that drawn momenta never exceed.
+/// Largest fraction of the exact solvability bound for random momenta.
 const LARGEST_REACH: f64 = 0.5;
 
 /// A deterministic stream of draws.
@@ -55,19 +55,19 @@ impl Draws {
         self.draw(0.0, share)
     }
 
-    /// A free body whose h |momentum| is this share of the exact bound: solvable up to one.
+    /// A free body with h |momentum| at this fraction of the exact bound; solvable up to one.
     pub fn free_body_at(&mut self, share: f64) -> Start {
         self.draw(0.0, share)
     }
 
-    /// A heavy top: as a free body, with a weight of order one and a vertical of length one in any direction. The
-    /// bound concerns the momentum of the edge, which holds half a kick more than that of the node.
+    /// A heavy top: a free body with a weight of order one and a unit vertical in any direction. The bound applies to the momentum
+    /// of the edge, which exceeds the momentum of the node by half a kick.
     pub fn heavy_top(&mut self) -> Start {
         let share = self.share();
         self.draw(2.0, share)
     }
 
-    /// A heavy top whose first edge momentum is this share of the exact bound.
+    /// A heavy top whose first edge momentum is this fraction of the exact bound.
     pub fn heavy_top_at(&mut self, share: f64) -> Start {
         self.draw(2.0, share)
     }
@@ -114,8 +114,8 @@ fn rotated(j: &Vector, r: &Matrix) -> Matrix {
     m
 }
 
-/// Solvability ratio of Om J - J Om^T = hat(v) in principal axes: sqrt(max over nu > 0 of
-/// sum v_i^2 nu^2 / ((nu^2 + j_k^2)(nu^2 + j_l^2))); solvable when at most one. Linear in v.
+/// Solvability ratio of Om J - J Om^T = hat(v) in principal axes: sqrt(max over nu > 0 of sum v_i^2 nu^2 / ((nu^2 + j_k^2)(nu^2 +
+/// j_l^2))). Solvable if at most one; linear in v.
 pub fn reach(j: &Vector, v: &Vector) -> f64 {
     let squares = j.map(|c| c * c);
     let at = |log: f64| {
@@ -124,7 +124,7 @@ pub fn reach(j: &Vector, v: &Vector) -> f64 {
             .map(|i| v[i] * v[i] * s / ((s + squares[(i + 1) % 3]) * (s + squares[(i + 2) % 3])))
             .sum::<f64>()
     };
-    // The maximum is flat: a grid of one percent in nu finds it to better than one part in 10^4.
+    // The maximum is flat: a one-percent grid in nu determines it to better than one part in 10^4.
     let largest = (-800..=800)
         .map(|n| at(f64::from(n) * 0.01))
         .fold(0.0, worse);

@@ -1,6 +1,6 @@
-//! Steppers that are wrong on purpose, one fault each: every check must reject at least one of them.
-//! Takes the data of a heavy top (no weight: a free body) and a fault; gives a motion. Without a fault it is right,
-//! which shows that a rejection is due to the fault.
+//! Deliberately wrong steppers with one fault each; every check must reject at least one of them. Takes the data of a heavy top (a
+//! free body without weight) and a fault, and gives a motion. Without a fault the stepper is correct, so a rejection is due to the
+//! fault.
 
 use super::motion::Motion;
 use super::truth::inverse_inertia;
@@ -12,28 +12,28 @@ use crate::handwritten::one_sided_top::edge_rotation;
 use crate::handwritten::principal_axes::PrincipalAxes;
 use crate::handwritten::principal_root::Quartic;
 
-/// What is wrong.
+/// The fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Nothing.
+    /// No fault.
     None,
     /// The second half kick uses the vertical of the old node.
     KickAtOldNode,
-    /// The vertical is carried by Om instead of Om^T.
+    /// The vertical is advected by Om instead of Om^T.
     VerticalCarriedBackwards,
-    /// Momentum and energy of the outgoing edge are reported as those of the node.
+    /// Reports momentum and energy of the outgoing edge as values of the node.
     EdgeForNode,
-    /// The momentum of the edge that ends at the node, in the axes where it began, is paired with the new vertical.
+    /// Pairs the momentum of the incoming edge, in the axes of its start, with the new vertical.
     LatePairing,
-    /// Rotations by I^-1 h mu: the Moser-Veselov equation is not solved.
+    /// Rotates by I^-1 h mu without solving the Moser-Veselov equation.
     Unsolved,
-    /// Rotations turned the other way: the sign of the momentum taken from the thesis.
+    /// Rotates in the opposite direction: uses the momentum sign of the thesis.
     Reversed,
     /// The momentum shrinks by one part in 10^7 each step.
     Friction,
 }
 
-/// A plain stepper in body variables with its own vertical, in principal axes of a diagonal or full J.
+/// A simple stepper in body variables with its own vertical, in principal axes of a diagonal or full J.
 #[derive(Clone, Copy, Debug)]
 pub struct FaultyTop {
     fault: Fault,
@@ -45,7 +45,7 @@ pub struct FaultyTop {
     q: Quaternion,
     mu: Vector,
     vertical: Vector,
-    /// Momentum of the last edge, in the axes of the node where it began.
+    /// Momentum of the last edge, in the axes of its initial node.
     edge: Vector,
 }
 

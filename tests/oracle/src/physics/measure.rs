@@ -1,12 +1,12 @@
-//! Deviations from reference states, drifts of conserved quantities, and differences of two motions.
-//! Takes motions and numbers of steps; gives largest deviations, absolute for reference states and relative to
-//! natural scales for conserved quantities. A refusal of a step is an error, never a small deviation.
+//! Deviations from reference states, drifts of conserved quantities, and differences of two motions. Results are largest
+//! deviations: absolute for reference states, relative to natural scales for conserved quantities. A failed step is an error and
+//! never counts as a small deviation.
 
 use super::motion::Motion;
 use crate::handwritten::attitude::{Matrix, Vector, dot};
 use crate::reference::NODES;
 
-/// Larger of two deviations; NaN counts as infinite.
+/// The larger of two deviations; NaN counts as infinite.
 pub fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() {
         f64::INFINITY
@@ -25,7 +25,8 @@ pub fn matrices(a: &Matrix, b: &Matrix) -> f64 {
     (0..3).map(|i| vectors(&a[i], &b[i])).fold(0.0, worse)
 }
 
-/// Runs to every reference node and takes the largest of what `deviation` says there (node's place in the list).
+/// Runs to every reference node and returns the largest value of `deviation` there. The argument is the index of the node in the
+/// list.
 pub fn at_reference_nodes<M: Motion>(
     motion: &mut M,
     mut deviation: impl FnMut(&M, usize) -> f64,
@@ -44,13 +45,13 @@ pub fn at_reference_nodes<M: Motion>(
 /// Largest drift over a free motion, relative to the values at node 0.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeDrift {
-    /// Of the energy mu . I^-1 mu / 2, computed here from the body momentum.
+    /// Drift of the energy mu . I^-1 mu / 2, computed here from the body momentum.
     pub energy: f64,
-    /// Of the energy as the stepper reports it.
+    /// Drift of the energy that the stepper reports.
     pub reported_energy: f64,
-    /// Of |mu|^2.
+    /// Drift of |mu|^2.
     pub square: f64,
-    /// Of the spatial momentum R mu, largest component over |m|.
+    /// Drift of the spatial momentum R mu: largest component relative to |m|.
     pub spatial: f64,
 }
 
@@ -63,7 +64,7 @@ impl FreeDrift {
     }
 }
 
-/// Drift over `steps` steps, looked at every step; `inverse` is I^-1 in body axes.
+/// Drift over `steps` steps, sampled at every step; `inverse` is I^-1 in body axes.
 pub fn free_drift(
     motion: &mut impl Motion,
     inverse: &Matrix,
@@ -72,7 +73,7 @@ pub fn free_drift(
     let observe = |motion: &dyn Motion| {
         let mu = motion.body_momentum();
         let energy = 0.5 * dot(&mu, &crate::handwritten::attitude::apply(inverse, &mu));
-        // The momentum in space from attitude and body momentum, not as the stepper stores it.
+        // The spatial momentum from attitude and body momentum, not the value that the stepper stores.
         let spatial = crate::handwritten::attitude::apply(&motion.attitude(), &mu);
         (energy, motion.energy(), dot(&mu, &mu), spatial)
     };
@@ -95,14 +96,14 @@ pub fn free_drift(
     Ok(drift)
 }
 
-/// Largest drift of what a heavy top keeps exactly.
+/// Largest drift of the exact invariants of a heavy top.
 #[derive(Clone, Copy, Debug)]
 pub struct TopDrift {
-    /// Of |Gamma|^2, relative.
+    /// Relative drift of |Gamma|^2.
     pub vertical: f64,
-    /// Of mu . Gamma, relative to the largest |mu||Gamma| met.
+    /// Drift of mu . Gamma, relative to the largest |mu||Gamma| of the run.
     pub area: f64,
-    /// Of m . z, on the same scale.
+    /// Drift of m . z, on the same scale.
     pub spatial: f64,
 }
 
@@ -115,7 +116,7 @@ impl TopDrift {
     }
 }
 
-/// Drift over `steps` steps, looked at every step.
+/// Drift over `steps` steps, sampled at every step.
 pub fn top_drift(motion: &mut impl Motion, up: &Vector, steps: u64) -> Result<TopDrift, String> {
     let observe = |motion: &dyn Motion| {
         let (mu, gamma) = (motion.body_momentum(), motion.vertical());
@@ -144,7 +145,7 @@ pub fn top_drift(motion: &mut impl Motion, up: &Vector, steps: u64) -> Result<To
     })
 }
 
-/// Largest difference of two motions over `steps` steps: attitude entries, and momenta over the largest |mu| met.
+/// Largest difference of two motions over `steps` steps: attitude entries, and momenta relative to the largest |mu| of the run.
 pub fn apart(a: &mut impl Motion, b: &mut impl Motion, steps: u64) -> Result<f64, String> {
     let (mut attitude, mut momentum, mut largest) = (0.0, 0.0, 0.0_f64);
     for _ in 0..steps {

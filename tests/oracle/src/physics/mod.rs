@@ -1,5 +1,5 @@
-//! What the physics of rigid bodies demands of any stepper, as measurements that tests compare with bounds.
-//! Takes motions (generated, hand-written or deliberately wrong ones); gives deviations, drifts, orders, trends.
+//! Measurements of physical laws that hold for any stepper of a rigid body; tests compare them with bounds. Motions may be
+//! generated, hand-written or deliberately wrong. Results are deviations, drifts, orders and trends.
 
 pub mod against_reference;
 pub mod cases;

@@ -1,14 +1,14 @@
-//! The view of a stepper that measurements need, so that generated, hand-written and wrong ones are treated alike.
-//! Takes the hand-written steppers; gives them as motions. Generated ones are wrapped where they are tested.
+//! The common interface of steppers for the measurements, implemented here for the hand-written ones. The tests wrap the generated
+//! steppers.
 
 use crate::handwritten::attitude::{Matrix, Vector};
 use crate::handwritten::free_body::FreeBody;
 use crate::handwritten::heavy_top::HeavyTop;
 use crate::handwritten::one_sided_top::OneSidedTop;
 
-/// A body turning about a fixed point, at a node.
+/// A body that rotates about a fixed point, at a node.
 pub trait Motion {
-    /// One step; the message of the refusal otherwise.
+    /// Steps once, or returns the error message.
     fn step(&mut self) -> Result<(), String>;
 
     /// Rotation matrix body -> space.
@@ -20,7 +20,7 @@ pub trait Motion {
     /// Node momentum in space axes.
     fn spatial_momentum(&self) -> Vector;
 
-    /// Energy as the stepper reports it.
+    /// The energy that the stepper reports.
     fn energy(&self) -> f64;
 
     /// The upward vertical in body axes; zero for a free body.
@@ -78,7 +78,7 @@ impl Motion for HeavyTop {
     }
 }
 
-/// The momentum of the edge that begins at the node, N_{k+1}, stands for the node momentum here.
+/// This stepper reports the momentum N_{k+1} of the outgoing edge as the node momentum.
 impl Motion for OneSidedTop {
     fn step(&mut self) -> Result<(), String> {
         OneSidedTop::step(self).map_err(|refusal| refusal.to_string())

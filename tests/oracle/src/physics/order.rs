@@ -1,11 +1,11 @@
-//! Order of convergence by step halving, against the continuous motion.
-//! Takes errors at steps h, h/2, h/4, ...; gives the orders between neighbours, and the errors themselves.
+//! Order of convergence by step halving against the continuous motion: errors at step sizes h, h/2, h/4, ..., and the orders
+//! between neighbours.
 
 use super::measure::worse;
 use super::motion::Motion;
 use super::truth::Phase;
 
-/// Errors of a motion at a fixed time for a sequence of halved steps.
+/// Errors of a motion at a fixed time for a sequence of halved step sizes.
 #[derive(Clone, Debug)]
 pub struct Errors {
     /// Largest deviation of a component of the body momentum.
@@ -14,7 +14,7 @@ pub struct Errors {
     pub attitude: Vec<f64>,
 }
 
-/// Runs `start(h)` to `time` for `steps`, `2 steps`, ... (`halvings` times) and compares with `truth` there.
+/// Runs `start(h)` to `time` with `steps`, `2 steps`, ... (`halvings` times) and compares with `truth`.
 pub fn errors<M: Motion>(
     start: impl Fn(f64) -> M,
     time: f64,
@@ -54,7 +54,7 @@ pub fn orders(errors: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Whether the finest two halvings show `order` to 0.05, with errors that rounding (`floor`) cannot have made.
+/// Whether the two finest halvings show `order` to within 0.05, with errors well above rounding (`floor`).
 pub fn confirms(errors: &[f64], order: f64, floor: f64) -> bool {
     let measured = orders(errors);
     let clear = errors.iter().rev().take(3).all(|e| *e > 100.0 * floor);

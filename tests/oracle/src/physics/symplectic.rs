@@ -1,13 +1,12 @@
-//! The canonical two-form of T*SO(3) in left-trivialised coordinates, attitude included.
-//! Takes the Jacobian of a map in (xi, mu), where Lambda changes by Lambda hat(xi), and the body momenta at both ends;
-//! gives how far the map is from symplectic.
+//! The canonical two-form of T*SO(3), attitude included, in left-trivialised coordinates. Takes the Jacobian of a map in (xi, mu),
+//! where Lambda varies by Lambda hat(xi), and the body momenta at both ends; gives the symplectic defect of the map.
 
 use crate::handwritten::attitude::Vector;
 
-/// Jacobian of a map of (xi, mu): rows are images, columns are causes.
+/// Jacobian of a map of (xi, mu): rows are outputs, columns are inputs.
 pub type Jacobian = [[f64; 6]; 6];
 
-/// Matrix of d(mu . xi): d theta = delta mu_1 . xi_2 - delta mu_2 . xi_1 - mu . (xi_1 x xi_2), the last term because
+/// Matrix of d(mu . xi): d theta = delta mu_1 . xi_2 - delta mu_2 . xi_1 - mu . (xi_1 x xi_2). The last term appears because
 /// left-invariant fields do not commute.
 pub fn two_form(mu: &Vector) -> Jacobian {
     let mut w = [[0.0; 6]; 6];
@@ -30,7 +29,7 @@ pub fn defect(jacobian: &Jacobian, before: &Vector, after: &Vector) -> f64 {
             let pulled: f64 = (0..36)
                 .map(|n| jacobian[n / 6][r] * new[n / 6][n % 6] * jacobian[n % 6][c])
                 .sum();
-            // NaN must not hide behind max.
+            // `max` would ignore a NaN.
             let off = (pulled - old[r][c]).abs();
             worst = if off.is_nan() {
                 f64::INFINITY
@@ -42,8 +41,8 @@ pub fn defect(jacobian: &Jacobian, before: &Vector, after: &Vector) -> f64 {
     worst
 }
 
-/// The same for a product of copies of SO(3): block i belongs to momentum i, coordinates in the order (xi_1, mu_1,
-/// xi_2, mu_2, ...). Largest entry of D^T W(mu') D - W(mu); the Jacobian by rows.
+/// The defect for a product of copies of SO(3): block i belongs to momentum i, with coordinates in the order (xi_1, mu_1, xi_2,
+/// mu_2, ...). Largest entry of D^T W(mu') D - W(mu); the Jacobian is row-major.
 pub fn defect_of_product(jacobian: &[Vec<f64>], before: &[Vector], after: &[Vector]) -> f64 {
     let form = |momenta: &[Vector]| {
         let mut w = vec![vec![0.0; 6 * momenta.len()]; 6 * momenta.len()];
@@ -59,7 +58,7 @@ pub fn defect_of_product(jacobian: &[Vec<f64>], before: &[Vector], after: &[Vect
     pulled_back(jacobian, &form(before), &form(after))
 }
 
-/// The same for SE(3): a turn and a displacement `G^-1 dG`, then the angular and the linear momentum.
+/// The defect for SE(3): rotation and translation `G^-1 dG`, then the angular and the linear momentum.
 pub fn defect_of_motion(jacobian: &[Vec<f64>], before: &[f64; 6], after: &[f64; 6]) -> f64 {
     let form = |mu: &[f64; 6]| {
         let mut w = vec![vec![0.0; 12]; 12];
@@ -80,14 +79,13 @@ pub fn defect_of_motion(jacobian: &[Vec<f64>], before: &[f64; 6], after: &[f64; 
     pulled_back(jacobian, &form(before), &form(after))
 }
 
-/// The same for SO(n): entries (j, i), i < j, row by row, of `Lambda^T dLambda` and of the momentum, paired entry by
-/// entry.
+/// The defect for SO(n): entries (j, i), i < j, row by row, of `Lambda^T dLambda` and of the momentum, paired entry by entry.
 pub fn defect_of_rotations(n: usize, jacobian: &[Vec<f64>], before: &[f64], after: &[f64]) -> f64 {
     let planes: Vec<(usize, usize)> = (0..n)
         .flat_map(|i| (i + 1..n).map(move |j| (j, i)))
         .collect();
     let d = planes.len();
-    // The entry (r, c) of the skew matrix with one at `plane` and minus one across.
+    // The entry (r, c) of the skew matrix with 1 at `plane` and -1 at its transpose.
     let entry = |plane: (usize, usize), r: usize, c: usize| {
         f64::from(i8::from((r, c) == plane) - i8::from((c, r) == plane))
     };
@@ -118,8 +116,8 @@ pub fn defect_of_rotations(n: usize, jacobian: &[Vec<f64>], before: &[f64], afte
     pulled_back(jacobian, &form(before), &form(after))
 }
 
-/// The same for any group of dimension d, of which `along(mu, a, b)` gives mu . [E_a, E_b]: d changes of the element seen
-/// from the body, then the d components of the momentum along them. Fields commute.
+/// The defect for any group of dimension d, where `along(mu, a, b)` is mu . [E_a, E_b]. The coordinates are d body variations of
+/// the element, then the d momentum components along them. Fields commute.
 pub fn defect_on_group(
     jacobian: &[Vec<f64>],
     before: &[f64],
@@ -157,7 +155,7 @@ fn pulled_back(jacobian: &[Vec<f64>], old: &[Vec<f64>], new: &[Vec<f64>]) -> f64
                 let turned: f64 = form.iter().zip(jacobian).map(|(w, d)| w * d[c]).sum();
                 off += row[r] * turned;
             }
-            // NaN must not hide behind max.
+            // `max` would ignore a NaN.
             worst = if off.is_nan() {
                 f64::INFINITY
             } else {

@@ -1,7 +1,7 @@
-//! Starts of the systems that hand-written steppers integrate besides the free body and the top: spatial forms, coupled
-//! bodies, bodies in fields and in n dimensions. Takes step lengths; gives motions at node 0.
+//! Initial data of the other hand-written systems: spatial forms, coupled bodies, bodies in fields and in n dimensions. Each
+//! function gives a motion at node 0 for a step size.
 
-// Loops over indices read as the formulas they were typed from.
+// Index loops keep the shape of the formulas.
 #![allow(clippy::needless_range_loop)]
 
 use super::cases::{diagonal, generic_top, lagrange_top};
@@ -60,7 +60,7 @@ pub fn reference_pair() -> (Pair, [Quaternion; 2], [Vector; 2]) {
     (pair, [Quaternion::IDENTITY, second], [coupled_sym::M0; 2])
 }
 
-/// Two different bodies with arms off their axes.
+/// Two different bodies with arms off their principal axes.
 pub fn generic_pair() -> (Pair, [Quaternion; 2], [Vector; 2]) {
     let pair = Pair {
         poinsots: [
@@ -77,7 +77,7 @@ pub fn generic_pair() -> (Pair, [Quaternion; 2], [Vector; 2]) {
     (pair, q, [[0.7, -0.4, 0.9], [-0.3, 0.8, 0.2]])
 }
 
-/// Body 2 seen from body 1.
+/// The attitude of body 2 relative to body 1.
 pub fn relative(pair: &CoupledBodies) -> Matrix {
     let [a, b] = pair.attitudes();
     a.conjugate().times(&b).matrix()
@@ -105,7 +105,7 @@ pub fn body_n<const N: usize>(h: f64) -> ([f64; N], BodyN<N>) {
     (j, BodyN::start(&j, &start, &mu, h).expect("solvable"))
 }
 
-/// A quadratic field whose axes are not those of the body.
+/// A quadratic field whose axes differ from the body's.
 pub fn quadratic_field() -> QuadraticField {
     QuadraticField {
         stiffness: [[1.0, 0.3, -0.2], [0.3, -0.5, 0.4], [-0.2, 0.4, 0.7]],
@@ -142,7 +142,7 @@ pub fn quadratic_body(h: f64) -> BodyInField<QuadraticField> {
     body_in(&quadratic_field(), h)
 }
 
-/// A body in a fluid without symmetry; `weight` is what buoyancy leaves, with a moment of the same size.
+/// An asymmetric body in a fluid; `weight` is the net weight after buoyancy, with a moment of the same size.
 pub fn submerged(weight: f64) -> (Submerged, Quaternion, Vector, Momentum) {
     let body = Submerged {
         poinsot: [[0.9, 0.1, -0.15], [0.1, 0.6, 0.05], [-0.15, 0.05, 1.2]],
@@ -160,7 +160,7 @@ pub fn submerged(weight: f64) -> (Submerged, Quaternion, Vector, Momentum) {
     (body, attitude, [0.3, -0.1, 0.2], momentum)
 }
 
-/// That body on its way.
+/// The motion of that body.
 pub fn submerged_body(weight: f64, h: f64) -> KirchhoffBody {
     let (body, attitude, position, momentum) = submerged(weight);
     KirchhoffBody::start(&body, &attitude, &position, &momentum, h).expect("solvable")

@@ -1,6 +1,6 @@
-//! Whether a series that oscillates also drifts: the slope of block means against its standard error.
-//! Takes a sampled quantity; gives amplitude, total change along the fitted line, and that change in standard errors,
-//! the latter widened for the correlation of neighbouring blocks.
+//! Detects drift in an oscillating series, by the slope of block means relative to its standard error. Gives the amplitude, the
+//! total change along the fitted line, and that change in standard errors, which account for the correlation of neighbouring
+//! blocks.
 
 /// A line through the block means of a series.
 #[derive(Clone, Copy, Debug)]
@@ -13,10 +13,10 @@ pub struct Trend {
     pub significance: f64,
 }
 
-/// Blocks the series is cut into: enough for a standard error, few enough that each holds many periods.
+/// Number of blocks: enough for a standard error, and few enough that each block contains many periods.
 const BLOCKS: usize = 64;
 
-/// Fits the line; the series should hold many oscillations in a 64th of its length.
+/// Fits the line. The series should oscillate many times within 1/64 of its length.
 pub fn trend(series: &[f64]) -> Trend {
     let length = series.len() / BLOCKS;
     let means: Vec<f64> = series
@@ -41,8 +41,8 @@ pub fn trend(series: &[f64]) -> Trend {
         .collect();
     let power: f64 = rest.iter().map(|r| r * r).sum();
     let neighbours: f64 = rest.windows(2).map(|pair| pair[0] * pair[1]).sum();
-    // Effective number of independent blocks for a first-order autoregressive remainder. A negative correlation
-    // (a beat against the block length) is not used to narrow the error.
+    // Effective number of independent blocks for a first-order autoregressive remainder. A negative correlation, from a beat with
+    // the block length, does not narrow the error.
     let correlation = if power > 0.0 {
         (neighbours / power).clamp(0.0, 0.95)
     } else {
@@ -65,7 +65,7 @@ pub fn trend(series: &[f64]) -> Trend {
 }
 
 impl Trend {
-    /// Three standard errors, and five percent of the amplitude: what a motion without drift keeps.
+    /// Whether the change is within three standard errors and five percent of the amplitude.
     pub fn is_flat(&self) -> bool {
         self.significance <= 3.0 && self.change.abs() <= 0.05 * self.amplitude
     }

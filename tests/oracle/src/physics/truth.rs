@@ -1,11 +1,11 @@
-//! The continuous motion of a heavy (or free) body, to rounding: Taylor series of the Euler-Poincare equations.
-//! Takes J, gU, z, attitude, body momentum and a time; gives attitude and body momentum then. Independent of every
-//! discrete scheme: mu' = mu x w + Gamma x gU, Gamma' = Gamma x w, q' = q (0, w)/2, w = I^-1 mu.
+//! The continuous motion of a heavy (or free) body to rounding, by Taylor series of the Euler-Poincare equations. Takes J, gU, z,
+//! attitude, body momentum and a time; gives attitude and body momentum at that time. Independent of every discrete scheme: mu' =
+//! mu x w + Gamma x gU, Gamma' = Gamma x w, q' = q (0, w)/2, w = I^-1 mu.
 
 use crate::handwritten::attitude::{Matrix, Quaternion, Vector, apply, apply_transposed};
 use crate::handwritten::heavy_top::Top;
 
-/// Coefficients kept. With steps of 1/20 and rates of a few units the last one is below 1e-20.
+/// Number of coefficients. With expansion length 1/20 and rates of a few units, the last is below 1e-20.
 const TERMS: usize = 24;
 
 /// Length of one expansion.
@@ -22,18 +22,18 @@ pub struct Phase {
 
 type Series = [f64; TERMS];
 
-/// Coefficient n of the product of two series whose coefficients up to n are known.
+/// Coefficient n of the product of two series with known coefficients up to n.
 fn product(a: &Series, b: &Series, n: usize) -> f64 {
     (0..=n).map(|k| a[k] * b[n - k]).sum()
 }
 
-/// Coefficient n of one component of the vector product of two series.
+/// Coefficient n of one component of the cross product of two series.
 fn turned(a: &[Series; 3], b: &[Series; 3], component: usize, n: usize) -> f64 {
     let (j, k) = ((component + 1) % 3, (component + 2) % 3);
     product(&a[j], &b[k], n) - product(&a[k], &b[j], n)
 }
 
-/// Inverse of the moment of inertia tr(J) Id - J by cofactors.
+/// Inverse of the inertia matrix tr(J) Id - J, by cofactors.
 pub fn inverse_inertia(poinsot: &Matrix) -> Matrix {
     let trace = poinsot[0][0] + poinsot[1][1] + poinsot[2][2];
     let i = [0, 1, 2].map(|r| {

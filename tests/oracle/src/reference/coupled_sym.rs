@@ -1,5 +1,5 @@
-//! Two equal symmetric bodies with a spherical joint, arms along their axes, 32 digits rounded to `f64`.
-//! Gives the start and, at the recorded nodes, body momenta, the relative attitude and that of body 1.
+//! Two equal symmetric bodies with a spherical joint and arms along their axes; 32 digits rounded to `f64`. Contains the initial
+//! data and, at the recorded nodes, body momenta, the relative attitude and the attitude of body 1.
 
 /// Principal moments of either body about its own centre of mass.
 pub const MOMENTS: [f64; 3] = [2.0, 2.0, 1.0];
@@ -25,7 +25,7 @@ pub const SECOND_MOMENTUM: [[f64; 3]; 4] = [
     [0.5221399409008666, 0.34378983132738417, 1.0],
     [-0.383670944693886, 0.4374759480053105, 1.0],
 ];
-/// Body 2 seen from body 1.
+/// Attitude of body 2 relative to body 1.
 pub const RELATIVE_ATTITUDE: [[[f64; 3]; 3]; 4] = [
     [
         [
@@ -133,7 +133,7 @@ pub const CASIMIR: f64 = 3.0;
 pub const TOTAL_MOMENTUM: [f64; 3] = [1.0, -1.0, 1.0];
 /// Energy at node 0.
 pub const ENERGY_0: f64 = 1.1;
-/// Least and largest deviation of the energy over the run.
+/// Smallest and largest deviation of the energy over the run.
 pub const ENERGY_DEVIATION: [f64; 2] = [-2.2539648949043803e-05, 0.0];
-/// Agreement asked for up to node 1000: the pair magnifies rounding ten times more than one body does.
+/// Required agreement up to node 1000: the pair amplifies rounding ten times more than a single body.
 pub const TOLERANCE: f64 = 1e-11;

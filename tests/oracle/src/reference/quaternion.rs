@@ -1,9 +1,9 @@
-//! Free body I = (1, 1, 1/2) on SU(2), for c = 0 and c = 1, 32 digits rounded to `f64`.
-//! Gives the start and, at the recorded nodes, the unit quaternion (w, x, y, z) and the body momentum.
+//! Free body I = (1, 1, 1/2) on SU(2), for c = 0 and c = 1; 32 digits rounded to `f64`. Contains the initial data and, at the
+//! recorded nodes, the unit quaternion (w, x, y, z) and the body momentum.
 
 /// Principal moments of inertia.
 pub const MOMENTS: [f64; 3] = [1.0, 1.0, 0.5];
-/// Body momentum at node 0; the quaternion there is 1.
+/// Body momentum at node 0, where the quaternion is 1.
 pub const M0: [f64; 3] = [-0.5, 0.1, 0.5];
 /// Quaternion of the run with c = 0.
 pub const QUATERNION_C0: [[f64; 4]; 4] = [

@@ -1,5 +1,5 @@
-//! Free body I = (3.5, 2.5, 2) in the spatial representation, 32 digits rounded to `f64`.
-//! Gives the start and, at the recorded nodes, J, Lambda (body -> space) and omega (edge k-1 -> k).
+//! Free body I = (3.5, 2.5, 2) in the spatial representation; 32 digits rounded to `f64`. Contains the initial data and, at the
+//! recorded nodes, J, Lambda (body -> space) and omega (edge k-1 -> k).
 
 /// Principal moments of inertia.
 pub const MOMENTS: [f64; 3] = [3.5, 2.5, 2.0];
@@ -109,7 +109,7 @@ pub const ATTITUDE: [[[f64; 3]; 3]; 4] = [
         ],
     ],
 ];
-/// Rotation of the edge that ends at the node, in space.
+/// Spatial rotation of the edge that ends at the node.
 pub const OMEGA: [[[f64; 3]; 3]; 4] = [
     [
         [

@@ -1,6 +1,6 @@
-//! A beam of numbers with terms of every range: nodes, segments, the inner nodes of second differences,
-//! two steps along the line, segments before and after a node, sums over stated sites, products of
-//! neighbours' velocities, and ends that hold a neighbour. Rings shorter than the terms are wide.
+//! A scalar beam with terms of every range: nodes, segments, inner nodes of second differences, two steps along the chain, segments
+//! before and after a node, sums over stated sites, products of neighbouring velocities, and ends that prescribe a neighbour. Some
+//! rings are shorter than the terms are wide.
 
 use super::Ends;
 use super::change::judged;
@@ -25,7 +25,7 @@ struct Beam {
     segments: usize,
     ends: Ends,
     bodies: Bodies,
-    /// Entries of those that move, values of those that are held.
+    /// Indices of free fields, values of prescribed ones.
     places: Vec<Result<usize, f64>>,
     m: Vec<f64>,
     c: Vec<f64>,
@@ -118,7 +118,7 @@ impl Typed for Beam {
             place + number(turns * self.once_around)
         };
         let moved = |i: isize| u(head, i) - u(tail, i);
-        // The last node of each sum, and the first node after it.
+        // The end of each sum: the first node after its last.
         let (nodes, last_but_one, last_but_two) = match ring {
             true => (n, n, n),
             false => (n + 1, n, n.saturating_sub(1)),

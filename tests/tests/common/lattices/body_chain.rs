@@ -1,4 +1,4 @@
-//! Bodies in a row whose kinetic energy joins the velocities of neighbours.
+//! Bodies in a chain whose kinetic energy couples the velocities of neighbours.
 
 use super::FREE;
 use super::change::judged;

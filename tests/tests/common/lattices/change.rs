@@ -1,5 +1,4 @@
-//! Changes that a comparison must see: of one sign or one range in the typed action, and of one summand in
-//! the derived residual.
+//! Changes that a comparison must detect: a sign or a range in the hand-written action, and a summand in the derived residual.
 
 use super::compare::{Variation, WHAT, agrees, disagreement, found, order, ordered, typed, values};
 use super::sum::{Sum, Typed};
@@ -10,34 +9,35 @@ use clebsch_oracle::oracle::points::asked_for;
 use clebsch_oracle::physics::measure::worse;
 use clebsch_oracle::sizes::CHANGED_SEGMENTS;
 
-/// What is changed.
+/// The change.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Change {
     None,
-    /// The sign of the summand of this number.
+    /// The sign of the summand with this index.
     Sign(usize),
-    /// The range of the sum of this number: the first site and the last one moved by so much.
+    /// The range of the sum with this index: shifts its first and its last site.
     Range(usize, isize, isize),
 }
 
-/// Every change of the range of one sum at one of its ends by one site.
+/// Every shift of one end of a range by one site.
 const ENDS_MOVED: [(isize, isize); 4] = [(1, 0), (-1, 0), (0, 1), (0, -1)];
 
-/// How many summands vary; the largest slope of one that does not is rounding.
+/// The number of summands that vary; a constant summand has only rounding errors as slopes.
 fn varying(v: &Variation) -> usize {
     let largest = v.largest.iter().copied().fold(0.0, worse);
     let moves = v.largest.iter().filter(|x| **x > AGREEMENT * largest);
     moves.count()
 }
 
-/// Whether the typed action of so many segments is changed term by term: on longer lines by
-/// `LATTICE_CHANGES=12`, which takes a minute.
+/// Whether to change the hand-written action term by term at this number of segments. `LATTICE_CHANGES=12` includes longer chains
+/// and takes a minute.
 fn is_changed(segments: usize) -> bool {
     segments as u64 <= asked_for("LATTICE_CHANGES", CHANGED_SEGMENTS)
 }
 
-/// The derivation of so many sites of each label, the last one's segments, agrees with the typed action, and changes of
-/// either are seen. The typed action; on short lines how many changes of it there are and how many move what is constant.
+/// Checks that the derivation for these numbers of sites agrees with the hand-written action, and that the comparison detects
+/// changes of either. The last label counts the segments. Returns the action and, for short chains, the number of changes and how
+/// many of them only move constants.
 pub fn judged<M: Typed>(
     text: &str,
     counts: &[(&str, usize)],
@@ -57,8 +57,8 @@ pub fn judged<M: Typed>(
     (model, changes)
 }
 
-/// Every change of one sign or of one range by one site is seen, wherever it moves the action. How many
-/// changes there are, and how many of them only move what is constant.
+/// Checks that the comparison detects every change of a sign, or of a range by one site, that moves the action. Returns the number
+/// of changes, and how many only move constants.
 fn changes_are_seen(d: &Derivation, model: &impl Typed, source: &mut Source) -> (usize, usize) {
     let nodes = [(); 3].map(|()| model.draw(source));
     let found = found(d, model, &nodes);
@@ -90,8 +90,8 @@ fn changes_are_seen(d: &Derivation, model: &impl Typed, source: &mut Source) -> 
     (all, constant)
 }
 
-/// Every summand of the derived residual is seen: left out or with the other sign it disagrees with the
-/// typed action at one of a few random points. What describes those that do not.
+/// Descriptions of summands of the derived residual whose removal or negation still agrees with the hand-written action at three
+/// random points.
 fn unseen(d: &Derivation, model: &impl Typed, source: &mut Source) -> Vec<String> {
     let points: Vec<(Assignment, Variation)> = (0..3)
         .map(|_| {

@@ -1,4 +1,4 @@
-//! The derivation and the typed action at random fields: momenta at both ends of a step, and residual.
+//! Compares the derivation with the hand-written action at random fields: momenta at both ends of a step, and the residual.
 
 use super::AGREEMENT;
 use super::change::Change;
@@ -11,16 +11,16 @@ use clebsch_oracle::oracle::dual::{Dual, Number};
 use clebsch_oracle::oracle::points::{Given, Source};
 use clebsch_oracle::physics::measure::worse;
 
-/// The variation of an action at the configurations of one node: a component for each direction.
+/// The variation of an action at the configurations of one node, one component per direction.
 pub struct Variation {
     derivative: Vec<f64>,
-    /// The largest summand in the variation of the site that a component belongs to.
+    /// For each component, the largest summand in the variation at its site.
     scale: Vec<f64>,
     /// The largest slope of each summand.
     pub largest: Vec<f64>,
 }
 
-/// The directions in which a configuration varies, each as the change of its entries.
+/// The directions of variation of a configuration, each as the change of its entries.
 fn directions(body: &Body, x: &[f64]) -> Vec<Vec<f64>> {
     match body.kind {
         Kind::Rotation => {
@@ -41,7 +41,7 @@ fn directions(body: &Body, x: &[f64]) -> Vec<Vec<f64>> {
     }
 }
 
-/// The variation of what `action` gives at the configurations `x`.
+/// The variation of the summands in `action` at the configurations `x`.
 fn vary(model: &impl Typed, x: &[f64], action: impl Fn(&[Dual]) -> Vec<Dual>) -> Variation {
     let mut out = Variation {
         derivative: Vec::new(),
@@ -117,7 +117,7 @@ fn configuration(body: &Body, shift: i8, x: &[f64]) -> Given {
     }
 }
 
-/// Values of all names at three nodes.
+/// The values of all names at three nodes.
 pub fn values(model: &impl Typed, nodes: &[Vec<f64>; 3]) -> Assignment {
     let mut values = Assignment::new();
     set(&mut values, &model.parameters());
@@ -130,7 +130,7 @@ pub fn values(model: &impl Typed, nodes: &[Vec<f64>; 3]) -> Assignment {
     values
 }
 
-/// A residual, which comes in the order of the derivation, in that of the typed configurations.
+/// Reorders a residual from the order of the derivation to that of the hand-written configurations.
 pub fn ordered(residual: &[f64], order: &[usize], model: &impl Typed) -> Vec<f64> {
     let sizes = order.iter().zip(&model.bodies().0);
     let sizes: Vec<(usize, usize)> = sizes.map(|(i, b)| (*i, b.kind.directions())).collect();
@@ -143,13 +143,13 @@ pub fn ordered(residual: &[f64], order: &[usize], model: &impl Typed) -> Vec<f64
     each.collect()
 }
 
-/// What the derivation says of the same: numbers in the order of the typed configurations.
+/// The same quantities from the derivation, in the order of the hand-written configurations.
 pub fn found(d: &Derivation, model: &impl Typed, nodes: &[Vec<f64>; 3]) -> [Vec<f64>; 3] {
     let s = &d.letters.symbols;
     let order = order(d, model);
     let mut values = values(model, nodes);
     let residual = d.residual(&values).unwrap_or_else(|e| panic!("{e}"));
-    // On the step from the middle node.
+    // On the outgoing edge of the middle node.
     for (body, i) in model.bodies().0.iter().zip(&order) {
         let velocity = s.get(d.spec.configurations[*i].velocity);
         let mut given = configuration(body, 0, &nodes[1]);
@@ -182,7 +182,7 @@ pub fn found(d: &Derivation, model: &impl Typed, nodes: &[Vec<f64>; 3]) -> [Vec<
     [start, end, ordered(&residual, &order, model)]
 }
 
-/// For each typed configuration its number in the derivation, which has no others.
+/// For each hand-written configuration, its index in the derivation, which contains no others.
 pub fn order(d: &Derivation, model: &impl Typed) -> Vec<usize> {
     let s = &d.letters.symbols;
     let names: Vec<&str> = d
@@ -198,7 +198,7 @@ pub fn order(d: &Derivation, model: &impl Typed) -> Vec<usize> {
         .collect()
 }
 
-/// The largest difference of a component, and which one it is; infinite for anything that is not finite.
+/// The largest difference of a component, and its index; infinite if a value is not finite.
 pub fn disagreement(wanted: &Variation, found: &[f64]) -> (f64, usize) {
     assert_eq!(wanted.derivative.len(), found.len());
     let mut worst = (0.0f64, 0);
@@ -214,7 +214,7 @@ pub fn disagreement(wanted: &Variation, found: &[f64]) -> (f64, usize) {
     worst
 }
 
-/// The site that a component belongs to.
+/// The name and site of a component.
 fn site(model: &impl Typed, component: usize) -> String {
     let mut left = component;
     for b in &model.bodies().0 {
@@ -227,10 +227,10 @@ fn site(model: &impl Typed, component: usize) -> String {
     "no site".to_owned()
 }
 
-/// What is compared.
+/// Names of the compared quantities.
 pub const WHAT: [&str; 3] = ["momentum at the start", "momentum at the end", "residual"];
 
-/// The derivation agrees with the typed action at random fields.
+/// Checks that the derivation agrees with the hand-written action at random fields.
 pub fn agrees(d: &Derivation, model: &impl Typed, source: &mut Source) {
     for _ in 0..3 {
         let nodes = [(); 3].map(|()| model.draw(source));

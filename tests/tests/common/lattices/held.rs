@@ -1,6 +1,5 @@
-//! Tops in a row whose first or last one is held: its velocity rests, and what it carries stands still,
-//! by its definition or by a value of its own. Neighbours are joined by velocities, by the elements and by
-//! what they carry.
+//! Tops in a chain whose first or last top is prescribed. Its velocity is the identity, and its advected quantity is constant, by
+//! definition or by an explicit value. Neighbours are coupled by velocities, elements and advected quantities.
 
 use super::Ends;
 use super::change::judged;
@@ -24,7 +23,7 @@ struct Tops {
     segments: usize,
     bodies: Bodies,
     tops: Vec<Result<usize, Square<f64, 3>>>,
-    /// What is carried, at the identity.
+    /// The advected quantities at the identity.
     carried: Vec<[f64; 3]>,
     j: Vec<Square<f64, 3>>,
     c: Vec<Square<f64, 3>>,

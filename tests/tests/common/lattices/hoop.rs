@@ -1,5 +1,5 @@
-//! A rod that closes to a ring, its frames turned in space, its places with an offset around the ring; and
-//! nodes that see the frames of both segments that they join.
+//! A rod closed to a ring, with frames in the spatial representation and positions with an offset around the ring. Nodes depend on
+//! the frames of both adjacent segments.
 
 use super::Ends;
 use super::change::judged;
@@ -121,7 +121,7 @@ impl Typed for Hoop {
             };
             sum.node(at(tail), at(head));
         }
-        // On a line the first and the last node join only one segment.
+        // On an open chain, the first and the last node have only one adjacent segment.
         let (inner, last) = if self.ring { (0, n) } else { (1, n) };
         for i in sum.over("bending", 0, if self.ring { n } else { n - 1 }) {
             let at = |x: &[T]| {
@@ -154,4 +154,4 @@ pub fn check(segments: usize, ends: Ends) {
     });
 }
 
-// Of 50 segments the derivation is larger than any is given.
+// With 50 segments the derivation exceeds the engine's limit.

@@ -1,4 +1,4 @@
-//! The geometrically exact rod: places at nodes, frames at segments, and every pair of its ends.
+//! The geometrically exact rod: positions at nodes, frames at segments, and every pair of ends.
 
 use super::Ends;
 use super::change::judged;
@@ -28,7 +28,7 @@ const TEXT: &str = "model GeometricallyExactRod {
 const FIRST: [&str; 3] = ["free", "pinned", "clamped"];
 const LAST: [&str; 4] = ["free", "pinned", "clamped", "load"];
 
-/// Where the place of a node stands.
+/// The source of a node's position.
 enum Place {
     Moving(usize),
     Held([f64; 3]),
@@ -192,16 +192,16 @@ pub fn check(segments: usize, first: &'static str, last: &'static str) {
     });
     if let Some((changes, constant)) = changes {
         println!("{constant} of {changes} changes move what is held");
-        // For each place that is held: the sign of its inertia and of its weight, either left out of its
-        // sum, either put twice into it at the other end.
+        // For each prescribed position: the signs of its inertia and weight, either removed from its sum, and either counted twice
+        // at the other end of the sum.
         let held = rod.places.iter().filter(|p| matches!(p, Place::Held(_)));
-        // One frame is bent against nothing, and in a sum one site too long against itself.
+        // A single frame has no bending energy, and a sum one site too long bends a frame against itself.
         let nothing = if segments == 1 { 4 } else { 0 };
         assert_eq!(constant, 6 * held.count() + nothing);
     }
 }
 
-/// Every alternative at one end with every one at the other.
+/// All pairs of first and last ends.
 pub fn any_ends(segments: usize) {
     for first in FIRST {
         for last in LAST {

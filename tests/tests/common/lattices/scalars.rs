@@ -1,5 +1,5 @@
-//! Lines of numbers: the Toda chain with an offset around the ring, and a chain of pendulums (sine-Gordon)
-//! with free and held ends.
+//! Scalar chains: the Toda chain with an offset around the ring, and a chain of pendulums (sine-Gordon) with free and prescribed
+//! ends.
 
 use super::Ends;
 use super::change::judged;
@@ -84,7 +84,7 @@ impl Typed for Toda {
         }
         let stretch = |x: &[T], i: isize| {
             let (here, next) = (around(i, count), around(i + 1, count));
-            // The last site of a ring is followed by the first, one turn on.
+            // After the last site of a ring comes the first, with the offset once around.
             let seam = if self.ring && next == 0 {
                 self.once_around
             } else {
@@ -108,7 +108,7 @@ impl Typed for Toda {
 struct Pendulums {
     segments: usize,
     bodies: Bodies,
-    /// Entries of those that move, values of those that are held.
+    /// Indices of free angles, values of prescribed ones.
     angles: Vec<Result<usize, f64>>,
     w: f64,
     h: f64,
@@ -190,7 +190,7 @@ pub fn toda(segments: usize, ends: Ends) {
     let Some((changes, constant)) = changes else {
         return;
     };
-    // The only site of a ring keeps its distance from itself.
+    // A single site in a ring has a constant distance from itself.
     let alone = ends == Ends::Ring && segments == 1;
     assert_eq!(constant > 0, alone, "{constant} of {changes}");
 }
@@ -203,8 +203,8 @@ pub fn pendulums(segments: usize, ends: Ends) {
         return;
     };
     if ends != Ends::Ring {
-        // For each angle that is held: two signs, two summands left out, two put twice. Where both are, the
-        // torsion between them, of a sum one site too long.
+        // For each prescribed angle: two signs, two removed summands, two duplicated ones. If both are prescribed, also the torsion
+        // between them, from a sum one site too long.
         let held = line.angles.iter().filter(|u| u.is_err()).count();
         let between = if held == 2 { 2 } else { 0 };
         assert_eq!(constant, 6 * held + between, "of {changes}");

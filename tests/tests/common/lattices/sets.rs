@@ -1,4 +1,4 @@
-//! A set of particles without neighbours beside a line of numbers, both tied to one body.
+//! A set of particles without neighbours and a scalar chain, both coupled to one body.
 
 use super::Ends;
 use super::change::judged;

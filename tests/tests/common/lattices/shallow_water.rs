@@ -1,5 +1,5 @@
-//! Particles of shallow water in a channel that closes on itself: depths by the second neighbours, an
-//! offset around the ring, and a term linear in velocities.
+//! Particles of shallow water in a periodic channel: depths from second neighbours, an offset around the ring, and a term linear in
+//! velocities.
 
 use super::Ends;
 use super::change::judged;
@@ -89,7 +89,7 @@ impl Typed for Water {
             let centred = (tail[x] + head[x]) * number(0.5);
             sum.edge(centred * (head[y] - tail[y]) * number(self.m[at(i)] * self.f));
         }
-        // On a line the first and the last particle have a neighbour on one side only.
+        // On an open chain, the first and the last particle have a neighbour on one side only.
         let (first, beyond) = if self.ring {
             (0, count)
         } else {
@@ -123,7 +123,7 @@ pub fn check(segments: usize, ends: Ends) {
     let Some((changes, constant)) = changes else {
         return;
     };
-    // On a ring of one or two both neighbours are one particle, a fixed distance apart.
+    // On a ring of one or two sites, both neighbours are the same particle at a fixed distance.
     let few = ends == Ends::Ring && segments <= 2;
     assert_eq!(constant > 0, few, "{constant} of {changes}");
 }

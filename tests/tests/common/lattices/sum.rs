@@ -1,4 +1,4 @@
-//! Sums over sites: each summand under the name of its sum, and at most one of them changed.
+//! Sums over sites: each summand under the name of its sum, with at most one change.
 
 use super::change::Change;
 use clebsch_oracle::oracle::dual::Number;
@@ -6,18 +6,18 @@ use clebsch_oracle::oracle::points::{Given, Source};
 use clebsch_oracle::oracle::square::Square;
 use std::array::from_fn;
 
-/// What a configuration at a site is.
+/// The type of a configuration at a site.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Kind {
     Rotation,
-    /// A rotation whose velocity is seen from space.
+    /// A rotation with spatial velocity.
     Spatial,
     Vector(usize),
     Number,
 }
 
 impl Kind {
-    /// How many entries it has.
+    /// The number of entries.
     pub fn entries(self) -> usize {
         match self {
             Kind::Rotation | Kind::Spatial => 9,
@@ -26,7 +26,7 @@ impl Kind {
         }
     }
 
-    /// In how many directions it varies.
+    /// The number of directions of variation.
     pub fn directions(self) -> usize {
         match self {
             Kind::Rotation | Kind::Spatial => 3,
@@ -36,7 +36,7 @@ impl Kind {
     }
 }
 
-/// A configuration at a site: the name of its copy, and where its entries begin.
+/// A configuration at a site: the name of its copy, and the index of its first entry.
 #[derive(Clone, Debug)]
 pub struct Body {
     pub name: String,
@@ -44,12 +44,12 @@ pub struct Body {
     pub at: usize,
 }
 
-/// All configurations, one after the other.
+/// All configurations, concatenated.
 #[derive(Clone, Default, Debug)]
 pub struct Bodies(pub Vec<Body>);
 
 impl Bodies {
-    /// One more; where its entries begin.
+    /// Appends a configuration and returns the index of its first entry.
     pub fn add(&mut self, name: &str, site: Option<usize>, kind: Kind) -> usize {
         let at = self.entries();
         let name = match site {
@@ -65,11 +65,11 @@ impl Bodies {
     }
 }
 
-/// A model with the action of one step typed by hand.
+/// A model with a hand-written action of one step.
 pub trait Typed {
     fn bodies(&self) -> &Bodies;
 
-    /// Random configurations, places and numbers between -1 and 1.
+    /// Random rotations, and random positions and numbers in (-1, 1).
     fn draw(&self, source: &mut Source) -> Vec<f64> {
         let mut drawn = |body: &Body| match body.kind {
             Kind::Rotation | Kind::Spatial => source.orthogonal::<3>().0.concat(),
@@ -80,10 +80,10 @@ pub trait Typed {
         self.bodies().0.iter().flat_map(&mut drawn).collect()
     }
 
-    /// Values of parameters and of the step.
+    /// Values of parameters and of the step size.
     fn parameters(&self) -> Vec<Given>;
 
-    /// Values of advected quantities, at this time level.
+    /// Values of advected quantities at this time level.
     fn advected(&self, _shift: i8, _x: &[f64]) -> Vec<Given> {
         Vec::new()
     }
@@ -95,7 +95,7 @@ pub trait Typed {
 /// The summands of an action.
 pub struct Sum<T> {
     pub summands: Vec<T>,
-    /// Names of the sums, in order.
+    /// The names of the sums, in order.
     pub sums: Vec<&'static str>,
     change: Change,
 }
@@ -109,7 +109,7 @@ impl<T: Number> Sum<T> {
         }
     }
 
-    /// The sites from `from` on, before `to`, of the sum of this name.
+    /// The sites `from .. to` of the sum with this name.
     pub fn over(&mut self, sum: &'static str, from: usize, to: usize) -> Vec<isize> {
         let number = |n: usize| isize::try_from(n).unwrap();
         let (mut from, mut to) = (number(from), number(to));
@@ -123,20 +123,19 @@ impl<T: Number> Sum<T> {
         (from..to).collect()
     }
 
-    /// A summand over the edge in time.
+    /// A summand of the edge.
     pub fn edge(&mut self, value: T) {
         let flipped = self.change == Change::Sign(self.summands.len());
         self.summands.push(if flipped { -value } else { value });
     }
 
-    /// A summand at a node in time: half of it at either end of the edge.
+    /// A nodal summand: half at either end of the edge.
     pub fn node(&mut self, at_tail: T, at_head: T) {
         self.edge((at_tail + at_head) * T::constant(0.5));
     }
 }
 
-/// The site in a list of `count`, once around a ring or more. On a line it is the site itself, except
-/// where the range of a sum is changed.
+/// The index of a site in a ring of `count` sites. On an open chain it equals the site, unless a range was changed.
 pub fn around(site: isize, count: usize) -> usize {
     usize::try_from(site.rem_euclid(isize::try_from(count).unwrap())).unwrap()
 }

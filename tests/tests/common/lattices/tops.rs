@@ -1,4 +1,4 @@
-//! Tops in a row, joined by elastic torques: a line and a ring.
+//! Tops in a chain with elastic torques: open, and as a ring.
 
 use super::Ends;
 use super::change::judged;
@@ -98,7 +98,7 @@ pub fn check(segments: usize, ends: Ends) {
         Tops::of(segments, ends, source)
     });
     if let Some((changes, constant)) = changes {
-        // A ring of one top turns with its neighbour: itself.
+        // In a ring of one, the top is its own neighbour.
         let alone = ends == Ends::Ring && segments == 1;
         assert_eq!(constant > 0, alone, "{constant} of {changes}");
     }

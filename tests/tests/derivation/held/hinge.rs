@@ -1,5 +1,5 @@
-//! A body on a hinge along an axis of the basis: entries of its rotation that the constraints speak of vanish but for
-//! rounding, and are no measure of it. Beside the pendulum of one angle that it is.
+//! A body on a hinge along a basis axis, compared with the equivalent pendulum of one angle. The entries of its rotation in the
+//! constraints vanish up to rounding, and cannot serve as a scale for it.
 
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Rotation};
@@ -25,8 +25,8 @@ fn about_third(angle: f64) -> Matrix3<f64> {
     Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0)
 }
 
-/// How far the hinge is from the pendulum with the action of one angle,
-/// `-(J11 + J22) cos(θ_{k+1} - θ_k)/h + h/2 (U(θ_k) + U(θ_{k+1}))`, at the end.
+/// The final difference between the hinge and the pendulum, whose action in one angle is
+/// `-(J11 + J22) cos(θ_{k+1} - θ_k)/h + h/2 (U(θ_k) + U(θ_{k+1}))`.
 fn off(angle: f64, momentum: f64, g: Vector3<f64>) -> f64 {
     let j = Matrix3::new(0.5, 0.1, 0.05, 0.1, 0.7, 0.02, 0.05, 0.02, 0.9);
     let a = Vector3::new(1.0, 0.2, 0.3);
@@ -34,7 +34,7 @@ fn off(angle: f64, momentum: f64, g: Vector3<f64>) -> f64 {
     let model = Hinge::new(HingeParameters { J: j, g, a }).expect("parameters");
     let initial = HingeInitial {
         R: Rotation::from_matrix(&about_third(angle)).expect("a rotation"),
-        // Of a velocity about the axis, with what the products of inertia add across it.
+        // The momentum of a rotation about the axis; products of inertia add components perpendicular to it.
         body_momentum: BodyMomentum(
             (Matrix3::identity() * j.trace() - j).column(2) * (momentum / inertia),
         ),
@@ -60,10 +60,10 @@ fn off(angle: f64, momentum: f64, g: Vector3<f64>) -> f64 {
 
 #[test]
 fn a_hinge_along_an_axis_of_the_basis_is_a_pendulum() {
-    // Three hundred steps of a few roundings each, of a motion that does not amplify them.
+    // Three hundred steps with a few rounding errors each; the motion does not amplify them.
     let least = 1e-12;
     let weight = Vector3::new(0.1, -1.0, 0.2);
-    // From rest; turned; on its way; without a force.
+    // From rest; rotated; with an initial velocity; without a force.
     for (angle, momentum, g) in [
         (0.0, 0.0, weight),
         (0.4, 0.0, weight),

@@ -1,5 +1,5 @@
-//! Held constraints: equations with reactions against the variation of the action with multipliers, by dual
-//! numbers at random points that are no solutions; the motion on the constraints, with multipliers that are forces.
+//! Enforced constraints. Compares the equations with constraint forces with the variation of the action with multipliers, by dual
+//! numbers at random points that solve nothing. Also tests the motion on the constraint set, where multipliers are forces.
 
 mod hinge;
 
@@ -88,7 +88,7 @@ clebsch::model! {
     }
 }
 
-/// The derivative of the action of two edges and of the work of the multipliers, as the node moves.
+/// The derivative of the action of two edges and of the multiplier terms along a direction at the node.
 fn slope(node: &[f64], direction: &[f64], action: impl Fn(&[Dual]) -> Vec<Dual>) -> (f64, f64) {
     let moved: Vec<Dual> = node
         .iter()
@@ -120,7 +120,7 @@ fn unit(n: usize, i: usize) -> Vec<f64> {
     (0..n).map(|j| f64::from(u8::from(i == j))).collect()
 }
 
-/// Terms of a size of one, a few roundings each.
+/// A few rounding errors in each of the terms, which are of order one.
 const ROUNDING: f64 = 1e-13;
 
 fn det(q: &[Dual]) -> Dual {
@@ -129,7 +129,7 @@ fn det(q: &[Dual]) -> Dual {
         + q[2] * (q[3] * q[7] - q[4] * q[6])
 }
 
-/// ½ tr(V I0 V^T), entries row by row.
+/// ½ tr(V I0 V^T), with row-major entries.
 fn kinetic(i0: &Matrix3<f64>, a: &[Dual], b: &[Dual]) -> Dual {
     let v: Vec<Dual> = a.iter().zip(b).map(|(a, b)| *b - *a).collect();
     let mut sum = of(0.0);
@@ -152,7 +152,7 @@ fn second_moments(source: &mut Source) -> Matrix3<f64> {
     a * a.transpose() + Matrix3::identity()
 }
 
-/// Matrix entries row by row.
+/// Row-major matrix entries.
 fn rows(m: &Matrix3<f64>) -> Vec<f64> {
     m.transpose().as_slice().to_vec()
 }
@@ -198,7 +198,7 @@ fn reactions_are_the_variation_of_their_work() {
                 "{i}: {} {wanted}",
                 found[i]
             );
-            // Without the reactions it is another equation.
+            // Without the constraint forces, the equation differs.
             let free = model.balance(
                 h,
                 &at(&nodes[0]),
@@ -233,7 +233,7 @@ fn reactions_on_matrices_have_their_metric_factors() {
         for i in 0..9 {
             let (wanted, scale) = slope(&all[1], &unit(9, i), |q| {
                 let (before, after) = (still(&all[0]), still(&all[2]));
-                // R_F along the motion of its argument, by its definition as an integral.
+                // R_F along the direction of its argument, by its definition as an integral.
                 let gravity = gravity(q);
                 vec![
                     of(1.0 / h) * kinetic(&i0, &before, q),
@@ -345,8 +345,8 @@ fn reactions_turn_bodies() {
     }
 }
 
-/// A spherical pendulum: constraints at both levels, the vertical momentum, the energy, and the multiplier as
-/// the tension of its rod, to second order.
+/// A spherical pendulum: the constraint and its rate, the vertical momentum, the energy, and the multiplier as the tension of the
+/// rod, to second order.
 #[test]
 fn a_pendulum_keeps_its_length_and_shows_its_tension() {
     let (m, long, g) = (1.3, 0.5, 9.81);
@@ -365,10 +365,10 @@ fn a_pendulum_keeps_its_length_and_shows_its_tension() {
         for _ in 0..steps {
             let before = state;
             model.step(&mut state, &mut work).expect("steps");
-            // A solution is taken below sixteen roundings of its terms.
+            // The solver accepts a residual below sixteen rounding errors of its terms.
             assert!(model.constraint_lambda(&state).abs() < 1e-14);
             assert!(model.constraint_rate_lambda(&state).abs() < 1e-14);
-            // The tension by the equation of motion, in the middle of the step.
+            // The tension from the equation of motion, at the midpoint of the step.
             let tension = |s: &SphericalState| {
                 let (x, p) = (s.x().matrix(), s.momentum().0);
                 -(p.dot(&p) / m - m * g * x[2]) / (2.0 * long * long)
@@ -385,7 +385,7 @@ fn a_pendulum_keeps_its_length_and_shows_its_tension() {
     }
 }
 
-/// Blocks with constraints of their own: each moves as in a model of its own, to the last bit.
+/// Blocks with separate constraints: each moves as in a model of its own, bit for bit.
 #[test]
 fn bodies_held_apart_move_as_each_alone() {
     let (h, g) = (0.01, 9.81);
@@ -436,7 +436,7 @@ fn bodies_held_apart_move_as_each_alone() {
     }
 }
 
-/// A body that hangs at a point moves as one of moments about that point does.
+/// A body suspended at a point moves like a body with moments about that point.
 #[test]
 fn a_hung_body_is_one_with_other_moments() {
     let j = Matrix3::from_diagonal(&Vector3::new(0.3, 0.2, 0.4));
@@ -459,7 +459,7 @@ fn a_hung_body_is_one_with_other_moments() {
     for _ in 0..steps {
         model.step(&mut state, &mut work).expect("steps");
     }
-    // The body about the fixed point, by the rules of Runge and Kutta: I dω/dt = Iω × ω - a × Λᵀ m g.
+    // The body about the fixed point, by a Runge-Kutta method: I dω/dt = Iω × ω - a × Λᵀ m g.
     let about = inertia(j + a * a.transpose() * m);
     let inverse = about.try_inverse().expect("regular");
     let rate = |w: Vector3<f64>, r: Matrix3<f64>| {
@@ -480,7 +480,7 @@ fn a_hung_body_is_one_with_other_moments() {
         w += (a1 + a2 * 2.0 + a3 * 2.0 + a4) * (h / 6.0);
         r += (b1 + b2 * 2.0 + b3 * 2.0 + b4) * (h / 6.0);
     }
-    // Second order: a few h².
+    // Second order: a few times h².
     assert!(
         (state.Λ().matrix() - r).norm() < 3.0 * h * h,
         "{}",
@@ -515,7 +515,7 @@ fn data_off_a_constraint_are_refused_with_numbers() {
     let Err(StartError::Initial(e)) = start([0.6, 0.0, 0.8], [0.6, 0.3, 0.8]) else {
         panic!("away from the sphere");
     };
-    // Half of the place along twice the place.
+    // The normal part of the momentum is 0.5 times the constraint gradient, which is twice the position.
     assert!(
         matches!(e.problem, Problem::AcrossConstraint { impulse, taken, .. }
             if (impulse - 0.5).abs() < 1e-12 && (taken - 1.0).abs() < 1e-12),
@@ -542,7 +542,7 @@ fn a_drop_keeps_volume_and_angular_momentum() {
     for _ in 0..2000 {
         model.advance(&mut state, &mut work).expect("steps");
     }
-    // A thousand roundings of momenta of size one; without the metric factors it would change by 3e-3.
+    // A thousand rounding errors of momenta of order one; without the metric factors the momentum would change by 3e-3.
     assert!((angular(&state) - first).norm() < 2e-13);
     assert!((state.Q().matrix().determinant() - 1.0).abs() < 1e-14);
     assert!((model.energy(&state) - energy).abs() < 1e-3);

@@ -1,6 +1,5 @@
-//! Random problems of models that are solved by Newton's method, and how far from a solution of the
-//! derived equations three consecutive states are. Takes a stream of draws; gives model, state and
-//! the step in which the body would turn by about one radian.
+//! Random problems for models that use Newton's method, and the residual of the derived equations at three consecutive states. A
+//! stream of draws gives model, state, and the step size for a rotation of about one radian.
 
 use clebsch::integrate::Model;
 use clebsch::nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector4};
@@ -72,18 +71,18 @@ clebsch::model! {
     }
 }
 
-/// A model with a distribution of problems.
+/// A model with a distribution of random problems.
 pub trait Drawn {
     /// The model.
     type M: Model<Scalar = f64>;
 
-    /// Names of its configurations.
+    /// The names of its configurations.
     const NAMES: &'static [&'static str];
 
-    /// The logarithm of the longest step drawn, in units of one radian.
+    /// The decimal logarithm of the largest random step size, in units of one radian.
     const BEYOND: f64 = 0.2;
 
-    /// Model, state, and the step of about one radian.
+    /// The model, the state, and the step size of about one radian.
     fn draw(
         draws: &mut Draws,
     ) -> (
@@ -92,8 +91,8 @@ pub trait Drawn {
         f64,
     );
 
-    /// The largest component of the derived equations at three consecutive states, the first
-    /// attitude of the last turned by an angle, over the size of their terms.
+    /// The largest component of the derived equations at three consecutive states, relative to the size of their terms. The first
+    /// attitude of the last state is rotated by an angle.
     fn residual(
         model: &Self::M,
         h: f64,
@@ -114,7 +113,7 @@ fn turn(draws: &mut Draws) -> Rotation {
     Rotation::from_quaternion(draws.attitude().0).expect("unit")
 }
 
-/// Symmetric, its eigenvalues from 0.2 to 1.2.
+/// A random symmetric matrix with eigenvalues from 0.2 to 1.2.
 fn positive(draws: &mut Draws) -> Matrix3<f64> {
     let frame = turn(draws).matrix();
     let values = Vector3::from_fn(|_, _| draws.uniform(0.2, 1.2));
@@ -122,13 +121,13 @@ fn positive(draws: &mut Draws) -> Matrix3<f64> {
     (j + j.transpose()) * 0.5
 }
 
-/// About the axis in which most turns show.
+/// A rotation vector of this angle, about a generic axis.
 fn small(angle: f64) -> Vector3<f64> {
     Vector3::new(0.6, -0.64, 0.48) * angle
 }
 
 fn largest<const N: usize>(residual: &SVector<f64, N>, size: f64) -> f64 {
-    // `amax` passes over NaN.
+    // `amax` ignores NaN.
     let sum: f64 = residual.iter().sum();
     (residual.amax() + 0.0 * sum) / size
 }
@@ -187,7 +186,7 @@ impl Drawn for Coupled {
     }
 }
 
-/// A body in unit quaternions; Newton's method has no part in it.
+/// A body in unit quaternions, which does not use Newton's method.
 pub struct Quaternion;
 
 impl Drawn for Quaternion {

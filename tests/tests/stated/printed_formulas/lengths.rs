@@ -1,5 +1,5 @@
-//! Equations of a satellite about a planet as documents print them, with powers of lengths and with names of the model:
-//! read back, they are what follows from its potential by hand.
+//! Equations of a satellite about a planet as printed in documents, with powers of lengths and with names of the model. The parsed
+//! formulas equal the hand-written consequences of the potential.
 
 use super::reading::ROUNDING;
 use clebsch_core::derive_source;
@@ -53,7 +53,7 @@ fn turned(a: &M) -> M {
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| a[j][i]))
 }
 
-/// The gradient of `GM m/r + GM tr(I)/(2 r^3) - (3/2) GM y·I y/r^5` by the place.
+/// The gradient of `GM m/r + GM tr(I)/(2 r^3) - (3/2) GM y·I y/r^5` with respect to the position.
 fn gradient(x: V) -> V {
     let trace = J[0][0] + J[1][1] + J[2][2];
     let inertia = |v: V| {
@@ -68,7 +68,7 @@ fn gradient(x: V) -> V {
     [0, 1, 2].map(|i| GM * (along * x[i] - 3.0 * seen[i] / r.powi(5)))
 }
 
-/// The letters of a node, spelt with this index.
+/// The symbols of a node, printed with this index.
 fn letters(x: V, index: &str) -> Vec<(String, Value)> {
     vec![
         (format!("x{index}"), Value::new(3, 1, &x)),
@@ -76,7 +76,7 @@ fn letters(x: V, index: &str) -> Vec<(String, Value)> {
     ]
 }
 
-/// What a document names, in order, with the letters that are known.
+/// The definitions in a document, in order, appended to the known symbols.
 fn with_names(text: &str, mut known: Vec<(String, Value)>) -> Vec<(String, Value)> {
     for line in text.lines().filter_map(|l| l.strip_prefix("We write ")) {
         for definition in line.trim_end_matches('.').split("; ") {

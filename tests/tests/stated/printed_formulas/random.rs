@@ -1,4 +1,4 @@
-//! A hundred random Lagrangians: the printed energy is the one that follows from the Lagrangian itself.
+//! A hundred random Lagrangians: the printed energy equals the energy computed from the Lagrangian.
 
 use super::reading::{ROUNDING, combination, evaluated, printed, still, velocities};
 use clebsch_core::derive::invariants::Kind;
@@ -83,7 +83,7 @@ fn random(draws: &mut Draws, index: usize) -> String {
     )
 }
 
-/// Random values of the letters of a model, named as printed and as they are called.
+/// Random values of the symbols of a model, by their printed names and by their names in the model.
 struct Drawn {
     printed: Vec<(String, Value)>,
     called: Assignment,
@@ -109,7 +109,7 @@ fn drawn(d: &Derivation, draws: &mut Draws) -> Drawn {
             Dim::Fixed(n) => n as usize,
             Dim::Named(_) => panic!("a size that has only a name"),
         });
-        // The formulas hold for any matrices of the structure; inertias are kept away from zero.
+        // The formulas hold for any matrices of the right structure; inertias are bounded away from zero.
         let mut m = Value::new(
             rows,
             cols,
@@ -141,8 +141,8 @@ fn drawn(d: &Derivation, draws: &mut Draws) -> Drawn {
     out
 }
 
-/// The energy at a velocity, `ζ·∂L/∂ζ - L`, with the momenta `∂L/∂ζ` as they are printed: differences of a polynomial of
-/// second degree are exact.
+/// The energy at a velocity, `ζ·∂L/∂ζ - L`, and the momenta `∂L/∂ζ` by their printed names. Differences of a quadratic polynomial
+/// are exact.
 fn energy(d: &Derivation, at: &Drawn, by: &[f64]) -> (f64, Vec<(String, Value)>) {
     let s = &d.letters.symbols;
     let lagrangian = &d.continuous.as_ref().expect("a limit").lagrangian;
@@ -176,7 +176,7 @@ fn energy(d: &Derivation, at: &Drawn, by: &[f64]) -> (f64, Vec<(String, Value)>)
     for (((_, _), basis), id) in own.iter().zip(&bases).zip(&d.letters.node_momentum) {
         let part = &gradient[from..from + basis.len()];
         from += basis.len();
-        // Skew covectors are paired with half their trace: the directions are their own duals.
+        // Skew covectors pair with half the trace, so the directions are their own duals.
         let covector = combination(basis, part);
         momenta.push((printed(d, &s.get(*id).name), covector));
     }
@@ -204,13 +204,13 @@ fn random_lagrangians() {
         let (wanted, momenta) = energy(&d, &at, &zeta);
         at.printed.extend(momenta);
         let found = evaluated(&d, &formula, &at.printed).data[0];
-        // Terms of some tens that partly cancel, through the inverse of an inertia.
+        // Terms of a few tens that partly cancel, through the inverse of an inertia.
         let size = 1.0 + wanted.abs() + 100.0 * zeta.iter().map(|x| x * x).sum::<f64>();
         assert!(
             (found - wanted).abs() <= ROUNDING * size,
             "{text}\n{formula}\n{found} is not {wanted}"
         );
-        // The term that stays at rest taken out of the pairing is noticed.
+        // The comparison detects a missing velocity-independent term in the pairing.
         if let Some(cut) = without_offset(&formula) {
             let other = evaluated(&d, &cut, &at.printed).data[0];
             noticed += usize::from((other - wanted).abs() > 1e-6 * size);
@@ -219,7 +219,7 @@ fn random_lagrangians() {
     assert!(noticed > 20, "{noticed}");
 }
 
-/// The formula of one vector momentum without what stands beside it in the pairing, `½ (μ - l)·ζ` as `½ μ·ζ`.
+/// The formula of a single vector momentum without the offset in the pairing: `½ (μ - l)·ζ` becomes `½ μ·ζ`.
 fn without_offset(formula: &str) -> Option<String> {
     let (inside, rest) = formula.strip_prefix("½ (")?.split_once(")·ζ")?;
     let (momentum, _) = inside.split_once(['+', '-'])?;

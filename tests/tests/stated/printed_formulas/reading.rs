@@ -1,5 +1,5 @@
-//! Printed formulas read back: what their names stand for, and the velocities that `where` clauses define.
-//! Takes a formula as the card prints it and the values of its letters; gives its value.
+//! Parses printed formulas: the meaning of their names, and the velocities that `where` clauses define. Takes a formula as printed
+//! on the card and the values of its symbols, and returns its value.
 
 use clebsch_core::Derivation;
 use clebsch_core::expr::{self, shape::Dim};
@@ -7,11 +7,11 @@ use clebsch_core::groups::Group;
 use clebsch_core::print::{Format, Style, expression};
 use clebsch_oracle::printed::{Value, value};
 
-/// A printed formula and the function differ by the rounding of a few hundred operations on numbers of order one, and
-/// what the inverse of an inertia with a condition of some tens makes of it.
+/// A printed formula and the function differ by the rounding of a few hundred operations on numbers of order one, amplified by the
+/// inverse of an inertia with a condition number of a few tens.
 pub const ROUNDING: f64 = 1e-12;
 
-/// What a name is printed as.
+/// The printed form of a name.
 pub fn printed(d: &Derivation, name: &str) -> String {
     let s = &d.letters.symbols;
     let id = s
@@ -22,7 +22,7 @@ pub fn printed(d: &Derivation, name: &str) -> String {
     expression(&expr::here(s, id), s, &style, Format::Text)
 }
 
-/// The names of velocities with the directions they may have; `momenta` are as long as they are.
+/// The names of velocities with their possible directions; `momenta` give their sizes.
 pub fn velocities(d: &Derivation, momenta: &[Value]) -> Vec<(String, Vec<Value>)> {
     let s = &d.letters.symbols;
     let own = d.spec.configurations.iter().zip(&d.letters.rate);
@@ -31,7 +31,7 @@ pub fn velocities(d: &Derivation, momenta: &[Value]) -> Vec<(String, Vec<Value>)
         .collect()
 }
 
-/// Momenta of nothing, as long as those of the model.
+/// Zero momenta with the sizes of the model.
 pub fn still(d: &Derivation) -> Vec<Value> {
     let s = &d.letters.symbols;
     let shapes = d.letters.node_momentum.iter().map(|id| s.get(*id).shape);
@@ -46,7 +46,7 @@ pub fn still(d: &Derivation) -> Vec<Value> {
         .collect()
 }
 
-/// Directions of a Lie algebra as its velocity is printed, of matrices with so many rows.
+/// Directions of a Lie algebra in the printed form of its velocity, for matrices with this number of rows.
 fn directions(group: Group, rows: usize) -> Vec<Value> {
     let size = |n: Dim| match n {
         Dim::Fixed(n) => n as usize,
@@ -91,8 +91,7 @@ pub fn combination(basis: &[Value], by: &[f64]) -> Value {
     out
 }
 
-/// What stands between the commas that no bracket encloses: those of `(a, b)` are of one vector, that of `μ_{1,k}` of a
-/// name.
+/// Splits at commas outside brackets: `(a, b)` is one vector, and `μ_{1,k}` is one name.
 fn apart(text: &str) -> Vec<&str> {
     let mut parts = Vec::new();
     let (mut from, mut depth) = (0, 0);
@@ -111,7 +110,7 @@ fn apart(text: &str) -> Vec<&str> {
     parts
 }
 
-/// Evaluates `formula, where μ = ..., ...`: the velocities are what gives the momenta.
+/// Evaluates `formula, where μ = ..., ...`: solves for the velocities that give these momenta.
 pub fn evaluated(d: &Derivation, formula: &str, letters: &[(String, Value)]) -> Value {
     let Some((formula, relations)) = formula.split_once(", where ") else {
         return value(formula, letters);
@@ -155,7 +154,7 @@ pub fn evaluated(d: &Derivation, formula: &str, letters: &[(String, Value)]) -> 
                 .collect()
         })
         .collect();
-    // Skew matrices repeat each number: least squares, which are exact here.
+    // Skew matrices contain each number twice, so this solves a least-squares problem, which is exact here.
     let inner = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     let right: Vec<f64> = given.iter().zip(&still).map(|(a, b)| a - b).collect();
     let square: Vec<f64> = columns

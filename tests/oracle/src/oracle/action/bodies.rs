@@ -1,6 +1,5 @@
-//! Unreduced actions of one rigid body, typed by hand: body representation.
-//! Takes random parameters; gives the action of one step as a function of Λ at both ends.
-//! Kinetic term and potentials after the physical sign: kinetic minus potential, times the step.
+//! Hand-written unreduced actions of one rigid body in the body representation, with random parameters. Each gives the action of
+//! one step as a function of Λ at both ends, in the physical sign: kinetic minus potential energy, times the step size.
 
 use super::super::dual::Number;
 use super::super::points::{Given, Source};
@@ -8,15 +7,15 @@ use super::super::square::{Square, constant_column, dot};
 use super::{DiscreteAction, NodeRule};
 use std::array::from_fn;
 
-/// A hand-typed action together with the model that states the same system.
+/// A hand-written action and the model that states the same system.
 pub trait Stated<const N: usize, const G: usize>: DiscreteAction<N, G> {
     /// The system with random parameters.
     fn random(source: &mut Source) -> Self;
     /// The model in the model language.
     fn text() -> String;
-    /// The step.
+    /// The step size.
     fn step(&self) -> f64;
-    /// Parameters, configurations and the advected quantities that have no definition.
+    /// Parameters, configurations, and advected quantities without a definition.
     fn given(&self, nodes: &[[Square<f64, N>; G]; 3]) -> Vec<Given>;
     /// A random configuration.
     fn node(source: &mut Source) -> [Square<f64, N>; G] {
@@ -24,7 +23,7 @@ pub trait Stated<const N: usize, const G: usize>: DiscreteAction<N, G> {
     }
 }
 
-/// `-tr(J Λ_kᵀ Λ_{k+1})/h`, the kinetic term of every body here; the constant is dropped.
+/// `-tr(J Λ_kᵀ Λ_{k+1})/h`, the kinetic term of every body here, without its constant.
 pub(super) fn kinetic<T: Number, const N: usize>(
     second_moment: &Square<f64, N>,
     tail: &Square<T, N>,
@@ -45,7 +44,7 @@ pub(super) fn attitudes<const N: usize>(
 /// The free rigid body.
 #[derive(Clone, Debug)]
 pub struct FreeBody {
-    /// The step.
+    /// The step size.
     pub h: f64,
     /// The Poinsot matrix J, body frame.
     pub second_moment: Square<f64, 3>,
@@ -85,16 +84,16 @@ impl Stated<3, 1> for FreeBody {
 
 /// The heavy top with the vertical recomputed from the attitude, `Γ = Λᵀ z`.
 ///
-/// `RULE` is 0, 1, 2 for nodes symmetric, incoming, outgoing; `THESIS` states it with `scale -h`.
+/// `RULE` is 0, 1, 2 for symmetric, incoming, outgoing nodes; `THESIS` uses `scale -h`.
 #[derive(Clone, Debug)]
 pub struct HeavyTop<const RULE: u8, const THESIS: bool = false> {
-    /// The step.
+    /// The step size.
     pub h: f64,
     /// The Poinsot matrix J, body frame.
     pub second_moment: Square<f64, 3>,
     /// Weight times the vector from the support to the centre of mass, body frame.
     pub lever: [f64; 3],
-    /// The vertical, up, space frame.
+    /// The upward vertical, spatial frame.
     pub vertical: [f64; 3],
 }
 
@@ -116,7 +115,7 @@ impl<const RULE: u8, const THESIS: bool> DiscreteAction<3, 1> for HeavyTop<RULE,
             constant_column(&self.lever),
             constant_column(&self.vertical),
         );
-        // The height of the centre of mass: lever carried to space, along the vertical.
+        // The height of the centre of mass: the spatial lever along the vertical.
         let weight = |attitude: &Square<T, 3>| {
             -T::constant(self.h) * dot(&attitude.apply(&lever), &vertical)
         };
@@ -170,16 +169,16 @@ impl<const RULE: u8, const THESIS: bool> Stated<3, 1> for HeavyTop<RULE, THESIS>
     }
 }
 
-/// A body in a quadratic field; the advected Γ has no definition, only a value in space.
+/// A body in a quadratic field; the advected Γ has only a spatial value and no definition.
 #[derive(Clone, Debug)]
 pub struct QuadraticField {
-    /// The step.
+    /// The step size.
     pub h: f64,
     /// The Poinsot matrix J, body frame.
     pub second_moment: Square<f64, 3>,
     /// The quadratic form K of the potential `Γ·KΓ/2`, body frame.
     pub form: Square<f64, 3>,
-    /// Γ carried to space, where it rests.
+    /// Γ in the spatial frame, where it is constant.
     pub direction: [f64; 3],
 }
 
@@ -228,10 +227,10 @@ impl Stated<3, 1> for QuadraticField {
     }
 }
 
-/// A body with two advected vectors, one defined and one not, coupled to each other and to the velocity.
+/// A body with two advected vectors, one with a definition and one without, coupled to each other and to the velocity.
 #[derive(Clone, Debug)]
 pub struct TwoVectors {
-    /// The step.
+    /// The step size.
     pub h: f64,
     /// The Poinsot matrix J, body frame.
     pub second_moment: Square<f64, 3>,
@@ -239,9 +238,9 @@ pub struct TwoVectors {
     pub coupling: Square<f64, 3>,
     /// The first vector in space: `Γ = Λᵀ z`.
     pub first: [f64; 3],
-    /// The second vector in space; the model gives no definition of it.
+    /// The second vector in space, without a definition in the model.
     pub second: [f64; 3],
-    /// A vector of the body.
+    /// A vector fixed in the body.
     pub marker: [f64; 3],
 }
 
@@ -254,7 +253,7 @@ impl DiscreteAction<3, 1> for TwoVectors {
         let second = |a: &Square<T, 3>| a.transpose().apply(&constant_column(&self.second));
         let triple = |a: &Square<T, 3>| {
             let (x, y) = (first(a), second(a));
-            // Volume spanned by the marker and both vectors, written out.
+            // The volume spanned by the marker and both vectors, written out.
             let volume = marker[0] * (x[1] * y[2] - x[2] * y[1])
                 + marker[1] * (x[2] * y[0] - x[0] * y[2])
                 + marker[2] * (x[0] * y[1] - x[1] * y[0]);
@@ -309,10 +308,10 @@ impl Stated<3, 1> for TwoVectors {
     }
 }
 
-/// A rigid body of four dimensions whose kinetic matrix has no symmetry: `-tr(Cᵀ Ω)/h`.
+/// A rigid body in four dimensions whose kinetic matrix is not symmetric: `-tr(Cᵀ Ω)/h`.
 #[derive(Clone, Debug)]
 pub struct FourDimensional {
-    /// The step.
+    /// The step size.
     pub h: f64,
     /// The matrix C, body frame.
     pub matrix: Square<f64, 4>,

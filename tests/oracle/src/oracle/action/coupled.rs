@@ -1,6 +1,5 @@
-//! The unreduced action of two bodies coupled by a spherical joint, typed by hand.
-//! Takes random parameters; gives the action of one step as a function of both attitudes at both ends.
-//! The relative attitude `R = Λ1ᵀ Λ2` never appears: the coupling is written in space.
+//! The hand-written unreduced action of two bodies coupled by a spherical joint, with random parameters, as a function of both
+//! attitudes at both ends. The relative attitude `R = Λ1ᵀ Λ2` never appears: the coupling is written in space.
 
 use super::super::dual::Number;
 use super::super::points::{Given, Source};
@@ -11,10 +10,10 @@ use std::array::from_fn;
 
 /// Two bodies joined at a point; the centre of mass is at rest and eliminated.
 ///
-/// `DEFINED` tells whether the model states `R = Λ1ᵀ Λ2` or leaves R without a definition.
+/// `DEFINED` selects whether the model defines `R = Λ1ᵀ Λ2` or leaves R undefined.
 #[derive(Clone, Debug)]
 pub struct CoupledBodies<const DEFINED: bool> {
-    /// The step.
+    /// The step size.
     pub h: f64,
     /// The Poinsot matrices of both bodies, reduced mass included, body frames.
     pub second_moments: [Square<f64, 3>; 2],
@@ -22,13 +21,13 @@ pub struct CoupledBodies<const DEFINED: bool> {
     pub arms: [[f64; 3]; 2],
     /// The reduced mass.
     pub reduced_mass: f64,
-    /// The constant `Λ1 R Λ2ᵀ`: the identity if R is defined, arbitrary if it is not.
+    /// The constant `Λ1 R Λ2ᵀ`: the identity if R is defined, otherwise arbitrary.
     pub reference: Square<f64, 3>,
 }
 
 impl<const DEFINED: bool> DiscreteAction<3, 2> for CoupledBodies<DEFINED> {
     fn edge<T: Number>(&self, tail: &[Square<T, 3>; 2], head: &[Square<T, 3>; 2]) -> Vec<T> {
-        // Change of each arm over the step, in space: ((Ω_i - 1) d_i carried by Λ_i).
+        // The spatial change of each arm over the step: Λ_i (Ω_i - 1) d_i.
         let change = |body: usize| {
             let arm = constant_column(&self.arms[body]);
             let (from, to) = (tail[body].apply(&arm), head[body].apply(&arm));

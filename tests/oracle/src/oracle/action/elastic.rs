@@ -1,6 +1,5 @@
-//! Unreduced actions of affinely deforming ellipsoids on GL(n), typed by hand.
-//! Takes random parameters; gives the action of one step as a function of Q at both ends.
-//! Convective: stored energy of the stretch `C = Qᵀ C0 Q`; spatial: the free ellipsoid.
+//! Hand-written unreduced actions of affinely deforming ellipsoids on GL(n), with random parameters, as functions of Q at both
+//! ends. Convective: stored energy of the stretch `C = Qᵀ C0 Q`; spatial: the free ellipsoid.
 
 use super::super::dual::Number;
 use super::super::points::{Given, Source};
@@ -8,7 +7,7 @@ use super::super::square::Square;
 use super::bodies::{Stated, attitudes};
 use super::{DiscreteAction, NodeRule, Side};
 
-/// `tr(C0 (Q_{k+1} - Q_k) I0 (Q_{k+1} - Q_k)ᵀ)/(2h)`: the kinetic energy of the change of Q, in space.
+/// `tr(C0 (Q_{k+1} - Q_k) I0 (Q_{k+1} - Q_k)ᵀ)/(2h)`: the kinetic energy, in space.
 fn kinetic<T: Number, const N: usize>(
     metric: &Square<f64, N>,
     second_moment: &Square<f64, N>,
@@ -22,7 +21,7 @@ fn kinetic<T: Number, const N: usize>(
     product.trace() / T::constant(2.0 * h)
 }
 
-/// All matrices `E_ij` with one entry, rows first: the basis of the Lie algebra of GL(n).
+/// All matrices `E_ij` with a single entry, row-major: the basis of the Lie algebra of GL(n).
 #[must_use]
 pub fn entries<const N: usize>() -> Vec<Square<f64, N>> {
     (0..N * N)
@@ -33,7 +32,7 @@ pub fn entries<const N: usize>() -> Vec<Square<f64, N>> {
 /// The hyperelastic ellipsoid in the convective representation.
 #[derive(Clone, Debug)]
 pub struct EllipsoidConvective<const N: usize> {
-    /// The step.
+    /// The step size.
     pub h: f64,
     /// The metric C0 of space.
     pub metric: Square<f64, N>,
@@ -112,7 +111,7 @@ impl<const N: usize> Stated<N, 1> for EllipsoidConvective<N> {
 /// The free ellipsoid in the spatial representation.
 #[derive(Clone, Debug)]
 pub struct EllipsoidSpatial {
-    /// The step.
+    /// The step size.
     pub h: f64,
     /// The metric C0 of space.
     pub metric: Square<f64, 3>,

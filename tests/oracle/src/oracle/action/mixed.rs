@@ -1,6 +1,5 @@
-//! The unreduced action of bodies on different groups, typed by hand: one in unit quaternions, one by
-//! its rotation, one by its rigid motion, each coupled to the others. Every element is kept in a
-//! 4 x 4 matrix; what it means is read from that.
+//! The hand-written unreduced action of three coupled bodies on different groups: unit quaternions, rotations and rigid motions.
+//! Every element is stored as a 4 x 4 matrix.
 
 use super::super::dual::Number;
 use super::super::points::{Given, Source};
@@ -10,7 +9,7 @@ use super::quaternions::{self, conjugate, hamilton, imaginary, of_matrix, rotati
 use super::{DiscreteAction, NodeRule};
 use std::array::from_fn;
 
-/// The statement by velocities and carried quantities.
+/// The statement in velocities and advected quantities.
 pub const REDUCED: &str = "model Mixed {
     param K1: Diag<3>; param J2, J3, M: Sym<3>; param d1, d2, d3, z: Vec<3>; param eps: Real;
     group q: SU<2> velocity W;
@@ -30,7 +29,7 @@ pub const REDUCED: &str = "model Mixed {
         - h*dot(Z, d1) - h*dot(d2, B*d3);
 }";
 
-/// The statement by the configurations at both ends of the step.
+/// The statement in configurations at both ends of the step.
 pub const UNREDUCED: &str = "model Mixed {
     param K1: Diag<3>; param J2, J3, M: Sym<3>; param d1, d2, d3, z: Vec<3>; param eps: Real;
     group q: SU<2> velocity W;
@@ -49,7 +48,7 @@ pub const UNREDUCED: &str = "model Mixed {
 /// Three bodies on three groups.
 #[derive(Clone, Debug)]
 pub struct Mixed {
-    /// The step.
+    /// The step size.
     pub h: f64,
     moments: [f64; 3],
     second: Square<f64, 3>,
@@ -57,7 +56,7 @@ pub struct Mixed {
     mass: Square<f64, 3>,
     levers: [[f64; 3]; 3],
     vertical: [f64; 3],
-    /// What `eps` stands for.
+    /// The coupling `eps`.
     pub coupling: f64,
 }
 
@@ -65,7 +64,7 @@ fn block<T: Number>(a: &Square<T, 4>) -> Square<T, 3> {
     Square::from_entries(|i, j| a.0[i][j])
 }
 
-/// A 3 x 3 matrix in the upper left of a 4 x 4 one, with `corner` in the last place.
+/// A 3 x 3 matrix in the upper left of a 4 x 4 matrix, with `corner` as the last diagonal entry.
 fn widened(a: &Square<f64, 3>, corner: f64) -> Square<f64, 4> {
     Square::from_entries(|i, j| match (i, j) {
         (3, 3) => corner,
@@ -105,7 +104,7 @@ impl Mixed {
         }
     }
 
-    /// Values of all names of both statements.
+    /// Values of all names in both statements.
     #[must_use]
     pub fn given(&self, nodes: &[[Square<f64, 4>; 3]; 3]) -> Vec<Given> {
         let mut given = Given::at_nodes("q", nodes.map(|[q, _, _]| q));

@@ -1,5 +1,5 @@
-//! An unreduced action on SE(3), typed by hand: Kirchhoff's body in an ideal fluid.
-//! Motions are taken as a rotation and a translation, never as matrices that are multiplied.
+//! A hand-written unreduced action on SE(3): Kirchhoff's body in an ideal fluid. Motions are pairs of a rotation and a translation,
+//! never products of matrices.
 
 use super::super::dual::Number;
 use super::super::points::{Given, Source};
@@ -19,7 +19,7 @@ fn plus<T: Number, const N: usize>(a: [T; N], b: [T; N]) -> [T; N] {
 }
 
 impl<T: Number> Motion<T> {
-    /// Read from its homogeneous matrix.
+    /// From a homogeneous matrix.
     pub(super) fn of(a: &Square<T, 4>) -> Self {
         Motion {
             turn: Square::from_entries(|i, j| a.0[i][j]),
@@ -36,7 +36,7 @@ impl<T: Number> Motion<T> {
         })
     }
 
-    /// A plane `(n, d)` as the inverse of this motion carries it: `(R^T n, d + n . x)`.
+    /// The image of a plane `(n, d)` under the inverse motion: `(R^T n, d + n . x)`.
     fn plane_back(&self, p: &[T; 4]) -> [T; 4] {
         let n = [p[0], p[1], p[2]];
         let turned = self.turn.transpose().apply(&n);
@@ -70,7 +70,7 @@ pub fn node(source: &mut Source) -> [Square<f64, 4>; 1] {
 /// Kirchhoff's body in an ideal fluid, with net weight.
 #[derive(Clone, Debug)]
 pub struct KirchhoffBody {
-    /// The step.
+    /// The step size.
     pub h: f64,
     inertia: Square<f64, 3>,
     mass: Square<f64, 3>,
@@ -92,7 +92,7 @@ impl KirchhoffBody {
         }
     }
 
-    /// Values of all names of the model of the gallery.
+    /// Values of all names of the gallery model.
     #[must_use]
     pub fn given(&self, nodes: &[[Square<f64, 4>; 1]; 3]) -> Vec<Given> {
         let mut given = Given::at_nodes("G", nodes.map(|[g]| g));
@@ -110,7 +110,7 @@ impl DiscreteAction<4, 1> for KirchhoffBody {
         let (here, next) = (Motion::of(&tail[0]), Motion::of(&head[0]));
         let (h, half) = (T::constant(self.h), T::constant(0.5));
         let turn = here.turn.transpose() * next.turn;
-        // The displacement in space, seen from the body at both ends, and the mean of the two.
+        // The spatial displacement in the body frames of both ends, and their mean.
         let moved: [T; 3] = from_fn(|i| next.shift[i] - here.shift[i]);
         let seen = plus(
             here.turn.transpose().apply(&moved),

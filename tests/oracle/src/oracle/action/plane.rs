@@ -1,4 +1,4 @@
-//! An unreduced action on SE(2), typed by hand. A motion is taken as a complex number that turns and one that is added.
+//! A hand-written unreduced action on SE(2). A motion consists of a complex factor for the rotation and a complex shift.
 
 use super::super::dual::Number;
 use super::super::points::Source;
@@ -29,7 +29,7 @@ struct Motion<T> {
 }
 
 impl<T: Number> Motion<T> {
-    /// Read from its homogeneous matrix.
+    /// From a homogeneous matrix.
     fn of(a: &Square<T, 3>) -> Self {
         Motion {
             turn: [a.0[0][0], a.0[1][0]],
@@ -53,7 +53,7 @@ impl<T: Number> Motion<T> {
         }
     }
 
-    /// The matrix of the turn.
+    /// The matrix of the rotation.
     fn block(&self) -> Square<T, 2> {
         let [c, s] = self.turn;
         Square::from_entries(|i, j| match (i, j) {
@@ -73,7 +73,7 @@ impl<T: Number> Motion<T> {
         })
     }
 
-    /// A line `(n, d)` as the inverse of this motion carries it: `(R^T n, d + n . x)`.
+    /// The image of a line `(n, d)` under the inverse motion: `(R^T n, d + n . x)`.
     fn line_back(&self, p: &[T; 3]) -> [T; 3] {
         let n = [p[0], p[1]];
         let [x, y] = times(conjugate(self.turn), n);
@@ -81,7 +81,7 @@ impl<T: Number> Motion<T> {
     }
 }
 
-/// The basis of the Lie algebra of SE(2): the turn, then two translations.
+/// The basis of the Lie algebra of SE(2): the rotation, then two translations.
 #[must_use]
 pub fn plane_twists() -> Vec<Square<f64, 3>> {
     let entry = |k: usize, i: usize, j: usize| match (k, i, j) {
@@ -94,12 +94,12 @@ pub fn plane_twists() -> Vec<Square<f64, 3>> {
         .collect()
 }
 
-/// A body by its second moments about its origin in potentials, with a term that is linear in the velocity `V`: the sum of
+/// A body given by its second moments about its origin, in potentials, with a term linear in the velocity `V`: the sum of
 /// `tr((V - Id)*Q*(V - Id)^T)/(2*h)`, `a5*dot(pos(V^-1), A*u)`, `a14*dot(P, K*P)`, `a15*dot(Γ, u)` and
 /// `a19*exp(-dot(pos(G), pos(G)))*dot(Γ, A*Γ)`, with an advected vector `Γ` and an advected line `P`.
 #[derive(Clone, Debug)]
 pub struct PlaneSum {
-    /// The step.
+    /// The step size.
     pub h: f64,
     /// The side of the velocity.
     pub side: Side,
@@ -120,7 +120,7 @@ pub struct PlaneSum {
 }
 
 impl PlaneSum {
-    /// Random parameters; the potential of the line holds the body near the origin.
+    /// Random parameters; the potential of the line keeps the body near the origin.
     pub fn random(source: &mut Source, side: Side, h: f64) -> Self {
         let [a5, a14, a15, a19] = source.vector::<4>().map(|a| 0.05 * a);
         Self {

@@ -1,5 +1,5 @@
-//! Unreduced actions on SU(2), typed by hand: the Cayley-Klein body on both sides, and a top.
-//! Quaternions are taken as four components; matrices are made of them as the definition says.
+//! Hand-written unreduced actions on SU(2): the Cayley-Klein body on both sides, and a top. Quaternions are four components; their
+//! matrices follow from the definition.
 
 use super::super::dual::Number;
 use super::super::points::{Given, Source};
@@ -25,7 +25,7 @@ pub(super) fn imaginary<T: Number>(a: [T; 4]) -> [T; 3] {
     [a[1], a[2], a[3]]
 }
 
-/// The quaternion without real part.
+/// The purely imaginary quaternion of a vector.
 pub(super) fn of_vector<T: Number>(v: &[T; 3]) -> [T; 4] {
     [T::constant(0.0), v[0], v[1], v[2]]
 }
@@ -48,7 +48,7 @@ pub(super) fn rotation<T: Number>(q: [T; 4]) -> Square<T, 3> {
     Square::from_entries(|i, j| columns[j][i])
 }
 
-/// The quaternion of a left multiplication: what it makes of 1.
+/// The quaternion of a left multiplication: its image of 1.
 pub(super) fn of_matrix<T: Number>(a: &Square<T, 4>) -> [T; 4] {
     from_fn(|i| a.0[i][0])
 }
@@ -71,7 +71,7 @@ pub fn node(source: &mut Source) -> [Square<f64, 4>; 1] {
 /// A top: the sum of `a0*dot(im(W), S*im(W))/h`, `b*re(W)`, `a13*dot(Γ, S*Γ)` and `a14*dot(u, Γ)`, with an advected `Γ`.
 #[derive(Clone, Debug)]
 pub struct QuaternionTop {
-    /// The step.
+    /// The step size.
     pub h: f64,
     /// `a0`, `b`, `a13`, `a14`.
     pub weights: [f64; 4],
@@ -79,7 +79,7 @@ pub struct QuaternionTop {
     pub symmetric: Square<f64, 3>,
     /// `u`.
     pub lever: [f64; 3],
-    /// What `Γ` is at the identity.
+    /// The value of `Γ` at the identity.
     pub vertical: [f64; 3],
 }
 
@@ -124,7 +124,7 @@ impl DiscreteAction<4, 1> for QuaternionTop {
 /// The Cayley-Klein body (rigid body on SU(2)), in the body or in space.
 #[derive(Clone, Debug)]
 pub struct CayleyKlein {
-    /// The step.
+    /// The step size.
     pub h: f64,
     /// The member of the family.
     pub c: f64,
@@ -145,7 +145,7 @@ impl CayleyKlein {
         }
     }
 
-    /// Values of all names of the two models of the gallery.
+    /// Values of all names of the two gallery models.
     #[must_use]
     pub fn given(&self, nodes: &[[Square<f64, 4>; 1]; 3]) -> Vec<Given> {
         let mut given = Given::at_nodes("q", nodes.map(|[q]| q));
@@ -171,7 +171,7 @@ impl DiscreteAction<4, 1> for CayleyKlein {
     }
 
     fn edge<T: Number>(&self, tail: &[Square<T, 4>; 1], head: &[Square<T, 4>; 1]) -> Vec<T> {
-        // Unreduced on either side: the velocity in the body, where the moments are constant.
+        // Both sides use the body velocity, because the moments are constant in the body.
         let w = hamilton(conjugate(of_matrix(&tail[0])), of_matrix(&head[0]));
         let mut summands = vec![-T::constant(4.0 * self.c / self.h) * w[0]];
         for (i, moment) in self.moments.iter().enumerate() {

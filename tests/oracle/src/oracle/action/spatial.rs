@@ -1,6 +1,5 @@
-//! Unreduced actions of rigid bodies in the spatial representation, typed by hand.
-//! Takes random parameters; gives the action of one step as a function of Λ at both ends.
-//! The velocity is `Λ_{k+1} Λ_kᵀ`; the Poinsot matrix and the lever are carried along with the body.
+//! Hand-written unreduced actions of rigid bodies in the spatial representation, with random parameters, as functions of Λ at both
+//! ends. The velocity is `Λ_{k+1} Λ_kᵀ`; the Poinsot matrix and the lever are advected with the body.
 
 use super::super::dual::Number;
 use super::super::points::{Given, Source};
@@ -20,7 +19,7 @@ fn kinetic<T: Number>(
     -(velocity * carried).trace() / T::constant(h)
 }
 
-/// The Poinsot matrix seen from space at each node.
+/// The spatial Poinsot matrix at each node.
 fn seen(second_moment: &Square<f64, 3>, nodes: &[[Square<f64, 3>; 1]; 3]) -> [Square<f64, 3>; 3] {
     nodes.map(|[attitude]| attitude * *second_moment * attitude.transpose())
 }
@@ -28,9 +27,9 @@ fn seen(second_moment: &Square<f64, 3>, nodes: &[[Square<f64, 3>; 1]; 3]) -> [Sq
 /// The free body.
 #[derive(Clone, Debug)]
 pub struct FreeBodySpatial {
-    /// The step.
+    /// The step size.
     pub h: f64,
-    /// The Poinsot matrix in the body frame, where it rests.
+    /// The Poinsot matrix in the body frame, where it is constant.
     pub second_moment: Square<f64, 3>,
 }
 
@@ -71,13 +70,13 @@ impl Stated<3, 1> for FreeBodySpatial {
 /// The heavy top; the lever of the weight is advected, the vertical is a parameter.
 #[derive(Clone, Debug)]
 pub struct HeavyTopSpatial {
-    /// The step.
+    /// The step size.
     pub h: f64,
-    /// The Poinsot matrix in the body frame, where it rests.
+    /// The Poinsot matrix in the body frame, where it is constant.
     pub second_moment: Square<f64, 3>,
-    /// From the support to the centre of mass, in the body frame, where it rests.
+    /// From the support to the centre of mass, in the body frame, where it is constant.
     pub lever: [f64; 3],
-    /// The vertical, up, space frame.
+    /// The upward vertical, spatial frame.
     pub vertical: [f64; 3],
     /// The weight.
     pub weight: f64,

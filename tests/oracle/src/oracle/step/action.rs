@@ -1,33 +1,32 @@
-//! The action of one step as a function that is typed once and evaluated on several scalars.
-//! Takes what stands at both ends; gives the action, or what constraints hold.
+//! The action of one step as a generic function, written once and evaluated on several scalars, and the constraints of a node.
 
 use super::place::Place;
 use crate::oracle::dual::{Dual, Number};
 use crate::oracle::pair::Pair;
 use crate::oracle::square::Square;
 
-/// What an action is a function of.
+/// The arguments of an action.
 #[derive(Clone, Copy, Debug)]
 pub struct Edge<'a, T> {
-    /// The step.
+    /// The step size.
     pub h: T,
-    /// Parameters, and initial values of what the configuration carries.
+    /// Parameters, and initial values of advected quantities.
     pub given: Place<'a, T>,
-    /// Where the first step starts; it does not vary.
+    /// The initial state of the first step; it is not varied.
     pub start: Place<'a, T>,
-    /// What moves, at node 0.
+    /// The configuration at node 0.
     pub tail: Place<'a, T>,
-    /// What moves, at node 1.
+    /// The configuration at node 1.
     pub head: Place<'a, T>,
 }
 
 impl<T: Number> Edge<'_, T> {
-    /// A term at one node, split over both edges of the node.
+    /// The mean over both ends of a term at one node.
     pub fn at_nodes(&self, term: impl Fn(&Place<'_, T>) -> T) -> T {
         (term(&self.tail) + term(&self.head)) * T::constant(0.5)
     }
 
-    /// The increment of a number.
+    /// The increment of a scalar.
     #[must_use]
     pub fn change(&self, name: &str) -> T {
         self.head.real(name) - self.tail.real(name)
@@ -65,27 +64,27 @@ impl<T: Number> Edge<'_, T> {
     }
 }
 
-/// One function on one scalar.
+/// The action on one scalar type.
 pub type On<T> = fn(&Edge<'_, T>) -> T;
 
-/// What is held at the head of an edge, on one scalar: numbers that vanish.
+/// The constraint functions at the head of an edge, on one scalar type.
 pub type Held<T> = fn(&Place<'_, T>, &Place<'_, T>) -> Vec<T>;
 
-/// What is held, and the action with second derivatives in 32 digits.
+/// The constraints, and the action with second derivatives to 32 digits.
 pub type OfHeld = (Held<Dual<Pair>>, On<Dual<Dual<Pair>>>);
 
-/// An action on the scalars that a solution takes.
+/// An action on the scalar types that the solver needs.
 #[derive(Clone, Copy, Debug)]
 pub struct Action {
-    /// First derivatives in 32 digits.
+    /// First derivatives to 32 digits.
     pub precise: On<Dual<Pair>>,
-    /// Second derivatives in 16 digits, for the matrix of Newton's method.
+    /// Second derivatives to 16 digits, for the Jacobian of Newton's method.
     pub twice: On<Dual<Dual<f64>>>,
-    /// What is held, and second derivatives in 32 digits for the velocity of a momentum.
+    /// The constraints, with second derivatives to 32 digits for the velocity of a momentum.
     pub held: Option<OfHeld>,
 }
 
-/// The action of the generic function of this name; of a second one what is held, by parameters and a node.
+/// The `Action` of a generic function. The optional second function gives the constraints as a function of parameters and a node.
 #[macro_export]
 macro_rules! action {
     ($edge:ident) => {

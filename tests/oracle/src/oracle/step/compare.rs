@@ -1,6 +1,5 @@
-//! What a step of a model is off, beside what its data leave open.
-//! Takes what a model shows at the end of a step; gives errors in units of increments and of momenta, and how much both
-//! change when every datum changes by its last bit.
+//! Compares a step of a model with the solution, and with the sensitivity to its data. Gives errors in units of increments and
+//! momenta, and the change of both if every datum changes in its last bit.
 
 use super::group::inverse;
 use super::motion::{Block, Motion};
@@ -15,17 +14,17 @@ use crate::oracle::sides::Side;
 /// Half a unit in the last place of one.
 pub const ROUNDING: f64 = f64::EPSILON / 2.0;
 
-/// How much of increments and momenta is off, of their sizes; the worst of all blocks.
+/// Relative errors of increments and momenta; the largest over all blocks.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Off {
-    /// Of increments, without the rounding of the places that are shown.
+    /// The error of increments, without the rounding of the configuration that the model returns.
     pub increment: f64,
-    /// Of momenta.
+    /// The error of momenta.
     pub momentum: f64,
 }
 
 impl Off {
-    /// The worse of two.
+    /// The larger of both, component by component.
     #[must_use]
     pub fn worse(self, other: Off) -> Off {
         let larger = |a: f64, b: f64| if a >= b { a } else { b };
@@ -44,17 +43,18 @@ fn largest(list: impl IntoIterator<Item = f64>) -> f64 {
     })
 }
 
-/// A part of a whole; nothing of nothing is nothing.
+/// A fraction; 0/0 counts as 0.
 fn part(of: f64, whole: f64) -> f64 {
     if of == 0.0 { 0.0 } else { of / whole }
 }
 
-/// What the rounding of a shown element may be off, as an increment: each entry is a sum of `rows` rounded products, twice over
-/// where it is made orthonormal anew. What was told of the start may be off its group by rounding, and stays so.
+/// The rounding error of a returned group element, as an increment. Each entry is a sum of `rows` rounded products, counted twice
+/// for the orthonormalisation. The initial element that the model received may deviate from its group by rounding, and the
+/// deviation persists.
 fn shown(block: &Block, told: &[Pair], tail: &[Pair], head: &[Pair]) -> Vec<f64> {
     let n = block.rows;
     let Motion::Turned(_, side) = &block.motion else {
-        // The place before and its increment are rounded once each.
+        // The previous position and its increment have one rounding error each.
         return head.iter().map(|x| 2.0 * ROUNDING * x.high.abs()).collect();
     };
     let back = inverse(n, tail);
@@ -76,7 +76,7 @@ fn shown(block: &Block, told: &[Pair], tail: &[Pair], head: &[Pair]) -> Vec<f64>
 }
 
 impl Problem {
-    /// How far a model's end of this step is from the solution.
+    /// The distance between the model's end of this step and the solution.
     #[must_use]
     pub fn off(&self, solved: &Solved, head: &[Pair], momenta: &[f64]) -> Off {
         let mut out = Off::default();
@@ -119,7 +119,7 @@ impl Problem {
         out
     }
 
-    /// How much the solution changes, in the same units, when all data change by their last bits.
+    /// The change of the solution, in the same units, if all data change in their last bits.
     #[must_use]
     pub fn response(&self, solved: &Solved, source: &mut Source) -> Off {
         let mut out = Off::default();
@@ -161,7 +161,7 @@ impl Problem {
         out
     }
 
-    /// The same problem, each datum changed by its last bit up or down.
+    /// The same problem with the last bit of each datum changed up or down.
     fn disturbed(&self, source: &mut Source) -> Problem {
         let mut other = self.clone();
         let mut bit = || {
@@ -178,7 +178,7 @@ impl Problem {
         other.momenta = momenta.collect();
         let count: usize = self.blocks.iter().map(Block::directions).sum();
         let turned: Vec<Pair> = (0..count).map(|_| bit()).collect();
-        // An element of a group turns by a last bit of one, a place moves by one of its own.
+        // A group element rotates by the rounding unit; a position changes by its own last bit.
         let moved = self.moved(&self.start, &turned);
         for block in &self.blocks {
             for k in block.at..block.at + block.size() {
@@ -193,7 +193,7 @@ impl Problem {
     }
 }
 
-/// Changes one name by last bits; what is symmetric or skew stays so.
+/// Changes the last bits of one value; symmetric and skew matrices stay so.
 fn disturb(letter: &Letter, values: &mut [Pair], bit: &mut impl FnMut() -> Pair) {
     let (rows, cols) = (letter.rows, letter.cols);
     for site in 0..letter.sites {

@@ -1,7 +1,6 @@
-//! Square systems of linear equations in double: elimination with row exchanges.
-//! Takes a matrix by rows; gives solutions of many right sides.
+//! Dense linear systems in double precision, by elimination with row exchanges: one factorisation, many right-hand sides.
 
-/// A matrix by rows, factored.
+/// A factored matrix, row by row.
 #[derive(Clone, Debug)]
 pub struct Factored {
     rows: Vec<Vec<f64>>,
@@ -9,7 +8,7 @@ pub struct Factored {
 }
 
 impl Factored {
-    /// Factors; rows are measured by their largest entries, so that units do not choose pivots.
+    /// Factors a matrix. Pivots are scaled by the largest entry of their row, so that units do not affect the choice.
     #[must_use]
     pub fn of(mut rows: Vec<Vec<f64>>) -> Self {
         let n = rows.len();
@@ -43,7 +42,7 @@ impl Factored {
         Self { rows, order }
     }
 
-    /// The solution of one right side.
+    /// The solution for one right-hand side.
     #[must_use]
     pub fn solve(&self, right: &[f64]) -> Vec<f64> {
         let mut x: Vec<f64> = self.order.iter().map(|i| right[*i]).collect();

@@ -1,5 +1,4 @@
-//! Groups as the oracle knows them: bases of their Lie algebras, exponentials and exact elements, in 32 digits.
-//! Takes matrices by rows; gives matrices by rows.
+//! The groups of the oracle: bases of their Lie algebras, exponentials and exact elements, to 32 digits. Matrices are row-major.
 
 use crate::oracle::dual::Number;
 use crate::oracle::pair::Pair;
@@ -13,7 +12,7 @@ fn with(n: usize, entries: &[(usize, usize, f64)]) -> Vec<f64> {
     out
 }
 
-/// Rotations of `n` dimensions: of three the hats of the axes, of others a turn for each entry below the diagonal.
+/// Rotations in `n` dimensions: the hat matrices of the axes for n = 3, otherwise one rotation for each entry below the diagonal.
 #[must_use]
 pub fn rotations(n: usize) -> Vec<Vec<f64>> {
     if n == 3 {
@@ -28,21 +27,21 @@ pub fn rotations(n: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Linear maps of `n` dimensions: an entry each, row by row.
+/// Linear maps in `n` dimensions: one entry each, row by row.
 #[must_use]
 pub fn linear_maps(n: usize) -> Vec<Vec<f64>> {
     let all = (0..n * n).map(|k| with(n, &[(k / n, k % n, 1.0)]));
     all.collect()
 }
 
-/// Unit quaternions as matrices of left multiplication: half of each imaginary unit.
+/// Unit quaternions as left-multiplication matrices: half of each imaginary unit.
 #[must_use]
 pub fn quaternions() -> Vec<Vec<f64>> {
     let units = crate::oracle::action::quaternions::halves();
     units.iter().map(|m| m.0.concat()).collect()
 }
 
-/// Rigid motions of `n` dimensions, matrices of one row more: turns, then translations.
+/// Rigid motions in `n` dimensions, as matrices of size n + 1: rotations, then translations.
 #[must_use]
 pub fn rigid_motions(n: usize) -> Vec<Vec<f64>> {
     let widened = |turn: &Vec<f64>| {
@@ -65,14 +64,14 @@ pub fn product<T: Number>(n: usize, a: &[T], b: &[T]) -> Vec<T> {
     (0..n * n).map(|k| entry(k / n, k % n)).collect()
 }
 
-/// The identity of `n` rows.
+/// The identity of size `n`.
 #[must_use]
 pub fn identity<T: Number>(n: usize) -> Vec<T> {
     let entry = |k: usize| T::constant(f64::from(u8::from(k / n == k % n)));
     (0..n * n).map(entry).collect()
 }
 
-/// The exponential of a matrix: scaled by a power of two, summed, squared again.
+/// The matrix exponential, by scaling and squaring of the power series.
 #[must_use]
 pub fn exponential(n: usize, a: &[Pair]) -> Vec<Pair> {
     let size = a.iter().fold(0.0_f64, |m, x| m.max(x.high.abs()));
@@ -93,7 +92,7 @@ pub fn exponential(n: usize, a: &[Pair]) -> Vec<Pair> {
     total
 }
 
-/// The inverse, by Newton's iteration from that in double.
+/// The inverse, by Newton's iteration from the inverse in double precision.
 #[must_use]
 pub fn inverse(n: usize, a: &[Pair]) -> Vec<Pair> {
     let rows = (0..n).map(|i| (0..n).map(|j| a[i * n + j].high).collect());
@@ -114,7 +113,7 @@ pub fn inverse(n: usize, a: &[Pair]) -> Vec<Pair> {
     x
 }
 
-/// The orthogonal matrix next to one that is orthogonal in double.
+/// The orthogonal matrix closest to a matrix that is orthogonal in double precision.
 #[must_use]
 pub fn orthogonal(n: usize, a: &[f64]) -> Vec<Pair> {
     let mut x: Vec<Pair> = a.iter().map(|x| Pair::constant(*x)).collect();

@@ -1,28 +1,28 @@
-//! What moves: values that are added, and elements of groups, varied in the frame in which momenta are told.
-//! Takes numbers by rows; gives tangents, moved values, and increments from one node to the next.
+//! The variables of a step: additive values, and group elements, varied in the frame of their momenta. Gives tangents, moved
+//! values, and increments from one node to the next, from row-major numbers.
 
 use super::group::{exponential, inverse, product};
 use crate::oracle::dual::Number;
 use crate::oracle::pair::Pair;
 use crate::oracle::sides::Side;
 
-/// How one configuration is varied.
+/// How a configuration is varied.
 #[derive(Clone, Debug)]
 pub enum Motion {
-    /// Every entry by itself.
+    /// Entry by entry.
     Added,
-    /// By a basis of a Lie algebra, matrices by rows, on a side.
+    /// By a basis of a Lie algebra (row-major matrices), on one side.
     Turned(Vec<Vec<f64>>, Side),
-    /// Not at all: an end holds it.
+    /// Not varied, because an end prescribes it.
     Fixed,
 }
 
 /// One configuration of one site.
 #[derive(Clone, Debug)]
 pub struct Block {
-    /// The site that it belongs to.
+    /// Its site.
     pub site: usize,
-    /// Where its first number stands.
+    /// The index of its first number.
     pub at: usize,
     /// Rows.
     pub rows: usize,
@@ -33,13 +33,13 @@ pub struct Block {
 }
 
 impl Block {
-    /// How many numbers it has.
+    /// The number of its entries.
     #[must_use]
     pub fn size(&self) -> usize {
         self.rows * self.cols
     }
 
-    /// How many directions it has.
+    /// The number of its directions.
     #[must_use]
     pub fn directions(&self) -> usize {
         match &self.motion {
@@ -65,7 +65,7 @@ impl Block {
         }
     }
 
-    /// Its value moved by so much along each direction.
+    /// Its value moved by `by` along the directions.
     #[must_use]
     pub fn moved(&self, value: &[Pair], by: &[Pair]) -> Vec<Pair> {
         match &self.motion {
@@ -87,7 +87,7 @@ impl Block {
         }
     }
 
-    /// A change of its value at the head, as one of the increment from the tail: `R^-1 δ` in the body, `δ R^-1` in space.
+    /// A change of its value at the head as a change of the increment from the tail: `R^-1 δ` in the body, `δ R^-1` in space.
     #[must_use]
     pub fn as_increment(&self, tail: &[Pair], change: &[Pair]) -> Vec<Pair> {
         match &self.motion {

@@ -1,5 +1,5 @@
-//! Values by their names: parameters, and what moves at one node.
-//! Takes a table of names and sizes and the numbers behind it; gives numbers, columns and matrices.
+//! Values by name: parameters, and the configuration at one node. Looks up scalars, columns and matrices in a table of names and
+//! sizes and a list of numbers.
 
 use crate::oracle::dual::Number;
 use crate::oracle::square::Square;
@@ -8,29 +8,29 @@ use std::array::from_fn;
 /// One name of a table.
 #[derive(Clone, Debug)]
 pub struct Letter {
-    /// As the model writes it.
+    /// The name as the model writes it.
     pub name: String,
-    /// How many sites have a value of their own.
+    /// The number of sites with their own value.
     pub sites: usize,
     /// Rows of a value.
     pub rows: usize,
     /// Columns of a value.
     pub cols: usize,
-    /// Where its first number stands.
+    /// The index of its first number.
     pub at: usize,
 }
 
-/// Names with their places in one list of numbers.
+/// Names with their positions in one list of numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     /// All names.
     pub letters: Vec<Letter>,
-    /// How many numbers there are.
+    /// The total count of numbers.
     pub count: usize,
 }
 
 impl Table {
-    /// Puts a name behind the others.
+    /// Appends a name.
     pub fn push(&mut self, name: &str, sites: usize, [rows, cols]: [usize; 2]) {
         self.letters.push(Letter {
             name: name.to_owned(),
@@ -47,7 +47,7 @@ impl Table {
         found.unwrap_or_else(|| panic!("the action has a letter `{name}` that the model has not"))
     }
 
-    /// How many sites have a value of this name.
+    /// The number of sites with their own value of this name.
     #[must_use]
     pub fn sites(&self, name: &str) -> usize {
         self.letter(name).sites
@@ -64,7 +64,7 @@ pub struct Place<'a, T> {
 }
 
 impl<T: Number> Place<'_, T> {
-    /// The numbers of one value; a name that is the same everywhere has it at every site.
+    /// The numbers of one value. A name without per-site values has the same value at every site.
     fn own(&self, name: &str, site: usize) -> &[T] {
         let letter = self.table.letter(name);
         let size = letter.rows * letter.cols;
@@ -74,7 +74,7 @@ impl<T: Number> Place<'_, T> {
         &self.values[from..from + size]
     }
 
-    /// A number at a site.
+    /// A scalar at a site.
     #[must_use]
     pub fn real_at(&self, name: &str, site: usize) -> T {
         self.own(name, site)[0]
@@ -96,7 +96,7 @@ impl<T: Number> Place<'_, T> {
         Square::from_entries(|i, j| own[i * N + j])
     }
 
-    /// A number.
+    /// A scalar.
     #[must_use]
     pub fn real(&self, name: &str) -> T {
         self.real_at(name, 0)

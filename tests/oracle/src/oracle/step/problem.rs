@@ -1,5 +1,5 @@
-//! A step that is to be solved, and the derivatives that its equations are made of.
-//! Takes an action and numbers; gives first derivatives in 32 digits, second ones in 16, and what constraints hold.
+//! A step to solve, and the derivatives in its equations: first derivatives to 32 digits, second derivatives to 16, and the
+//! constraints.
 
 use super::action::Action;
 use super::action::{Edge, On};
@@ -8,28 +8,28 @@ use super::place::{Place, Table};
 use crate::oracle::dual::{Dual, Number};
 use crate::oracle::pair::Pair;
 
-/// A step that is to be solved.
+/// A step to solve.
 #[derive(Clone, Debug)]
 pub struct Problem {
     /// The action.
     pub action: Action,
-    /// The step.
+    /// The step size.
     pub h: f64,
-    /// Names of what is given.
+    /// Names of parameters and initial values.
     pub names: Table,
-    /// Its values.
+    /// Their values.
     pub given: Vec<Pair>,
-    /// Names of what moves.
+    /// Names of the configuration.
     pub moving: Table,
-    /// How it moves.
+    /// How each configuration is varied.
     pub blocks: Vec<Block>,
-    /// Where it is at the start, as the model is told.
+    /// The initial configuration, as the model receives it.
     pub told: Vec<Pair>,
-    /// The same, elements exactly in their groups.
+    /// The initial configuration, with elements exactly in their groups.
     pub start: Vec<Pair>,
-    /// Momenta at the start, along the directions of all blocks.
+    /// Initial momenta, along the directions of all blocks.
     pub momenta: Vec<Pair>,
-    /// Along a line: how far sites whose velocities stand in one term are apart, and how many there are around a ring.
+    /// For a chain: the largest distance of coupled sites, and the number of sites if it is a ring.
     pub reach: Option<(usize, Option<usize>)>,
 }
 
@@ -41,7 +41,7 @@ pub(super) enum End {
 }
 
 impl Problem {
-    /// All directions: the block and the one of its directions.
+    /// All directions: the block and the index of the direction.
     fn directions(&self) -> impl Iterator<Item = (&Block, usize)> {
         let all = self.blocks.iter();
         all.flat_map(|b| (0..b.directions()).map(move |d| (b, d)))
@@ -91,7 +91,7 @@ impl Problem {
         each.collect()
     }
 
-    /// The second derivatives of the action by tail and head, from `tail` to `head`.
+    /// The mixed second derivatives of the action with respect to tail and head.
     pub(super) fn mixed<T: Number>(
         &self,
         f: On<Dual<Dual<T>>>,
@@ -124,7 +124,7 @@ impl Problem {
                     }
                 }
                 let found = self.evaluated(f, [&given, &start, &from, &to]).slope.slope;
-                // Of those that are varied together one is near enough to answer.
+                // Among the directions varied together, at most one is near enough to contribute.
                 if let Some((k, ..)) = all.iter().find(|(_, b, _)| self.is_near(row, b)) {
                     out[*k] = found;
                 }
@@ -134,7 +134,7 @@ impl Problem {
         rows.collect()
     }
 
-    /// Whether velocities of two configurations may stand in one term.
+    /// Whether one term may contain the velocities of both configurations.
     fn is_near(&self, a: &Block, b: &Block) -> bool {
         let Some((reach, ring)) = self.reach else {
             return true;
@@ -143,7 +143,7 @@ impl Problem {
         apart <= reach || ring.is_some_and(|n| n - apart <= reach)
     }
 
-    /// Directions that are varied together, with their numbers: no velocity is near two of them.
+    /// Groups of directions that can be varied together: no configuration is near two of them.
     fn together(&self) -> Vec<Vec<(usize, &Block, usize)>> {
         let mut out: Vec<Vec<(usize, &Block, usize)>> = Vec::new();
         for (k, (block, direction)) in self.directions().enumerate() {
@@ -162,7 +162,7 @@ impl Problem {
         out
     }
 
-    /// What is held at a node, and its derivatives along all directions.
+    /// The constraints at a node, and their derivatives along all directions.
     pub(super) fn held(&self, node: &[Pair]) -> (Vec<Pair>, Vec<Vec<Pair>>) {
         let Some((held, _)) = self.action.held else {
             return (Vec::new(), Vec::new());
@@ -194,7 +194,7 @@ impl Problem {
         (values, rows)
     }
 
-    /// A node moved by so much along each direction.
+    /// A node moved by `by` along the directions.
     #[must_use]
     pub fn moved(&self, node: &[Pair], by: &[Pair]) -> Vec<Pair> {
         let mut out = node.to_vec();
@@ -210,7 +210,7 @@ impl Problem {
     }
 }
 
-/// A number that does not vary.
+/// A constant.
 fn steady<T: Number>(value: T) -> Dual<T> {
     Dual {
         value,

@@ -1,21 +1,21 @@
-//! The end of a step: `p = -D1 L(q, q')` solved for `q'`, with the multipliers of what is held, then `p' = D2 L(q, q')`.
-//! Takes a problem; follows the root from rest as the momentum grows, then corrects it in 32 digits.
+//! Solves a step: `q'` and the constraint multipliers from `p = -D1 L(q, q')`, then `p' = D2 L(q, q')`. Follows the root from zero
+//! velocity while the momentum grows, then refines it to 32 digits.
 
 use super::dense::Factored;
 use super::problem::{End, Problem};
 use crate::oracle::dual::Number;
 use crate::oracle::pair::Pair;
 
-/// The end of a step.
+/// The result of a step.
 #[derive(Clone, Debug)]
 pub struct Solved {
-    /// What moves, at the end.
+    /// The configuration at the end.
     pub head: Vec<Pair>,
-    /// Multipliers of what is held, times half the step.
+    /// Constraint multipliers times half the step size.
     pub impulses: Vec<Pair>,
-    /// Momenta at the end, projected on what is held.
+    /// Momenta at the end, projected onto the constraints.
     pub momenta: Vec<Pair>,
-    /// The matrix of Newton's method there.
+    /// The Jacobian of Newton's method at the end.
     pub tangent: Factored,
 }
 
@@ -27,7 +27,7 @@ fn size(list: &[f64]) -> f64 {
 }
 
 impl Problem {
-    /// The equations at a head: what they leave for the momenta `wanted`.
+    /// The residual of the equations at `head` for the momenta `wanted`.
     fn left(&self, head: &[Pair], impulses: &[Pair], wanted: &[Pair]) -> Vec<Pair> {
         let (_, across) = self.held(&self.start);
         let own = self.gradient(head, End::Tail);
@@ -41,7 +41,7 @@ impl Problem {
         out
     }
 
-    /// The matrix of Newton's method.
+    /// The Jacobian of Newton's method.
     fn tangent(&self, head: &[Pair]) -> Factored {
         let mut rows = self.mixed(self.action.twice, [&self.start, head], |x| x.high);
         let (_, here) = self.held(&self.start);
@@ -58,7 +58,7 @@ impl Problem {
         Factored::of(rows)
     }
 
-    /// One correction of head and impulses; its length.
+    /// Corrects head and impulses once; returns the size of the correction.
     fn correct(
         &self,
         (head, impulses): (&mut Vec<Pair>, &mut Vec<Pair>),
@@ -80,7 +80,7 @@ impl Problem {
         size(&by)
     }
 
-    /// The end of the step, on the root that goes out from rest; none where it is lost.
+    /// The end of the step on the root connected to zero velocity; `None` if continuation loses it.
     #[must_use]
     pub fn solve(&self) -> Option<Solved> {
         let rest: Vec<Pair> = self
@@ -109,7 +109,7 @@ impl Problem {
         self.refined(at, tangent)
     }
 
-    /// One stage: corrections that fall by a factor of two each.
+    /// One continuation stage: each correction must be at most half the previous one.
     fn stage(
         &self,
         (mut head, mut impulses): (Vec<Pair>, Vec<Pair>),
@@ -134,7 +134,7 @@ impl Problem {
         None
     }
 
-    /// The same in 32 digits, from an end that is nearly one.
+    /// Refines an approximate solution to 32 digits.
     #[must_use]
     pub fn refined(
         &self,
@@ -145,7 +145,7 @@ impl Problem {
             let both = head.iter().zip(&self.start);
             both.map(|(b, a)| (*b - *a).high).collect()
         };
-        // One more correction would be smaller by the digits of a double.
+        // The next correction would be smaller by the precision of a double.
         let enough = 1e-18 * size(&away);
         for _ in 0..12 {
             let length = self.correct((&mut head, &mut impulses), &self.momenta, &tangent);
@@ -162,13 +162,13 @@ impl Problem {
         None
     }
 
-    /// The momenta at the end, without what points across what is held.
+    /// The momenta at the end, without their component along the constraint forces.
     fn arrived(&self, head: &[Pair]) -> Option<Vec<Pair>> {
         let mut momenta = self.gradient(head, End::Head);
         let Some((_, second)) = self.action.held else {
             return Some(momenta);
         };
-        // The kinetic energy at rest has the Hessian -h D1 D2 L.
+        // The Hessian of the kinetic energy at zero velocity is -h D1 D2 L.
         let (_, across) = self.held(head);
         let hessian: Vec<Vec<Pair>> = {
             let rows = self.mixed(second, [head, head], |x| x);
@@ -196,7 +196,7 @@ impl Problem {
     }
 }
 
-/// A linear system in 32 digits: solved in double, corrected by what is left.
+/// Solves a linear system to 32 digits: in double precision, then by iterative refinement.
 fn linear(rows: &[Vec<Pair>], right: &[Pair]) -> Vec<Pair> {
     let plain = rows.iter().map(|row| row.iter().map(|x| x.high).collect());
     let factored = Factored::of(plain.collect());

@@ -1,5 +1,5 @@
-//! Matrices of any size over the oracle's numbers, rows first; a number is 1 x 1, a vector one column.
-//! Takes entries; gives the operations of the language as their definitions say, no shape special.
+//! Matrices of any size over the oracle's numbers, row-major; a scalar is 1 x 1, a vector is one column. Implements the operations
+//! of the language by their definitions, with no special cases by shape.
 
 use crate::oracle::dual::Number;
 
@@ -23,7 +23,7 @@ impl<T: Number> Grid<T> {
         Self { rows, cols, data }
     }
 
-    /// A number.
+    /// A scalar.
     pub fn number(x: T) -> Self {
         Self::from_entries(1, 1, |_, _| x)
     }
@@ -34,7 +34,7 @@ impl<T: Number> Grid<T> {
         Self::from_entries(n, n, |i, j| T::constant(f64::from(u8::from(i == j))))
     }
 
-    /// A matrix that does not vary.
+    /// A constant matrix.
     #[must_use]
     pub fn constant(values: &Grid<f64>) -> Self {
         Self::from_entries(values.rows, values.cols, |i, j| {
@@ -42,7 +42,7 @@ impl<T: Number> Grid<T> {
         })
     }
 
-    /// An entry; NaN outside.
+    /// An entry; NaN outside the matrix.
     #[must_use]
     pub fn at(&self, i: usize, j: usize) -> T {
         let inside = i < self.rows && j < self.cols;
@@ -50,7 +50,7 @@ impl<T: Number> Grid<T> {
         entry.copied().unwrap_or_else(|| T::constant(f64::NAN))
     }
 
-    /// The only entry; NaN for anything else.
+    /// The only entry of a 1 x 1 matrix; otherwise NaN.
     #[must_use]
     pub fn scalar(&self) -> T {
         match self.data.as_slice() {
@@ -59,26 +59,26 @@ impl<T: Number> Grid<T> {
         }
     }
 
-    /// Every entry changed.
+    /// Applies a function to every entry.
     #[must_use]
     pub fn each(&self, change: impl Fn(T) -> T) -> Self {
         Self::from_entries(self.rows, self.cols, |i, j| change(self.at(i, j)))
     }
 
-    /// Times a number.
+    /// Multiplies by a scalar.
     #[must_use]
     pub fn scaled(&self, x: T) -> Self {
         self.each(|entry| entry * x)
     }
 
-    /// The sum; NaN where the shapes differ.
+    /// The sum; NaN if the shapes differ.
     #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
         let (rows, cols) = (self.rows.max(other.rows), self.cols.max(other.cols));
         Self::from_entries(rows, cols, |i, j| self.at(i, j) + other.at(i, j))
     }
 
-    /// The product; a number times a matrix is allowed on either side.
+    /// The product; either factor may be a scalar.
     #[must_use]
     pub fn times(&self, other: &Self) -> Self {
         if self.data.len() == 1 {
@@ -107,7 +107,7 @@ impl<T: Number> Grid<T> {
         (0..self.rows).fold(T::constant(0.0), |sum, i| sum + self.at(i, i))
     }
 
-    /// The determinant, by its first row: no division, so that singular matrices have derivatives.
+    /// The determinant, by expansion along the first row without division, so that singular matrices have derivatives.
     #[must_use]
     pub fn determinant(&self) -> T {
         match self.rows {
@@ -151,13 +151,13 @@ impl<T: Number> Grid<T> {
         right
     }
 
-    /// Some rows and columns of it.
+    /// A block of the matrix.
     #[must_use]
     pub fn block(&self, rows: usize, cols: usize, from: (usize, usize)) -> Self {
         Self::from_entries(rows, cols, |i, j| self.at(i + from.0, j + from.1))
     }
 
-    /// The skew matrix of a vector of three: `hat(v) w = v x w`.
+    /// The skew matrix of a 3-vector: `hat(v) w = v x w`.
     #[must_use]
     pub fn hat(&self) -> Self {
         let [x, y, z] = [0, 1, 2].map(|i| self.at(i, 0));
@@ -177,7 +177,7 @@ impl<T: Number> Grid<T> {
         })
     }
 
-    /// The left multiplication by a quaternion `w + v` on `(1, i, j, k)`.
+    /// The left-multiplication matrix of a quaternion `w + v` on `(1, i, j, k)`.
     #[must_use]
     pub fn quaternion(w: T, v: [T; 3]) -> Self {
         let [x, y, z] = v;
@@ -185,7 +185,7 @@ impl<T: Number> Grid<T> {
         Self::from_entries(4, 4, |i, j| rows[i][j])
     }
 
-    /// Real and imaginary part of the quaternion nearest to a 4 x 4 matrix.
+    /// Real and imaginary part of the quaternion closest to a 4 x 4 matrix.
     #[must_use]
     pub fn quaternion_parts(&self) -> (T, [T; 3]) {
         let unit = |k: usize| {
@@ -200,7 +200,7 @@ impl<T: Number> Grid<T> {
         (part(0), [1, 2, 3].map(part))
     }
 
-    /// The rotation that a unit quaternion covers: `v -> q v q*`, column by column.
+    /// The rotation of a unit quaternion: `v -> q v q*`, column by column.
     #[must_use]
     pub fn covered(&self) -> Self {
         let columns = [0, 1, 2].map(|k| {

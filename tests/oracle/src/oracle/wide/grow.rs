@@ -1,20 +1,18 @@
-//! Random summands of reduced statements, in velocities and advected quantities.
-//! Takes a model with its groups; adds a kinetic term for each, quantities that the groups carry, and
-//! terms in which every function of the language stands in some model.
+//! Random summands of reduced statements, in velocities and advected quantities. Given a model with its groups, adds a kinetic term
+//! for each group, advected quantities, and other terms. Over all models, these terms contain every function of the language.
 
 use super::model::{Action, Family, Kind, Model, Role};
 use super::tree::{SCALAR, Shape, Tree};
 use crate::oracle::points::Source;
 use crate::oracle::sides::Side;
 
-/// Shapes of numbers around a number, one for each turn, so that none is left out: functions, powers
-/// and quotients.
+/// Functions, powers and quotients that wrap a scalar. Models use them in turn, so that all of them occur.
 pub const AROUND: [&str; 16] = [
     "exp", "sin", "cos", "log", "tanh", "sqrt", "sinh", "third", "cosh", "abs", "quotient", "cube",
     "half", "sign", "inverse", "square",
 ];
 
-/// Functions of vectors and matrices, one for each turn.
+/// Functions of vectors and matrices, used in turn.
 const WORDS: [&str; 14] = [
     "vee",
     "I2",
@@ -31,12 +29,12 @@ const WORDS: [&str; 14] = [
     "rectangular",
     "component",
 ];
-/// Those of quaternions.
+/// Functions of quaternions.
 const OF_QUATERNIONS: [&str; 4] = ["im", "quat", "rot", "re"];
-/// Those of rigid motions.
+/// Functions of rigid motions.
 const OF_MOTIONS: [&str; 2] = ["pos", "rot"];
 
-/// A smooth function of a number of order one, by its name in [`AROUND`].
+/// A smooth function of a scalar of order one, by its name in [`AROUND`].
 pub fn around(name: &str, x: Tree) -> Tree {
     let small = |x: Tree| Tree::number("0.3").times(x);
     let square = |x: Tree| x.power(2, 1);
@@ -91,13 +89,13 @@ pub fn kinetic(model: &mut Model, body: usize) -> Tree {
             let j = model.parameter(Kind::Positive(n));
             let rate = v.minus(Tree::Identity(n));
             let square = Tree::Product(vec![rate.clone(), j, rate.transposed()]);
-            // Subtracted, as the others are.
+            // Subtracted, like the other kinetic terms.
             Tree::number("-1").times(Tree::call("tr", square).over(twice))
         }
     }
 }
 
-/// That of a field.
+/// The kinetic term of a field.
 pub fn added(model: &mut Model, body: usize) -> Tree {
     let element = model.bodies[body].element;
     let here = model.letter(element);
@@ -110,11 +108,11 @@ pub fn added(model: &mut Model, body: usize) -> Tree {
         _ => Tree::call("tr", rate.clone().times(rate.transposed())),
     };
     let twice = Tree::Product(vec![Tree::number("2"), Tree::Step]);
-    // Subtracted, as the others are.
+    // Subtracted, like the other kinetic terms.
     Tree::number("-1").times(m.times(square).over(twice))
 }
 
-/// What the group of a body may carry: kind, action, whether its rotation acts.
+/// A quantity that the group of a body can advect: its kind, the action, and whether the rotation of the element acts.
 fn carriable(source: &mut Source, family: Family) -> (Kind, Action, bool) {
     use Action::{Congruence, Conjugation, Dual, DualCongruence, Forward, Weight};
     let n = family.size();
@@ -168,7 +166,7 @@ fn carriable(source: &mut Source, family: Family) -> (Kind, Action, bool) {
     list[source.below(list.len())]
 }
 
-/// Adds what the groups carry.
+/// Adds advected quantities.
 fn carried(model: &mut Model, source: &mut Source) {
     for body in 0..model.bodies.len() {
         let family = model.bodies[body].family;
@@ -179,7 +177,7 @@ fn carried(model: &mut Model, source: &mut Source) {
         };
         for i in 0..count {
             let (kind, action, turns) = carriable(source, family);
-            // An element of a group has no coordinates to define it by but its own.
+            // A group element as an advected quantity has no definition.
             let definition = (source.chance(50) && !matches!(kind, Kind::Element(_)))
                 .then(|| match model.parameter(kind) {
                     Tree::Letter(index, _) => Some(index),
@@ -236,7 +234,7 @@ pub fn state(model: &mut Model, source: &mut Source, turn: usize) {
     let count = 2 + source.below(2);
     for i in 0..count {
         let moving = i == 0 || source.chance(60);
-        // The first two summands hold words whose turn it is, if there is a quantity for them.
+        // The first two summands contain the function whose turn it is, if the model has an argument for it.
         let round = turn + turn / 16;
         let special = match model.bodies.iter().map(|b| b.family).collect::<Vec<_>>() {
             list if list.contains(&Family::Quaternion) => OF_QUATERNIONS[round % 4],
@@ -252,7 +250,7 @@ pub fn state(model: &mut Model, source: &mut Source, turn: usize) {
             source,
             moving,
         };
-        // Normal forms of products of motions, and of three groups and fields, are long.
+        // Normal forms of products of motions, and of three or more groups and fields, are long.
         let bodies = garden.model.bodies.iter();
         let motions = bodies.filter(|b| b.family == Family::Motion).count();
         let many = motions > 1 || garden.model.bodies.len() > 2;
@@ -278,21 +276,21 @@ pub fn state(model: &mut Model, source: &mut Source, turn: usize) {
     }
 }
 
-/// Grows expressions from the letters of a model.
+/// Grows expressions from the symbols of a model.
 struct Garden<'a> {
     model: &'a mut Model,
     source: &'a mut Source,
-    /// Whether velocities and ends of edges may stand.
+    /// Whether velocities and values at the end of the edge may occur.
     moving: bool,
 }
 
 impl Garden<'_> {
-    /// A letter of this shape, if there is one; values at the end of the edge now and then.
+    /// A symbol of this shape, if there is one; sometimes its value at the end of the edge.
     fn atom(&mut self, shape: Shape) -> Option<Tree> {
         let mut fitting = Vec::new();
         for (index, l) in self.model.letters.iter().enumerate() {
             let (allowed, shifts) = match l.role {
-                // Reduced statements do not speak of elements, but of fields.
+                // Reduced statements contain fields, but no group elements.
                 Role::Element(body) => {
                     let added = self.model.bodies[body].family.is_added();
                     (added, added && self.moving)
@@ -306,7 +304,7 @@ impl Garden<'_> {
             };
             if allowed && l.kind.shape() == shape {
                 fitting.push((index, shifts));
-                // What moves more often than what does not.
+                // Adds dynamic symbols twice, so that they occur more often than parameters.
                 if !matches!(l.role, Role::Parameter) {
                     fitting.push((index, shifts));
                 }
@@ -319,7 +317,7 @@ impl Garden<'_> {
         })
     }
 
-    /// A size of vectors and matrices that letters have.
+    /// A size that vectors and matrices of the model have.
     fn size(&mut self) -> usize {
         let sizes: Vec<usize> = self
             .model
@@ -353,7 +351,7 @@ impl Garden<'_> {
         Some(self.model.letter(index))
     }
 
-    /// A number with this function in it; nothing where no letter can be its argument.
+    /// A scalar expression that contains this function; `None` if no symbol can be its argument.
     fn word(&mut self, name: &'static str) -> Option<Tree> {
         let three = (1..=3).find_map(|_| (self.size() == 3).then_some(3));
         let n = self.size();
@@ -445,8 +443,7 @@ impl Garden<'_> {
             }
             2 => {
                 let a = self.matrix(n, next);
-                // The difference of two rigid motions has no inverse, of which its determinant's
-                // derivative is made.
+                // The difference of two rigid motions is singular, and the derivative of its determinant needs the inverse.
                 let names: &[&'static str] = match n {
                     4.. => &["tr", "I1", "I2"],
                     _ => &["tr", "I1", "I2", "det"],
@@ -530,7 +527,7 @@ impl Garden<'_> {
         }
     }
 
-    /// A matrix that has an inverse wherever it is taken.
+    /// A matrix that is always invertible.
     fn positive(&mut self, n: usize) -> Tree {
         let a = self.matrix(n, 0);
         Tree::Identity(n).plus(a.clone().times(a.transposed()))

@@ -1,5 +1,5 @@
-//! A random model: its groups, parameters, advected quantities and the summands of its action.
-//! Takes a seed; gives the tables that the text and the oracle are both made of.
+//! A random model from a seed: its groups, parameters, advected quantities and the summands of its action. Both the text and the
+//! oracle use these tables.
 
 use super::grow;
 use super::point::Point;
@@ -21,12 +21,12 @@ pub enum Family {
     Linear(usize),
     /// SE(2), 3 x 3.
     Plane,
-    /// A field: numbers, vectors or matrices that are added.
+    /// A field of scalars, vectors or matrices, which are additive.
     Added(usize, usize),
 }
 
 impl Family {
-    /// Rows of its matrices.
+    /// Number of rows of its matrices.
     #[must_use]
     pub fn size(self) -> usize {
         match self {
@@ -36,7 +36,7 @@ impl Family {
         }
     }
 
-    /// The dimension of the space that an element turns.
+    /// The dimension of the space that an element rotates.
     #[must_use]
     pub fn turned(self) -> usize {
         match self {
@@ -45,7 +45,7 @@ impl Family {
         }
     }
 
-    /// Whether an element turns space and moves it.
+    /// Whether an element rotates and translates.
     #[must_use]
     pub fn is_motion(self) -> bool {
         matches!(self, Self::Motion | Self::Plane)
@@ -63,7 +63,7 @@ impl Family {
         matches!(self, Self::Rotation(_) | Self::Quaternion)
     }
 
-    /// As the language writes it.
+    /// The type in the model language.
     #[must_use]
     pub fn text(self) -> String {
         match self {
@@ -79,10 +79,10 @@ impl Family {
     }
 }
 
-/// What a letter is made of.
+/// The type of a symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A number.
+    /// A scalar.
     Real,
     /// A vector.
     Vector(usize),
@@ -114,7 +114,7 @@ impl Kind {
         }
     }
 
-    /// As the language writes it.
+    /// The type in the model language.
     #[must_use]
     pub fn text(self) -> String {
         match self {
@@ -130,8 +130,7 @@ impl Kind {
     }
 }
 
-/// How a group acts on a quantity `c`, for an element `g` (on the body side its inverse), or for
-/// the rotation that the element has.
+/// How a group element `g` acts on a quantity `c`. On the body side the inverse of `g` acts; some quantities use only its rotation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// `g c`.
@@ -148,7 +147,7 @@ pub enum Action {
     Weight,
 }
 
-/// What a letter is in the model.
+/// The role of a symbol in the model.
 #[derive(Clone, Debug)]
 pub enum Role {
     /// The configuration of a body.
@@ -157,30 +156,30 @@ pub enum Role {
     Velocity(usize),
     /// A constant.
     Parameter,
-    /// A quantity carried by a body.
+    /// A quantity advected by a body.
     Advected {
         /// The body.
         body: usize,
-        /// How.
+        /// The action.
         action: Action,
-        /// Whether the rotation of the element acts, not the element.
+        /// Whether only the rotation of the element acts.
         turns: bool,
-        /// The parameter that it is at the identity, where the model says so.
+        /// The parameter that gives its value at the identity, if the model defines the quantity.
         definition: Option<usize>,
     },
-    /// The motion of one body seen from another, `g1^-1 c g2`: of two on the body side.
+    /// The relative motion of two body-side bodies, `g1^-1 c g2`.
     Relative {
         /// The first.
         first: usize,
         /// The second.
         second: usize,
-        /// Whether the model says so, with `c = Id`.
+        /// Whether the model defines it, with `c = Id`.
         defined: bool,
     },
 }
 
 impl Role {
-    /// Whether a node holds the letter: what is computed from others is not given.
+    /// Whether a node stores the symbol; computed symbols are not inputs.
     #[must_use]
     pub fn is_given(&self) -> bool {
         match self {
@@ -192,14 +191,14 @@ impl Role {
     }
 }
 
-/// A letter.
+/// A symbol.
 #[derive(Clone, Debug)]
 pub struct Letter {
-    /// As written.
+    /// Its name.
     pub name: String,
-    /// What it is made of.
+    /// Its type.
     pub kind: Kind,
-    /// What it is for.
+    /// Its role.
     pub role: Role,
 }
 
@@ -210,7 +209,7 @@ pub struct Body {
     pub family: Family,
     /// The side of its variations.
     pub side: Side,
-    /// The letter of the element; that of the velocity follows it.
+    /// The index of the element's symbol; the velocity follows it.
     pub element: usize,
 }
 
@@ -221,34 +220,34 @@ pub struct Model {
     pub name: String,
     /// Its configurations.
     pub bodies: Vec<Body>,
-    /// All letters.
+    /// All symbols.
     pub letters: Vec<Letter>,
-    /// Where nodal summands belong.
+    /// The edge to which nodal summands belong.
     pub rule: NodeRule,
-    /// What is typed is so many times the action.
+    /// The factor between the stated sum and the action.
     pub scale: Option<Tree>,
-    /// The summands as typed; `true` subtracts.
+    /// The summands as stated; `true` subtracts.
     pub summands: Vec<(bool, Tree)>,
-    /// How the text is written, which changes no meaning.
+    /// The style of the text, which does not change its meaning.
     pub style: Style,
 }
 
-/// How a text is written.
+/// The style of a text.
 #[derive(Clone, Debug)]
 pub struct Style {
     /// The name of the time index.
     pub time: &'static str,
-    /// The name of the step.
+    /// The name of the step size.
     pub step: &'static str,
-    /// Whether only the parentheses stand that the precedence of the language asks for.
+    /// Whether the text contains only the parentheses that precedence requires.
     pub bare: bool,
-    /// Whether products are written without a sign where that is possible.
+    /// Whether products omit the multiplication sign if possible.
     pub juxtaposed: bool,
-    /// A part of a summand that has a name of its own.
+    /// A subexpression that gets its own `let` name.
     pub named: Option<Tree>,
 }
 
-/// Groups and products of groups, by turns.
+/// Groups and products of groups, used in turn.
 const GROUPS: [&[Family]; 20] = {
     use Family::{Added, Linear, Motion, Plane, Quaternion, Rotation};
     [
@@ -276,7 +275,7 @@ const GROUPS: [&[Family]; 20] = {
 };
 
 impl Model {
-    /// A model of these configurations, without an action.
+    /// A model with these configurations and no action.
     #[must_use]
     pub fn of(name: String, families: &[(Family, Side)]) -> Self {
         let mut model = Model {
@@ -322,7 +321,7 @@ impl Model {
             1 => NodeRule::Outgoing,
             _ => NodeRule::Symmetric,
         };
-        // Linear groups are stepped on either side; mixed sides are allowed in products.
+        // Linear groups may use either side, and products may mix sides.
         let bodies = families
             .iter()
             .map(|family| match source.chance(25) && !family.is_added() {
@@ -332,7 +331,7 @@ impl Model {
         let bodies: Vec<(Family, Side)> = bodies.collect();
         let mut model = Self::of(format!("Wide{seed}"), &bodies);
         model.rule = rule;
-        // Every third model is stated by its configurations at both ends of the step.
+        // Every third round of models is stated by the configurations at both ends of the step.
         if (turn / GROUPS.len()) % 3 == 2 {
             unreduced::state(&mut model, &mut source, turn);
         } else {
@@ -341,7 +340,7 @@ impl Model {
         if source.chance(15) {
             model.scale = Some(Tree::Product(vec![Tree::number("2"), Tree::Step]));
         }
-        // A summand without a variation tests only that the engine finds nothing.
+        // Drops summands without a variation, which would test only that the engine finds nothing.
         let varied = (0..model.summands.len()).map(|k| model.varies(k));
         let mut varied = varied.collect::<Vec<bool>>().into_iter();
         model.summands.retain(|_| varied.next() == Some(true));
@@ -349,7 +348,7 @@ impl Model {
         model
     }
 
-    /// Chooses how the text is written.
+    /// Chooses the style of the text.
     fn write_otherwise(&mut self, source: &mut Source) {
         if source.chance(10) {
             (self.style.time, self.style.step) = ("i", "s");
@@ -363,7 +362,7 @@ impl Model {
         }
     }
 
-    /// Whether a summand alone has a variation at some of a few random points.
+    /// Whether a summand on its own has a nonzero variation at one of three random points.
     fn varies(&self, summand: usize) -> bool {
         let alone = Model {
             summands: vec![self.summands[summand].clone()],
@@ -375,12 +374,12 @@ impl Model {
             let point = Point::draw(&alone, &mut source, 0.5);
             let nodes = std::array::from_fn(|_| point.node(&mut source));
             let found = point.stationarity(&nodes).derivative;
-            // Values are of order one: what is left of an identity by rounding is far below. What is no number stays.
+            // Values are of order one, far above the rounding error of an identity. NaN counts as a variation.
             found.iter().any(|x| x.is_nan() || x.abs() > 1e-9)
         })
     }
 
-    /// Adds a letter and says which it is.
+    /// Adds a symbol and returns its index.
     pub fn add(&mut self, name: &str, kind: Kind, role: Role) -> usize {
         self.letters.push(Letter {
             name: name.to_owned(),
@@ -411,14 +410,14 @@ impl Model {
         Tree::Letter(index, kind.shape())
     }
 
-    /// A letter as an expression.
+    /// A symbol as an expression.
     #[must_use]
     pub fn letter(&self, index: usize) -> Tree {
         let shape = self.letters.get(index).map_or((1, 1), |l| l.kind.shape());
         Tree::Letter(index, shape)
     }
 
-    /// Whether a summand has neither a velocity nor a value at the end of the edge.
+    /// Whether a summand contains neither a velocity nor a value at the end of the edge.
     #[must_use]
     pub fn is_nodal(&self, summand: &Tree) -> bool {
         !summand.mentions(&|t| match t {
@@ -433,8 +432,8 @@ impl Model {
         })
     }
 
-    /// Whether a summand is a function of the end of the edge alone: it is a potential there, and momenta of nodes have
-    /// half of it.
+    /// Whether a summand depends only on the end of the edge. It is then a potential at that node, and node momenta contain half of
+    /// it.
     #[must_use]
     pub fn is_of_the_end(&self, summand: &Tree) -> bool {
         let moves = |role: &Role| !matches!(role, Role::Parameter);
@@ -445,7 +444,7 @@ impl Model {
         !here && summand.mentions(&|t| matches!(t, Tree::Next(..)))
     }
 
-    /// Whether anything mentions the letter; configurations always stand.
+    /// Whether the model mentions the symbol; configurations always count.
     #[must_use]
     pub fn uses(&self, index: usize) -> bool {
         let names = |tree: &Tree| {

@@ -1,6 +1,5 @@
-//! Random values for a random model, and the variation of its unreduced action there.
-//! Takes a model and a source; gives what every letter is at a node, and the discrete Euler-Lagrange
-//! residual by dual numbers, component by component as the language orders them.
+//! Random values for a random model, and the variation of its unreduced action at that point. Gives the value of every symbol at a
+//! node, and the discrete Euler-Lagrange residual by dual numbers, with components in the order of the language.
 
 use super::grid::Grid;
 use super::model::{Action, Family, Kind, Model, Role};
@@ -14,9 +13,9 @@ use crate::oracle::square::Square;
 #[derive(Clone, Debug)]
 pub struct Point<'a> {
     model: &'a Model,
-    /// The step.
+    /// The step size.
     pub step: f64,
-    /// By letter: a parameter, or what an advected quantity is at the identity.
+    /// By symbol: the parameter, or the value of an advected quantity at the identity.
     pub constants: Vec<Grid<f64>>,
     nodal: Vec<bool>,
 }
@@ -67,12 +66,12 @@ pub fn element(source: &mut Source, family: Family) -> Grid<f64> {
             })
         }
         Family::Added(n, m) => any(source, n, m),
-        // Near enough to the identity that the determinant is positive and the inverse tame.
+        // Close to the identity, so that the determinant is positive and the inverse is well conditioned.
         Family::Linear(n) => Grid::identity(n).plus(&any(source, n, n).scaled(0.3)),
     }
 }
 
-/// The basis of the Lie algebra in which residuals are given.
+/// The basis of the Lie algebra for residuals.
 fn basis(family: Family) -> Vec<Grid<f64>> {
     let axis = |k: usize| Grid::from_entries(3, 1, |i, _| f64::from(u8::from(i == k)));
     match family {
@@ -119,7 +118,7 @@ fn basis(family: Family) -> Vec<Grid<f64>> {
 }
 
 impl<'a> Point<'a> {
-    /// Random values for all letters.
+    /// Random values for all symbols.
     pub fn draw(model: &'a Model, source: &mut Source, step: f64) -> Self {
         let constants = model
             .letters
@@ -135,7 +134,7 @@ impl<'a> Point<'a> {
                 (Kind::Positive(n), _) => {
                     let a = any(source, n, n).scaled(0.4);
                     let product = Grid::identity(n).plus(&a.times(&a.transposed()));
-                    // Symmetric to the last bit: constructors check it.
+                    // Exactly symmetric, because constructors check it.
                     Grid::from_entries(n, n, |i, j| product.at(i.min(j), i.max(j)))
                 }
                 (Kind::Skew(n), _) => {
@@ -173,7 +172,7 @@ impl<'a> Point<'a> {
         bodies.map(|b| element(source, b.family)).collect()
     }
 
-    /// What every letter is at a node; velocities are left open.
+    /// The value of every symbol at a node, except velocities.
     #[must_use]
     pub fn letters<T: Number>(&self, node: &[Grid<T>]) -> Vec<Grid<T>> {
         let letters = self.model.letters.iter().zip(&self.constants);
@@ -215,7 +214,7 @@ impl<'a> Point<'a> {
             .collect()
     }
 
-    /// Parameters, configurations and what has no definition, at three nodes.
+    /// Parameters, configurations and quantities without a definition, at three nodes.
     #[must_use]
     pub fn given(&self, nodes: &[Node; 3]) -> Vec<Given> {
         let mut list = Vec::new();
@@ -275,7 +274,7 @@ impl<'a> Point<'a> {
             .collect()
     }
 
-    /// The derivative of the action of both edges by each direction at the middle node.
+    /// The derivative of the action of both edges along each direction at the middle node.
     #[must_use]
     pub fn stationarity(&self, nodes: &[Node; 3]) -> Variation {
         let [before, here, after] = nodes;
@@ -287,7 +286,7 @@ impl<'a> Point<'a> {
         })
     }
 
-    /// The momenta at both ends of an edge: less the derivative at the tail, and the derivative at the head.
+    /// The momenta at both ends of an edge: minus the derivative at the tail, and the derivative at the head.
     #[must_use]
     pub fn momenta(&self, tail: &Node, head: &Node) -> [Variation; 2] {
         let (from, to) = (steady(tail), steady(head));
@@ -296,7 +295,7 @@ impl<'a> Point<'a> {
         [out, self.varied(head, |varied| self.edge(&from, varied))]
     }
 
-    /// Along what a node is varied, body after body.
+    /// The directions of variation at a node, body by body.
     #[must_use]
     pub fn directions(&self, node: &Node) -> Vec<(usize, Grid<f64>)> {
         let bodies = self.model.bodies.iter().enumerate();
@@ -312,7 +311,7 @@ impl<'a> Point<'a> {
         all.collect()
     }
 
-    /// The derivative of summands by each direction at a node.
+    /// The derivative of summands along each direction at a node.
     fn varied(&self, node: &Node, summands: impl Fn(&[Grid<Dual>]) -> Vec<Dual>) -> Variation {
         let mut derivative = Vec::new();
         let mut largest: Vec<f64> = Vec::new();
@@ -325,7 +324,7 @@ impl<'a> Point<'a> {
             let summands = summands(&varied);
             largest.resize(summands.len(), 0.0);
             for (size, s) in largest.iter_mut().zip(&summands) {
-                // A summand that is no number must not be lost in a maximum.
+                // `max` would ignore a NaN summand.
                 let own = s.slope.abs() + s.value.abs();
                 *size = if own.is_finite() {
                     size.max(own)

@@ -1,5 +1,5 @@
-//! Expressions of random models: trees over letters, with their shapes.
-//! Takes letters by their place in the table of a model; gives values on the oracle's numbers.
+//! Expressions of random models: trees over symbols, with their shapes. Symbols are indices into the table of a model; evaluation
+//! uses the oracle's numbers.
 
 use super::grid::Grid;
 use crate::oracle::dual::Number;
@@ -7,31 +7,31 @@ use crate::oracle::dual::Number;
 /// Rows and columns.
 pub type Shape = (usize, usize);
 
-/// A number.
+/// The shape of a scalar.
 pub const SCALAR: Shape = (1, 1);
 
 /// An expression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Tree {
-    /// As typed, and its value.
+    /// The literal and its value.
     Number(&'static str, f64),
-    /// The step.
+    /// The step size.
     Step,
     /// The identity.
     Identity(usize),
-    /// A unit vector of this length, along the axis counted from 1.
+    /// A unit vector of this length, along an axis counted from 1.
     Axis(usize, usize),
-    /// A letter and its shape.
+    /// A symbol and its shape.
     Letter(usize, Shape),
-    /// The same at the end of the edge.
+    /// A symbol at the end of the edge, and its shape.
     Next(usize, Shape),
     /// Terms; `true` subtracts.
     Sum(Vec<(bool, Tree)>),
     /// Factors in order.
     Product(Vec<Tree>),
-    /// A quotient by a number.
+    /// A quotient by a scalar.
     Quotient(Box<Tree>, Box<Tree>),
-    /// A power of a number, or the inverse of a matrix as `^-1`.
+    /// A power of a scalar, or the inverse of a matrix as `^-1`.
     Power(Box<Tree>, i32, i32),
     /// The transpose.
     Transposed(Box<Tree>),
@@ -41,14 +41,14 @@ pub enum Tree {
     Call(&'static str, Vec<Tree>),
 }
 
-/// The values of all letters at both ends of an edge.
+/// The values of all symbols at both ends of an edge.
 #[derive(Debug)]
 pub struct Edge<'a, T> {
-    /// The step.
+    /// The step size.
     pub step: f64,
-    /// At the start, velocities included.
+    /// Values at the start, including velocities.
     pub here: &'a [Grid<T>],
-    /// At the end.
+    /// Values at the end.
     pub next: &'a [Grid<T>],
 }
 
@@ -59,7 +59,7 @@ impl Tree {
         Tree::Call(name, vec![a])
     }
 
-    /// A number as typed.
+    /// A number from its literal.
     #[must_use]
     pub fn number(typed: &'static str) -> Tree {
         Tree::Number(typed, typed.parse().unwrap_or(f64::NAN))
@@ -101,7 +101,7 @@ impl Tree {
         Tree::Power(Box::new(self), n, d)
     }
 
-    /// Parts, in order.
+    /// The direct subexpressions, in order.
     #[must_use]
     pub fn parts(&self) -> Vec<&Tree> {
         match self {
@@ -118,7 +118,7 @@ impl Tree {
         }
     }
 
-    /// All parts of it, and theirs, that are made of others.
+    /// All compound subexpressions, recursively.
     #[must_use]
     pub fn compounds(&self) -> Vec<&Tree> {
         let own = self.parts().into_iter();
@@ -127,7 +127,7 @@ impl Tree {
             .collect()
     }
 
-    /// Whether any part is as asked.
+    /// Whether any subexpression satisfies the predicate.
     pub fn mentions(&self, wanted: &dyn Fn(&Tree) -> bool) -> bool {
         wanted(self) || self.parts().into_iter().any(|p| p.mentions(wanted))
     }
@@ -226,7 +226,7 @@ impl Tree {
     }
 }
 
-/// The functions of the language by their definitions.
+/// The functions of the language, by their definitions.
 fn called<T: Number>(name: &str, shape: Shape, arguments: &[Grid<T>]) -> Option<Grid<T>> {
     let a = arguments.first()?;
     let half = T::constant(0.5);
@@ -263,7 +263,7 @@ fn called<T: Number>(name: &str, shape: Shape, arguments: &[Grid<T>]) -> Option<
             Grid::from_entries(3, 1, |i, _| v[i])
         }
         "quat" => Grid::quaternion(zero, [0, 1, 2].map(|i| a.at(i, 0))),
-        // Of a motion the block; of a quaternion, whose last row is none of a motion, what it covers.
+        // For a motion, its rotation block. For a quaternion, whose last row differs from a motion's, the rotation that it covers.
         "rot" if a.rows == 3 => a.block(2, 2, (0, 0)),
         "rot" if is_motion(a) => a.block(3, 3, (0, 0)),
         "rot" => a.covered(),

@@ -1,6 +1,5 @@
-//! Random summands of unreduced statements, in the configurations at both ends of the step.
-//! Takes a model with its groups; adds kinetic terms and functions of numbers that parameters make
-//! invariant, each as a mechanician writes them.
+//! Random summands of unreduced statements, in the configurations at both ends of the step. Given a model with its groups, adds
+//! kinetic terms and functions of scalars that parameters make invariant, in the usual notation of mechanics.
 
 use super::grow::{AROUND, added, around};
 use super::model::{Family, Kind, Model};
@@ -12,7 +11,7 @@ fn dot(a: Tree, b: Tree) -> Tree {
     Tree::Call("dot", vec![a, b])
 }
 
-/// Element and element at the end of the step.
+/// The element at both ends of the step.
 fn ends(model: &Model, body: usize) -> (Tree, Tree) {
     let element = model.bodies[body].element;
     let here = model.letter(element);
@@ -29,7 +28,7 @@ pub fn state(model: &mut Model, source: &mut Source, turn: usize) {
         for i in 0..count {
             let number = number(model, source, body);
             let mut name = AROUND[(turn * 5 + turn / AROUND.len() + i) % AROUND.len()];
-            // The square of a square of sums has more terms than the engine multiplies out.
+            // The square of a squared sum has more terms than the engine expands.
             let squares = !["exp", "sin", "cos", "sinh", "cosh", "tanh", "abs"].contains(&name);
             if model.bodies[body].family.is_motion() && squares {
                 name = "tanh";
@@ -108,7 +107,7 @@ fn kinetic(model: &mut Model, body: usize) -> Tree {
     }
 }
 
-/// A number that parameters make invariant.
+/// A scalar that parameters make invariant.
 fn number(model: &mut Model, source: &mut Source, body: usize) -> Tree {
     let family = model.bodies[body].family;
     let n = family.size();
@@ -156,7 +155,7 @@ fn number(model: &mut Model, source: &mut Source, body: usize) -> Tree {
             1 => next,
             _ => next.plus(g),
         },
-        // Seen from another body where there is one that turns it.
+        // In the frame of another body, if one rotates vectors of this size.
         Family::Added(rows, 1) => {
             let other = model.bodies.iter().position(|b| {
                 matches!(

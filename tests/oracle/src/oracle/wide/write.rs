@@ -1,14 +1,15 @@
-//! Writes a random model in the model language, with parentheses around everything compound or those that it needs.
+//! Writes a random model in the model language, with parentheses around every compound expression or only where precedence requires
+//! them.
 
 use super::model::{Action, Body, Letter, Model, Role, Style};
 use super::tree::Tree;
 use crate::oracle::sides::{NodeRule, Side};
 use std::fmt::Write;
 
-/// The name of a part.
+/// The name of a `let` subexpression.
 const NAMED: &str = "part";
 
-/// How tightly an expression binds, loosest first.
+/// Binding strength of an expression, from loose to tight.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Binding {
     Sum,
@@ -29,7 +30,7 @@ impl Tree {
         }
     }
 
-    /// The text, in parentheses where it binds more loosely than asked, or wherever the style has them.
+    /// The text, in parentheses if it binds more loosely than `least` or if the style always adds them.
     fn operand(&self, model: &Model, least: Binding) -> String {
         let least = if model.style.bare {
             least
@@ -43,7 +44,7 @@ impl Tree {
         }
     }
 
-    /// The text, by its name where it has one.
+    /// The text, or the `let` name if the expression has one.
     fn text(&self, model: &Model) -> String {
         match model.style.named.as_ref() == Some(self) {
             true => NAMED.to_owned(),
@@ -51,7 +52,7 @@ impl Tree {
         }
     }
 
-    /// The text itself.
+    /// The text without its name.
     fn spelt(&self, model: &Model) -> String {
         let name = |index: &usize| model.letters.get(*index).map_or("?", |l| l.name.as_str());
         let atom = |t: &Tree| t.operand(model, Binding::Atom);
@@ -70,7 +71,8 @@ impl Tree {
                         0 => t.operand(model, Binding::Product),
                         _ => t.operand(model, Binding::Postfix),
                     };
-                    // Juxtaposed unless the language would read it otherwise: two numbers, what follows a divisor, a call.
+                    // Juxtaposes factors unless the language would parse them differently: two numbers, a factor after a divisor, a
+                    // call.
                     let apart = own.starts_with(|c: char| c == '(' || c.is_ascii_digit())
                         || i > 0 && matches!(list[i - 1], Tree::Quotient(..));
                     text.push_str(match (i, model.style.juxtaposed && !apart) {
@@ -116,7 +118,7 @@ fn sum(terms: &[(bool, Tree)], model: &Model) -> String {
     text
 }
 
-/// `V` or `rot(V)`, its inverse and transposes as they are written for the group.
+/// `V` or `rot(V)`, with its inverse and transposes in the notation of the group.
 struct Acting {
     g: String,
     inverse: String,
