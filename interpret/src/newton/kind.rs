@@ -4,7 +4,7 @@
 use crate::library::groups::{composed_kept, inverse_kept};
 use crate::value::{Kept, Value};
 use clebsch::groups::{Coordinate, Part};
-use clebsch::linalg::Dense;
+use clebsch::linalg::{Dense, Reals};
 use clebsch::{Group, OfScalars, PlaneMotion, RigidMotion, Rotation, UnitQuaternion};
 
 /// A group.
@@ -66,7 +66,7 @@ where
 }
 
 /// Appends the numbers of an element.
-pub fn write<G: OfScalars<Scalar = f64>>(element: &G, out: &mut Vec<f64>) {
+pub fn write<G: OfScalars<Scalar = f64>>(element: &G, out: &mut Reals) {
     element.over(&mut |x| {
         out.push(x);
         x
@@ -85,7 +85,7 @@ impl Kind {
             Kind::Linear(n) | Kind::Orthogonal(n) => n * n,
             Kind::Field(rows, cols) => rows * cols,
             _ => {
-                let mut all = Vec::new();
+                let mut all = Reals::new();
                 self.identity(&mut all);
                 all.len()
             }
@@ -144,7 +144,7 @@ impl Kind {
     }
 
     /// Appends the neutral element.
-    pub fn identity(self, out: &mut Vec<f64>) {
+    pub fn identity(self, out: &mut Reals) {
         of_type!(
             self,
             G => write(&<G as Group<f64>>::identity(), out),
@@ -153,16 +153,21 @@ impl Kind {
     }
 
     /// Appends the element moved by coordinates from the right.
-    pub fn retract(self, at: &[f64], xi: &[f64], out: &mut Vec<f64>) {
+    pub fn retract(self, at: &[f64], xi: &[f64], out: &mut Reals) {
         of_type!(
             self,
             G => write(&Group::retract(&read::<G>(at), xi), out),
-            matrix => out.extend(matrix.retract(&matrix.read(at), xi).data)
+            matrix => match matrix.0 {
+                Kept::Field => out.extend(matrix.places().map(|(i, j, k)| {
+                    at.get(k).copied().unwrap_or(0.0) + matrix.coordinate(xi, i, j)
+                })),
+                _ => out.extend(matrix.retract(&matrix.read(at), xi).data),
+            }
         );
     }
 
     /// Appends the element moved by coordinates from the left.
-    pub fn retract_from_left(self, at: &[f64], xi: &[f64], out: &mut Vec<f64>) {
+    pub fn retract_from_left(self, at: &[f64], xi: &[f64], out: &mut Reals) {
         of_type!(
             self,
             G => write(&Group::retract_from_left(&read::<G>(at), xi), out),
@@ -174,7 +179,7 @@ impl Kind {
     }
 
     /// Appends `from^-1 . to`.
-    pub fn between(self, from: &[f64], to: &[f64], out: &mut Vec<f64>) {
+    pub fn between(self, from: &[f64], to: &[f64], out: &mut Reals) {
         of_type!(
             self,
             G => write(&read::<G>(from).inverse().compose(&read::<G>(to)), out),
@@ -191,7 +196,7 @@ impl Kind {
             self,
             G => Group::extents(&read::<G>(of), out),
             matrix => if let Some(first) = out.first_mut() {
-                *first = matrix.extent(&matrix.read(of));
+                *first = matrix.extent(of);
             }
         );
     }
@@ -202,7 +207,7 @@ impl Kind {
             self,
             G => Group::compared(&read::<G>(of), xi, out),
             matrix => if let Some(first) = out.first_mut() {
-                *first = matrix.compared(&matrix.read(of), xi);
+                *first = matrix.compared(of, xi);
             }
         );
     }
@@ -212,29 +217,22 @@ impl Kind {
         of_type!(
             self,
             G => Group::is_within(&read::<G>(of), reach),
-            matrix => matrix.is_within(&matrix.read(of), reach.first().copied().unwrap_or(0.0))
+            matrix => matrix.is_within(of, reach.first().copied().unwrap_or(0.0))
         )
     }
 
     /// Appends the element that past ones with these weights foresee: see [`Group::combined`].
-    pub fn combined<'a>(
-        self,
-        weights: &[f64],
-        past: &dyn Fn(usize) -> &'a [f64],
-        out: &mut Vec<f64>,
-    ) {
+    pub fn combined<'a>(self, weights: &[f64], past: &dyn Fn(usize) -> &'a [f64], out: &mut Reals) {
         of_type!(
             self,
             G => write(&<G as Group<f64>>::combined(weights, |i| read(past(i))), out),
             matrix => match matrix.0 {
-                Kept::Orthogonal => out.extend(past(0)),
-                _ => {
-                    let mut sum = Dense::zeros(matrix.1, matrix.2);
-                    for (i, weight) in weights.iter().enumerate() {
-                        sum = sum.plus(&matrix.read(past(i)).scaled(*weight));
-                    }
-                    out.extend(sum.data);
-                }
+                Kept::Orthogonal => out.extend_from_slice(past(0)),
+                _ => out.extend(matrix.places().map(|(_, _, k)| {
+                    let entry = |i: usize| past(i).get(k).copied().unwrap_or(0.0);
+                    let terms = weights.iter().enumerate();
+                    terms.fold(0.0, |sum, (i, weight)| sum + entry(i) * weight)
+                })),
             }
         );
     }
@@ -272,9 +270,35 @@ impl Matrix {
         }
     }
 
+    /// Row, column and place of each number.
+    fn places(self) -> impl Iterator<Item = (usize, usize, usize)> {
+        let Matrix(_, rows, cols) = self;
+        (0..rows * cols).map(move |k| (k % rows, k / rows, k))
+    }
+
+    fn coordinate(self, xi: &[f64], i: usize, j: usize) -> f64 {
+        xi.get(self.2 * i + j).copied().unwrap_or(0.0)
+    }
+
     fn coordinates(self, xi: &[f64]) -> Dense<f64> {
-        let x = |i: usize, j: usize| xi.get(self.2 * i + j).copied().unwrap_or(0.0);
-        Dense::from_fn(self.1, self.2, x)
+        Dense::from_fn(self.1, self.2, |i, j| self.coordinate(xi, i, j))
+    }
+
+    /// The sum of the squares of an element's distance from the identity.
+    fn squares(self, a: &[f64]) -> f64 {
+        self.places().fold(0.0, |sum, place| {
+            let x = self.beyond_identity(a, place);
+            sum + x * x
+        })
+    }
+
+    /// A number of an element less the same number of the identity.
+    fn beyond_identity(self, a: &[f64], (i, j, k): (usize, usize, usize)) -> f64 {
+        let x = a.get(k).copied().unwrap_or(0.0);
+        match self.0 {
+            Kept::Field => x,
+            _ => x - if i == j { 1.0 } else { 0.0 },
+        }
     }
 
     fn retract(self, a: &Dense<f64>, xi: &[f64]) -> Dense<f64> {
@@ -294,12 +318,11 @@ impl Matrix {
         }
     }
 
-    fn extent(self, a: &Dense<f64>) -> f64 {
+    fn extent(self, a: &[f64]) -> f64 {
         match self.0 {
-            Kept::Linear => a.minus_one().squares().sqrt(),
-            Kept::Field => a.squares().sqrt(),
+            Kept::Linear | Kept::Field => self.squares(a).sqrt(),
             Kept::Orthogonal => {
-                let eighth = a.minus_one().squares() * 0.125;
+                let eighth = self.squares(a) * 0.125;
                 let square = eighth * 4.0 / (1.0 - eighth);
                 if eighth < 1.0 {
                     square.sqrt()
@@ -310,23 +333,22 @@ impl Matrix {
         }
     }
 
-    fn compared(self, a: &Dense<f64>, xi: &[f64]) -> [f64; 2] {
-        let of = |own: &Dense<f64>| {
-            let mut both = [0.0; 2];
-            for i in 0..own.rows {
-                for j in 0..own.cols {
-                    let x = own.at(i, j);
-                    let off = x - xi.get(own.cols * i + j).copied().unwrap_or(0.0);
-                    both[0] += x * x;
-                    both[1] += off * off;
-                }
-            }
-            both
-        };
+    fn compared(self, a: &[f64], xi: &[f64]) -> [f64; 2] {
         match self.0 {
-            Kept::Linear => of(&a.minus_one()),
-            Kept::Field => of(a),
+            Kept::Linear | Kept::Field => {
+                let mut both = [0.0; 2];
+                for i in 0..self.1 {
+                    for j in 0..self.2 {
+                        let x = self.beyond_identity(a, (i, j, j * self.1 + i));
+                        let off = x - self.coordinate(xi, i, j);
+                        both[0] += x * x;
+                        both[1] += off * off;
+                    }
+                }
+                both
+            }
             Kept::Orthogonal => {
+                let a = self.read(a);
                 let half = Dense::skew_from(a.rows, xi).scaled(0.5);
                 let off = a.minus(&a.times(&half)).minus(&half).minus_one();
                 let eighth = a.minus_one().squares() * 0.125;
@@ -339,12 +361,11 @@ impl Matrix {
         }
     }
 
-    fn is_within(self, a: &Dense<f64>, reach: f64) -> bool {
+    fn is_within(self, a: &[f64], reach: f64) -> bool {
         match self.0 {
-            Kept::Linear => a.minus_one().squares() - reach * reach <= 0.0,
-            Kept::Field => a.squares() - reach * reach <= 0.0,
+            Kept::Linear | Kept::Field => self.squares(a) - reach * reach <= 0.0,
             Kept::Orthogonal => {
-                let eighth = a.minus_one().squares() * 0.125;
+                let eighth = self.squares(a) * 0.125;
                 eighth * 4.0 - (1.0 - eighth) * (reach * reach) <= 0.0
             }
         }

@@ -8,6 +8,7 @@ use crate::over::numbers;
 use crate::recorded::Around;
 use crate::value::{Layout, Struct, Value};
 use clebsch::Real;
+use clebsch::linalg::Reals;
 use clebsch::saved::{Words, sites};
 use clebsch::solvers::newton::{AnySearch, Chart, Solved};
 use std::sync::{Arc, OnceLock};
@@ -85,7 +86,7 @@ impl Held {
         equations: &Solve,
         node: u64,
         around: &mut Around,
-    ) -> Result<Solved<Vec<f64>>, Exit<f64>> {
+    ) -> Result<Solved<Reals>, Exit<f64>> {
         let charts = [&self.sought.shape, self.sought.all()];
         let mut iteration = self.search.begin(charts, node);
         solve::by(&mut iteration, equations, self.sought, around)
@@ -97,7 +98,7 @@ impl Held {
     }
 
     /// Remembers the solution of the step that began at `node`.
-    pub fn remember(&mut self, node: u64, solution: &Vec<f64>) {
+    pub fn remember(&mut self, node: u64, solution: &Reals) {
         let part = self.sought.shape.part(self.sought.all(), solution);
         self.search.remember(node, part);
     }
@@ -116,7 +117,7 @@ fn layout() -> Arc<Layout> {
 }
 
 /// A solution of all groups as emitted code has it.
-pub fn told(shape: &Shape, solved: &Solved<Vec<f64>>) -> Value<f64> {
+pub fn told(shape: &Shape, solved: &Solved<Reals>) -> Value<f64> {
     Value::Struct(Struct {
         layout: layout(),
         values: vec![

@@ -3,6 +3,7 @@
 use super::kind::{Kind, read, write};
 use crate::value::Value;
 use clebsch::groups::{Coordinate, Part};
+use clebsch::linalg::Reals;
 use clebsch::solvers::newton::{Chart, Parts};
 use clebsch::{Real, RigidMotion};
 
@@ -123,20 +124,20 @@ fn each<'a>(
 }
 
 impl Chart for Shape {
-    type Element = Vec<f64>;
+    type Element = Reals;
 
     fn parts(&self) -> &Parts {
         &self.parts
     }
 
-    fn part(&self, of: &Self, whole: &Vec<f64>) -> Vec<f64> {
-        let mut part = Vec::with_capacity(self.count());
+    fn part(&self, of: &Self, whole: &Reals) -> Reals {
+        let mut part = Reals::with_capacity(self.count());
         for (kind, (whole, own)) in self.kinds.iter().zip(of.split(whole)) {
             match (kind, whole) {
                 (Kind::Rotation, Kind::Motion) => {
                     write(&read::<RigidMotion<f64>>(own).rotation, &mut part);
                 }
-                _ => part.extend(own),
+                _ => part.extend_from_slice(own),
             }
         }
         part
@@ -153,62 +154,59 @@ impl Chart for Shape {
         Coordinate::of(Part::axis(index))
     }
 
-    fn identity(&self) -> Vec<f64> {
-        let mut out = Vec::with_capacity(self.count());
+    fn identity(&self) -> Reals {
+        let mut out = Reals::with_capacity(self.count());
         self.kinds.iter().for_each(|kind| kind.identity(&mut out));
         out
     }
 
-    fn retract(&self, at: &Vec<f64>, xi: &[f64]) -> Vec<f64> {
-        let mut out = Vec::with_capacity(at.len());
+    fn retract(&self, at: &Reals, xi: &[f64], out: &mut Reals) {
+        out.clear();
         for ((kind, own), xi) in self.split(at).zip(self.coordinates(xi)) {
-            kind.retract(own, xi, &mut out);
+            kind.retract(own, xi, out);
         }
-        out
     }
 
-    fn retract_from_left(&self, at: &Vec<f64>, xi: &[f64]) -> Vec<f64> {
-        let mut out = Vec::with_capacity(at.len());
+    fn retract_from_left(&self, at: &Reals, xi: &[f64], out: &mut Reals) {
+        out.clear();
         for ((kind, own), xi) in self.split(at).zip(self.coordinates(xi)) {
-            kind.retract_from_left(own, xi, &mut out);
+            kind.retract_from_left(own, xi, out);
         }
-        out
     }
 
-    fn combined(&self, weights: &[f64], past: &[Vec<f64>]) -> Vec<f64> {
-        let mut out = Vec::with_capacity(self.count());
+    fn combined(&self, weights: &[f64], past: &[Reals], out: &mut Reals) {
+        out.clear();
         let mut first = 0;
         for (kind, count) in self.kinds.iter().zip(&self.counts) {
             let own = |i: usize| {
-                let all = past.get(i).map_or(&[][..], Vec::as_slice);
+                let all = past.get(i).map_or(&[][..], Reals::as_slice);
                 all.get(first..first + count).unwrap_or_default()
             };
-            kind.combined(weights, &own, &mut out);
+            kind.combined(weights, &own, out);
             first += count;
         }
-        out
     }
 
-    fn between(&self, from: &Vec<f64>, to: &Vec<f64>) -> Vec<f64> {
-        let mut out = Vec::with_capacity(to.len());
+    fn between(&self, from: &Reals, to: &Reals) -> Reals {
+        let mut out = Reals::with_capacity(to.len());
         for ((kind, from), (_, to)) in self.split(from).zip(self.split(to)) {
             kind.between(from, to, &mut out);
         }
         out
     }
 
-    fn extents(&self, of: &Vec<f64>, out: &mut [f64]) {
+    fn extents(&self, of: &Reals, out: &mut [f64]) {
         self.with_each(of, out, |kind, own, results| kind.extents(own, results));
     }
 
-    fn compared(&self, of: &Vec<f64>, xi: &[f64], out: &mut [[f64; 2]]) {
+    fn compared(&self, of: &Reals, xi: &[f64], out: &mut [[f64; 2]]) {
         let mut coordinates = self.coordinates(xi);
         self.with_each(of, out, |kind, own, results| {
             kind.compared(own, coordinates.next().unwrap_or_default(), results);
         });
     }
 
-    fn is_within(&self, of: &Vec<f64>, reach: &[f64]) -> bool {
+    fn is_within(&self, of: &Reals, reach: &[f64]) -> bool {
         let all = self.split(of).zip(self.lengths(reach));
         all.fold(true, |all, ((kind, own), reach)| {
             all & kind.is_within(own, reach)

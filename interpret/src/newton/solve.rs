@@ -10,7 +10,7 @@ use crate::recorded::{Around, Function, RecordedSolve, Traced, Wanted, run_alone
 use crate::value::Value;
 use clebsch::Real;
 use clebsch::emitted::{StepCause, StepError};
-use clebsch::linalg::Dense;
+use clebsch::linalg::{Dense, Reals};
 use clebsch::solvers::newton::{
     self, AnyNewton, Chart, Lane, NewtonError, Progress, Rounded, Solved,
 };
@@ -103,7 +103,7 @@ impl Iterate<f64> for Solve {
 }
 
 /// The numbers of the velocities of all groups.
-type Element = Vec<f64>;
+type Element = Reals;
 
 /// The entries of a vector of so many coordinates.
 pub fn vector<T: Real>(value: &Value<T>, size: usize) -> Option<Vec<T>> {
@@ -136,17 +136,21 @@ pub fn by(
     around: &mut Around,
 ) -> Result<Solved<Element>, Exit<f64>> {
     let in_part = with.completed_at.is_some();
+    let size = sought.shape.parts().dimension();
+    let mut residual = Reals::new();
+    let mut tangent = Dense::zeros(0, 0);
     loop {
-        let trial = iteration.trial().clone();
-        let (whole, residual) = with.residual(&trial, sought, around)?;
+        with.residual(iteration.trial(), &mut residual, sought, around)?;
+        let whole: Option<Element> = in_part.then(|| residual.drain(size..).collect());
         if iteration.wants_scale() {
-            let rounding = with.rounding(whole.as_ref().unwrap_or(&trial), sought, around)?;
+            let trial = whole.as_ref().unwrap_or(iteration.trial());
+            let rounding = with.rounding(trial, sought, around)?;
             iteration.set_scale(&rounding);
         }
         let wanted = !in_part || iteration.wants_residual();
-        if wanted && iteration.assess(residual) {
-            let (tangent, unit) = with.tangent(&trial, sought, around)?;
-            iteration.set_tangent_times(tangent, unit);
+        if wanted && iteration.assess(&residual) {
+            let unit = with.tangent(iteration.trial(), &mut tangent, sought, around)?;
+            iteration.set_tangent_times(&tangent, unit);
         }
         let progress = match whole {
             Some(whole) => iteration.correct_part(whole, with.from_left),
@@ -154,7 +158,7 @@ pub fn by(
         };
         match progress {
             Progress::Continue => {}
-            Progress::Solved(solved) if with.is_convex(&trial, sought, around)? => {
+            Progress::Solved(solved) if with.is_convex(iteration.assessed(), sought, around)? => {
                 return Ok(solved);
             }
             ended => {
@@ -172,46 +176,52 @@ pub fn by(
 }
 
 impl Solve {
-    /// The whole trial, if a part of it is searched for, and the residual there.
+    /// The residual at a trial, then the whole trial if a part of it is searched for.
     fn residual(
         &self,
         trial: &Element,
+        out: &mut Reals,
         sought: &'static Sought,
         around: &mut Around,
-    ) -> Result<(Option<Element>, Element), Exit<f64>> {
+    ) -> Result<(), Exit<f64>> {
         let size = sought.shape.parts().dimension();
-        let in_part = self.completed_at.is_some();
-        if let Some(mut residual) = around.by_tape(Wanted::Residual, trial) {
-            let whole = in_part.then(|| residual.split_off(size));
-            return Ok((whole, residual));
+        out.clear();
+        if around.by_tape(Wanted::Residual, trial, out) {
+            return Ok(());
         }
         let places = around.all();
         let Value::List(mut both) = self.residual.at(sought.shape.value(trial), places)? else {
             return unfit(None);
         };
-        let residual = unfit(both.pop().and_then(|x| vector(&x, size)))?;
-        let mut whole = Vec::new();
-        unfit(both.pop().and_then(|x| numbers(&x, &mut whole)))?;
-        Ok((in_part.then_some(whole), residual))
+        let mut all = unfit(both.pop().and_then(|x| vector(&x, size)))?;
+        if self.completed_at.is_some() {
+            unfit(both.pop().and_then(|x| numbers(&x, &mut all)))?;
+        }
+        *out = all.into();
+        Ok(())
     }
 
-    /// The tangent and its factor.
+    /// The tangent; gives its factor.
     fn tangent(
         &self,
         trial: &Element,
+        out: &mut Dense<f64>,
         sought: &'static Sought,
         around: &mut Around,
-    ) -> Result<(Dense<f64>, f64), Exit<f64>> {
+    ) -> Result<f64, Exit<f64>> {
         let size = sought.shape.parts().dimension();
-        if let Some(mut data) = around.by_tape(Wanted::Tangent, trial) {
-            let unit = unfit(data.pop())?;
-            let (rows, cols) = (size, size);
-            return Ok((Dense { rows, cols, data }, unit));
+        out.data.clear();
+        if around.by_tape(Wanted::Tangent, trial, &mut out.data) {
+            (out.rows, out.cols) = (size, size);
+            return unfit(out.data.pop());
         }
         let places = around.all();
         match self.tangent.at(sought.shape.value(trial), places)? {
             Value::List(both) => match both.as_slice() {
-                [tangent, Value::Real(unit)] => Ok((unfit(matrix(tangent, size))?, *unit)),
+                [tangent, Value::Real(unit)] => {
+                    *out = unfit(matrix(tangent, size))?;
+                    Ok(*unit)
+                }
                 _ => unfit(None),
             },
             _ => unfit(None),
@@ -225,11 +235,12 @@ impl Solve {
         sought: &'static Sought,
         around: &mut Around,
     ) -> Result<Element, Exit<f64>> {
-        if let Some(found) = around.by_tape(Wanted::AtRest, trial) {
+        let mut found = Reals::new();
+        if around.by_tape(Wanted::AtRest, trial, &mut found) {
             return Ok(found);
         }
         let value = self.at_rest.run(around.all())?;
-        unfit(vector(&value, sought.all().parts().dimension()))
+        unfit(vector(&value, sought.all().parts().dimension())).map(Reals::from)
     }
 
     fn is_principal(
@@ -245,11 +256,14 @@ impl Solve {
             let around = RefCell::new(around);
             let residual = |trial: &Element| {
                 let mut around = around.borrow_mut();
-                let by_tape = around.by_tape(Wanted::Alone, trial);
-                by_tape.unwrap_or_else(|| match self.known(&mut around) {
+                let mut found = Reals::new();
+                if around.by_tape(Wanted::Alone, trial, &mut found) {
+                    return found;
+                }
+                match self.known(&mut around) {
                     Ok(known) => self.principal(&known, sought, |e| (e.residual)(trial)),
-                    Err(_) => vec![f64::NAN; all.parts().dimension()],
-                })
+                    Err(_) => Reals::from_elem(f64::NAN, all.parts().dimension()),
+                }
             };
             return Ok(iteration.is_principal(solution, &at_rest, residual));
         }
@@ -275,7 +289,7 @@ impl Solve {
             return Ok(false);
         };
         // Recorded only where it is.
-        if around.by_tape(Wanted::Convex, trial).is_some() {
+        if around.by_tape(Wanted::Convex, trial, &mut Reals::new()) {
             return Ok(true);
         }
         let found = convex.at(sought.shape.value(trial), around.all())?;
@@ -386,7 +400,7 @@ impl Solve {
             let all = [parameters, step, given, momenta, &trial];
             let found = self.residual_at.at(&all);
             let found = found.and_then(|v| vector(&v, size));
-            found.unwrap_or_else(|| vec![f64::NAN; size])
+            found.map_or_else(|| Reals::from_elem(f64::NAN, size), Reals::from)
         };
         let tangent = |trial: &Element| {
             let trial = shape.value(trial);

@@ -131,16 +131,14 @@ impl Equations {
         }
     }
 
-    fn at(&mut self, wanted: Wanted, trial: &[f64]) -> Option<Vec<f64>> {
+    fn at(&mut self, wanted: Wanted, trial: &[f64]) -> Option<impl Iterator<Item = f64>> {
         let part = self.parts.get_mut(wanted as usize)?.as_mut()?;
         let inputs = part.frame.inputs().get_mut(self.given..)?;
         for (at, x) in self.of_trial.iter().zip(trial) {
             *inputs.get_mut(*at)? = [*x];
         }
         let Ready { machine, frame } = part;
-        machine
-            .run(frame)
-            .then(|| machine.gives(frame, 0).collect())
+        machine.run(frame).then(|| machine.gives(frame, 0))
     }
 
     fn places(&mut self) -> &mut Places<f64> {
@@ -170,12 +168,16 @@ pub enum Around<'a> {
 }
 
 impl Around<'_> {
-    /// A function at a trial, if a tape computes it there.
-    pub fn by_tape(&mut self, wanted: Wanted, trial: &[f64]) -> Option<Vec<f64>> {
-        match self {
-            Around::Places(_) => None,
-            Around::Tapes(equations) => equations.at(wanted, trial),
-        }
+    /// Appends the numbers of a function at a trial. False if no tape computes it there.
+    pub fn by_tape(&mut self, wanted: Wanted, trial: &[f64], out: &mut impl Extend<f64>) -> bool {
+        let Around::Tapes(equations) = self else {
+            return false;
+        };
+        let Some(numbers) = equations.at(wanted, trial) else {
+            return false;
+        };
+        out.extend(numbers);
+        true
     }
 
     /// The places with all values.

@@ -11,6 +11,7 @@ use crate::newton::{AtTrial, Held, Solve, Sought, matrix, told as found, vector}
 use crate::opened::at;
 use crate::over::{numbers, over};
 use crate::value::{Struct, Value};
+use clebsch::linalg::Reals;
 use clebsch::solvers::newton::{Chart, Solved};
 use clebsch_program::{Frame, Guard, Machine, Part, Scalar, Tape};
 use std::sync::Arc;
@@ -320,7 +321,7 @@ pub struct Between {
     /// Whether this step has come to the equations.
     begun: bool,
     /// The newest solution.
-    found: Vec<f64>,
+    found: Reals,
 }
 
 /// The tapes before each cut, and the tape of the last part.
@@ -352,7 +353,7 @@ pub fn in_parts(tape: Tape, cuts: Vec<Cut>) -> Option<(Vec<Between>, Tape)> {
             remembers,
             before: None,
             begun: false,
-            found: Vec::new(),
+            found: Reals::new(),
         });
     }
     let guards = tape.guards.get(decided..).unwrap_or_default().to_vec();

@@ -7,6 +7,9 @@ use super::{even_degrees, held_scales};
 use crate::Real;
 use nalgebra::SMatrix;
 
+/// Numbers whose count is known when a model is read. Up to 12 do not allocate.
+pub type Reals = smallvec::SmallVec<[f64; 12]>;
+
 /// A matrix, column after column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dense<T> {

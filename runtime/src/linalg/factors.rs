@@ -3,7 +3,7 @@
 //! in, elimination with pivots where they do not.
 
 use super::elimination::vanishes;
-use super::{Dense, solve_scaled};
+use super::{Dense, Reals, solve_scaled};
 use crate::Real;
 use crate::saved::{Saved, Words};
 use nalgebra::{SMatrix, SVector};
@@ -220,27 +220,27 @@ impl DenseFactors {
     }
 
     /// Factors a matrix.
-    pub fn set(&mut self, matrix: Dense<f64>) {
+    pub fn set(&mut self, matrix: &Dense<f64>) {
         let n = matrix.rows;
-        self.blocks = false;
         let held = || (0..n).any(|i| vanishes(matrix.at(i, i)));
-        if self.in_blocks && !held() {
-            self.columns = matrix.clone();
-            self.blocks = match n {
-                3 => Self::factored::<3>(&mut self.columns),
-                6 => Self::factored::<6>(&mut self.columns),
-                _ => Self::factored::<9>(&mut self.columns),
+        (self.columns.rows, self.columns.cols) = (n, matrix.cols);
+        self.columns.data.clone_from(&matrix.data);
+        self.blocks = self.in_blocks
+            && !held()
+            && match n {
+                3 => self.factored::<3>(matrix),
+                6 => self.factored::<6>(matrix),
+                _ => self.factored::<9>(matrix),
             };
-        }
-        if !self.blocks {
-            self.columns = matrix;
-        }
     }
 
-    fn factored<const D: usize>(matrix: &mut Dense<f64>) -> bool {
+    /// Factors a matrix in blocks. The matrix remains if that is not possible.
+    fn factored<const D: usize>(&mut self, matrix: &Dense<f64>) -> bool {
         let mut columns = matrix.fixed::<D, D>();
         let done = factor(&mut columns.data.0);
-        *matrix = Dense::of(&columns);
+        if done {
+            self.columns.data.copy_from_slice(columns.as_slice());
+        }
         done
     }
 
@@ -255,16 +255,25 @@ impl DenseFactors {
 
     /// The solution of `A x = b`; `None` without a usable pivot.
     #[must_use]
-    pub fn solve(&self, b: &[f64]) -> Option<Vec<f64>> {
-        fn substituted<const D: usize>(columns: &Dense<f64>, b: &[f64]) -> Vec<f64> {
+    pub fn solve(&self, b: &[f64]) -> Option<Reals> {
+        fn substituted<const D: usize>(columns: &Dense<f64>, b: &[f64]) -> Reals {
             let right = core::array::from_fn(|i| b.get(i).copied().unwrap_or(0.0));
-            substitute(&columns.fixed::<D, D>().data.0, right).to_vec()
+            Reals::from_slice(&substitute(&columns.fixed::<D, D>().data.0, right))
+        }
+        fn eliminated<const D: usize>(columns: &Dense<f64>, b: &[f64]) -> Option<Reals> {
+            let right = SVector::from_fn(|i, _| b.get(i).copied().unwrap_or(0.0));
+            let size = columns.rows;
+            let x = with_pivots(&columns.fixed::<D, D>().data.0, &right, size)?;
+            Some(x.iter().copied().take(size).collect())
         }
         match (self.blocks, self.columns.rows) {
             (true, 3) => Some(substituted::<3>(&self.columns, b)),
             (true, 6) => Some(substituted::<6>(&self.columns, b)),
             (true, _) => Some(substituted::<9>(&self.columns, b)),
-            (false, _) => self.columns.balanced_solution(b),
+            (false, ..=3) => eliminated::<3>(&self.columns, b),
+            (false, 4..=6) => eliminated::<6>(&self.columns, b),
+            (false, 7..=12) => eliminated::<12>(&self.columns, b),
+            (false, _) => self.columns.balanced_solution(b).map(Reals::from_vec),
         }
     }
 }

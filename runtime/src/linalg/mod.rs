@@ -19,7 +19,7 @@ mod singular_values;
 mod skew;
 
 pub use cofactors::{adjugate, small_inverse, small_solve};
-pub use dense::Dense;
+pub use dense::{Dense, Reals};
 pub use eigenvalues::symmetric_eigenvalues;
 pub use elimination::{
     determinant, held_scales, inverse, inverse_leading, solve, solve_leading, solve_many,

@@ -4,24 +4,21 @@
 //! Takes a chart of the group, residuals and tangents; gives a converged element or an error.
 
 mod chart;
+mod principal;
 mod saved;
 
 pub use chart::{Chart, Lane};
 
 use super::corrections::{Corrections, Next, Residual};
-use super::looks::{Left, Look, looks, shared_noise};
-use super::parts::Aside;
 use super::principal::{Fold, Traced, trace};
 use super::scale::{Tangent, measure};
-use super::stage::{less, times};
 use super::{
     BOUND_ROUNDINGS, CONVERGED_ROUNDINGS, LAST_ATTEMPT, LATE, LEAST_SHARE, MOST_ITERATIONS,
     NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT, Progress, REMEMBERED, Solved,
     WORTH_KEEPING,
 };
-use crate::linalg::{Dense, DenseFactors};
+use crate::linalg::{Dense, DenseFactors, Reals};
 use crate::scalar::Real;
-use crate::scalar::larger;
 
 /// The rounding of plain numbers.
 const UNIT: f64 = <f64 as Real>::EPSILON;
@@ -30,7 +27,7 @@ const UNIT: f64 = <f64 as Real>::EPSILON;
 #[derive(Clone, Debug)]
 struct Anchor<G> {
     root: G,
-    reach: Vec<f64>,
+    reach: Reals,
 }
 
 /// The search for one velocity after the other: see [`Search`](super::Search).
@@ -49,10 +46,19 @@ pub struct AnySearch<C: Chart> {
     /// Whether no step follows.
     tries: bool,
     /// The tangent of all equations at rest and the units of its parts, where some unknowns are solved for beforehand.
-    whole: Option<(DenseFactors, Vec<f64>)>,
+    whole: Option<(DenseFactors, Reals)>,
     factors: DenseFactors,
     unit: f64,
     age: u32,
+    work: Work<C::Element>,
+}
+
+/// What one step works with, kept so that the next one does not allocate.
+#[derive(Clone, Debug, Default)]
+struct Work<E> {
+    trial: E,
+    moved: E,
+    residual: Vec<f64>,
 }
 
 impl<C: Chart> AnySearch<C> {
@@ -75,6 +81,10 @@ impl<C: Chart> AnySearch<C> {
             factors: DenseFactors::none(dimension, in_blocks),
             unit: 1.0,
             age: OLDEST_TANGENT,
+            work: Work {
+                residual: vec![0.0; dimension],
+                ..Work::default()
+            },
         }
     }
 
@@ -112,47 +122,38 @@ impl<C: Chart> AnySearch<C> {
             self.weighed = OLDEST_SCALE;
         }
         let foreseen = self.past.len() > 1;
-        let (trial, attempt) = match foreseen {
-            true => (self.foreseen(chart), 0),
-            false => (self.start(chart, 1), 1),
-        };
+        self.begin_at(chart, u32::from(!foreseen));
         if !foreseen {
             self.weighed = OLDEST_SCALE;
         }
-        let dimension = self.weights.len();
+        self.work.residual.fill(0.0);
         AnyNewton {
             search: self,
             chart,
             whole,
-            trial,
-            attempt,
+            attempt: u32::from(!foreseen),
             anchor: None,
-            residual: vec![0.0; dimension],
             size: f64::NAN,
             previous: f64::INFINITY,
             corrections: Corrections::none(),
             iteration: 0,
             found: None,
+            has_moved: false,
         }
     }
 
-    fn start(&self, chart: &C, attempt: u32) -> C::Element {
-        match (attempt, self.past.first()) {
-            (1, Some(newest)) => newest.clone(),
-            _ => chart.identity(),
-        }
-    }
-
-    fn foreseen(&self, chart: &C) -> C::Element {
-        let weights: &[f64] = match self.past.len() {
-            0 | 1 => return self.start(chart, 1),
-            2 => &[2.0, -1.0],
-            3 => &[3.0, -3.0, 1.0],
-            4 => &[4.0, -6.0, 4.0, -1.0],
-            5 => &[5.0, -10.0, 10.0, -5.0, 1.0],
-            _ => &[6.0, -15.0, 20.0, -15.0, 6.0, -1.0],
+    /// Puts the trial where an attempt begins.
+    fn begin_at(&mut self, chart: &C, attempt: u32) {
+        let trial = &mut self.work.trial;
+        let weights: &[f64] = match (attempt, self.past.first()) {
+            (0, _) => foreseeing(self.past.len()),
+            (1, Some(newest)) => return trial.clone_from(newest),
+            _ => {
+                *trial = chart.identity();
+                return;
+            }
         };
-        chart.combined(weights, &self.past)
+        chart.combined(weights, &self.past, trial);
     }
 
     /// Remembers the solution of the step that began at `node`.
@@ -165,28 +166,49 @@ impl<C: Chart> AnySearch<C> {
     }
 }
 
+/// The weights of so many past solutions in the next one.
+fn foreseeing(known: usize) -> &'static [f64] {
+    match known {
+        0 | 1 => &[1.0],
+        2 => &[2.0, -1.0],
+        3 => &[3.0, -3.0, 1.0],
+        4 => &[4.0, -6.0, 4.0, -1.0],
+        5 => &[5.0, -10.0, 10.0, -5.0, 1.0],
+        _ => &[6.0, -15.0, 20.0, -15.0, 6.0, -1.0],
+    }
+}
+
 /// Newton's method at work: see [`Newton`](super::Newton).
 #[derive(Debug)]
 pub struct AnyNewton<'a, C: Chart> {
     search: &'a mut AnySearch<C>,
     chart: &'a C,
     whole: &'a C,
-    trial: C::Element,
     attempt: u32,
     anchor: Option<Anchor<C::Element>>,
-    residual: Vec<f64>,
     size: f64,
     previous: f64,
     corrections: Corrections,
     iteration: usize,
     found: Option<usize>,
+    /// Whether the last call of [`correct`](Self::correct) moved the trial.
+    has_moved: bool,
 }
 
 impl<C: Chart> AnyNewton<'_, C> {
     /// The element at which the equations are wanted.
     #[must_use]
     pub fn trial(&self) -> &C::Element {
-        &self.trial
+        &self.search.work.trial
+    }
+
+    /// The element at which the equations were evaluated last. The trial may have moved since.
+    #[must_use]
+    pub fn assessed(&self) -> &C::Element {
+        match self.has_moved {
+            true => &self.search.work.moved,
+            false => self.trial(),
+        }
     }
 
     /// Whether no step follows.
@@ -215,7 +237,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         }
         let (factors, unit) = (&self.search.factors, self.search.unit.abs());
         let mut lengths = vec![0.0; parts.count()];
-        self.chart.extents(&self.trial, &mut lengths);
+        self.chart.extents(self.trial(), &mut lengths);
         let tangent = Tangent {
             entry: &|i, j| factors.entry(i, j) / unit,
             part_of: &|i| parts.part_of(i),
@@ -230,107 +252,6 @@ impl<C: Chart> AnyNewton<'_, C> {
         self.search.lengths = inverses;
         self.search.measured = false;
         self.search.weighed = 0;
-    }
-
-    /// Whether the solution found is the principal root: see [`Newton::is_principal`](super::Newton::is_principal).
-    #[must_use]
-    pub fn is_principal(
-        &self,
-        solution: &C::Element,
-        at_rest: &[f64],
-        residual: impl Fn(&C::Element) -> Vec<f64>,
-    ) -> bool {
-        self.follows(solution, at_rest, residual) || self.holds(solution)
-    }
-
-    /// The same of all unknowns: see [`Newton::is_part_of_principal`](super::Newton::is_part_of_principal).
-    pub fn is_part_of_principal(
-        &mut self,
-        solution: &C::Element,
-        at_rest: &[f64],
-        tangent: impl FnOnce() -> Dense<f64>,
-    ) -> bool {
-        let (chart, size) = (self.whole, self.whole.parts().dimension());
-        let (factors, units) = self.search.whole.get_or_insert_with(|| {
-            let tangent = tangent();
-            let units = chart.parts().units(&|i, j| tangent.at(i, j), Aside::OfStep);
-            let mut factors = DenseFactors::none(size, true);
-            factors.set(tangent);
-            (factors, units)
-        });
-        let correction = factors.solve(at_rest);
-        correction.is_some_and(|x| comes_near(chart, &x, solution, units, &|_| 0.0))
-            || self.holds(solution)
-    }
-
-    fn holds(&self, solution: &C::Element) -> bool {
-        self.anchor.as_ref().is_some_and(|anchor| {
-            let from = self.whole.between(&anchor.root, solution);
-            self.whole.is_within(&from, &anchor.reach)
-        })
-    }
-
-    fn follows(
-        &self,
-        solution: &C::Element,
-        at_rest: &[f64],
-        residual: impl Fn(&C::Element) -> Vec<f64>,
-    ) -> bool {
-        let (search, chart) = (&*self.search, self.chart);
-        let right: Vec<f64> = at_rest.iter().map(|x| x * search.unit).collect();
-        let noise = |b: usize| search.noise.get(b).copied().unwrap_or(0.0);
-        let units = &search.units;
-        let correction = search.factors.solve(&right);
-        let Some(x) = correction.filter(|x| comes_near(chart, x, solution, units, &noise)) else {
-            return false;
-        };
-        if !search.open {
-            return true;
-        }
-        let parts = chart.parts();
-        let ways = parts.lengths(&x);
-        let near = |off: &[f64], noise: &dyn Fn(usize) -> f64| {
-            let off = parts.lengths(off);
-            let squares = ways.iter().zip(&off).map(|(x, y)| [x * x, y * y]);
-            parts.are_near(&squares.collect::<Vec<_>>(), units, noise)
-        };
-        // Where noise is not known, differences may be rounding.
-        let shared = shared_noise(&search.noise, units);
-        let known = shared > 0.0;
-        let noises = |b: usize| larger(noise(b), shared * units.get(b).copied().unwrap_or(0.0));
-        let mut so_far = Left::nothing(vec![0.0; x.len()]);
-        let varies_little = |look: Look| {
-            let step: Vec<f64> = x.iter().map(|x| -x * look.share).collect();
-            let found = residual(&chart.retract(&chart.identity(), &step));
-            let goals = at_rest.iter().map(|x| x * (1.0 - look.share));
-            let left = found.iter().zip(goals).map(|(x, y)| (x - y) * search.unit);
-            let left: Vec<f64> = left.collect();
-            search.factors.solve(&left).is_some_and(|off| {
-                let judged = so_far.next(look, &off, |x, y| less(x, y));
-                let mut judged = judged.iter().flatten();
-                near(&off, &noise)
-                    && (!known
-                        || judged.all(|x| {
-                            let difference: Vec<f64> = times(&x.difference, x.factor);
-                            near(&difference, &|b: usize| x.noise(noises(b)))
-                        }))
-            })
-        };
-        let mut lengths = vec![0.0; parts.count()];
-        chart.extents(solution, &mut lengths);
-        let shares = lengths.iter().zip(&ways).zip(&parts.open);
-        let shares = shares
-            .filter(|(_, open)| **open)
-            .map(|((length, way), _)| length / way);
-        let reach = shares.filter(|x| x.is_finite()).fold(1.0, larger);
-        looks(reach).all(varies_little)
-    }
-
-    /// Whether the test of a solution evaluates the equations.
-    #[must_use]
-    pub fn asks_equations(&self) -> bool {
-        let reduced = self.chart.parts() != self.whole.parts();
-        self.search.open || reduced && self.search.whole.is_none()
     }
 
     /// Finds the principal root and compares it with the solution. If they differ, the iteration begins again at the
@@ -365,7 +286,11 @@ impl<C: Chart> AnyNewton<'_, C> {
     }
 
     fn begin_at(&mut self, trial: C::Element) {
-        self.trial = trial;
+        self.search.work.trial = trial;
+        self.begin_again();
+    }
+
+    fn begin_again(&mut self) {
         self.search.weighed = OLDEST_SCALE;
         self.search.age = OLDEST_TANGENT;
         self.previous = f64::INFINITY;
@@ -375,9 +300,10 @@ impl<C: Chart> AnyNewton<'_, C> {
     }
 
     /// Takes the residual at the trial; says whether the tangent there is wanted.
-    pub fn assess(&mut self, residual: Vec<f64>) -> bool {
-        self.size = largest_of(&residual, &self.search.weights);
-        self.residual = residual;
+    pub fn assess(&mut self, residual: &[f64]) -> bool {
+        self.size = largest_of(residual, &self.search.weights);
+        self.search.work.residual.clear();
+        self.search.work.residual.extend_from_slice(residual);
         if self.iteration > 0 {
             return self.size > WORTH_KEEPING * self.previous && !self.polished();
         }
@@ -398,7 +324,7 @@ impl<C: Chart> AnyNewton<'_, C> {
     }
 
     /// Takes the tangent at the trial times `unit`, the same number at every step.
-    pub fn set_tangent_times(&mut self, tangent: Dense<f64>, unit: f64) {
+    pub fn set_tangent_times(&mut self, tangent: &Dense<f64>, unit: f64) {
         let search = &mut *self.search;
         search.unit = unit;
         if !search.measured {
@@ -422,6 +348,7 @@ impl<C: Chart> AnyNewton<'_, C> {
 
     /// The same as [`correct`](Self::correct) where `whole` is the trial with what is solved for beforehand.
     pub fn correct_part(&mut self, element: C::Element, from_left: bool) -> Progress<C::Element> {
+        self.has_moved = false;
         let found = match self.polished() {
             true => Some(self.iteration),
             false => self.found,
@@ -444,30 +371,33 @@ impl<C: Chart> AnyNewton<'_, C> {
 
     /// Moves the trial by Newton's correction, or ends.
     pub fn correct(&mut self, from_left: bool) -> Progress<C::Element> {
+        self.has_moved = false;
         if self.polished() {
             return self.solved(self.iteration);
         }
         let size = self.size;
-        let right: Vec<f64> = (self.residual.iter())
-            .map(|x| x * self.search.unit)
-            .collect();
+        let residual = &self.search.work.residual;
+        let right: Reals = residual.iter().map(|x| x * self.search.unit).collect();
         let Some(correction) = self.search.factors.solve(&right) else {
             return self.failed();
         };
-        let step: Vec<f64> = correction.iter().map(|x| -x).collect();
+        let step: Reals = correction.iter().map(|x| -x).collect();
         let moved = largest_of(&step, &self.search.lengths);
         let decrement = || {
-            let terms = step.iter().zip(&self.residual);
+            let terms = step.iter().zip(residual);
             f64::abs(terms.fold(0.0, |sum, (x, r)| sum + x * r))
         };
         let next = self.corrections.next::<f64>(self.seen(), moved, decrement);
         if next == Next::End {
             return self.solved(self.iteration);
         }
-        self.trial = match from_left {
-            true => self.chart.retract_from_left(&self.trial, &step),
-            false => self.chart.retract(&self.trial, &step),
-        };
+        let Work { trial, moved, .. } = &mut self.search.work;
+        match from_left {
+            true => self.chart.retract_from_left(trial, &step, moved),
+            false => self.chart.retract(trial, &step, moved),
+        }
+        core::mem::swap(trial, moved);
+        self.has_moved = true;
         if next == Next::CorrectAndEnd {
             return self.solved(self.iteration + 1);
         }
@@ -484,7 +414,7 @@ impl<C: Chart> AnyNewton<'_, C> {
 
     fn solved(&self, iterations: usize) -> Progress<C::Element> {
         Progress::Solved(Solved {
-            element: self.trial.clone(),
+            element: self.trial().clone(),
             iterations,
             residual: self.size,
         })
@@ -495,8 +425,8 @@ impl<C: Chart> AnyNewton<'_, C> {
         // Without a past, every attempt would be the first.
         if self.attempt < LAST_ATTEMPT && !self.search.past.is_empty() {
             self.attempt += 1;
-            let trial = self.search.start(self.chart, self.attempt);
-            self.begin_at(trial);
+            self.search.begin_at(self.chart, self.attempt);
+            self.begin_again();
             return Progress::Continue;
         }
         let (failure, iterations) = if !self.size.is_finite() {
@@ -515,7 +445,7 @@ impl<C: Chart> AnyNewton<'_, C> {
             ..NewtonError::of(
                 failure,
                 iterations,
-                &self.residual,
+                &self.search.work.residual,
                 &self.search.weights,
                 &|i| self.chart.coordinate(i),
             )
@@ -542,20 +472,6 @@ impl<C: Chart> AnyNewton<'_, C> {
             },
         }
     }
-}
-
-/// Whether a correction from rest, taken back, comes within a quarter of the way to the solution.
-fn comes_near<C: Chart>(
-    chart: &C,
-    correction: &[f64],
-    solution: &C::Element,
-    units: &[f64],
-    noise: &dyn Fn(usize) -> f64,
-) -> bool {
-    let step: Vec<f64> = correction.iter().map(|x| -x).collect();
-    let mut squares = vec![[0.0; 2]; chart.parts().count()];
-    chart.compared(solution, &step, &mut squares);
-    chart.parts().are_near(&squares, units, noise)
 }
 
 /// The largest absolute value of numbers in these units; NaN where one is.

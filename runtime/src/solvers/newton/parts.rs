@@ -5,6 +5,7 @@
 use super::looks::{Left, looks, shared_noise};
 use super::principal::FALLS;
 use crate::groups::Group;
+use crate::linalg::Reals;
 use crate::scalar::{Real, larger};
 use nalgebra::SVector;
 
@@ -48,6 +49,9 @@ impl Aside {
     }
 }
 
+/// The squares of the way of each part and of what a correction leaves of it.
+pub(super) type Squares = smallvec::SmallVec<[[f64; 2]; 12]>;
+
 /// The coordinates of a velocity and the parts that they belong to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parts {
@@ -88,8 +92,8 @@ impl Parts {
     }
 
     /// The lengths of the parts.
-    pub(super) fn lengths(&self, x: &[f64]) -> Vec<f64> {
-        let mut squares = vec![0.0; self.count()];
+    pub(super) fn lengths(&self, x: &[f64]) -> Reals {
+        let mut squares = Reals::from_elem(0.0, self.count());
         for (part, x) in self.of.iter().zip(x) {
             if let Some(square) = squares.get_mut(*part) {
                 *square += x * x;
@@ -99,8 +103,8 @@ impl Parts {
     }
 
     /// The unit of length of each part: see [`Kinds::units_into`].
-    pub(super) fn units(&self, entry: &dyn Fn(usize, usize) -> f64, aside: Aside) -> Vec<f64> {
-        let mut units = vec![1.0; self.count()];
+    pub(super) fn units(&self, entry: &dyn Fn(usize, usize) -> f64, aside: Aside) -> Reals {
+        let mut units = Reals::from_elem(1.0, self.count());
         self.kinds().units_into(entry, aside, &mut units);
         units
     }
@@ -122,8 +126,8 @@ impl Parts {
         lengths: &[f64],
         units: &[f64],
         noise: impl Fn(usize) -> f64,
-    ) -> Vec<f64> {
-        let mut course = vec![0.0; self.count()];
+    ) -> Reals {
+        let mut course = Reals::from_elem(0.0, self.count());
         let kinds = self.kinds();
         course_into(&kinds, Aside::OfStage, [lengths, units], noise, &mut course);
         course
@@ -137,7 +141,10 @@ impl Parts {
         units: &[f64],
         noise: &dyn Fn(usize) -> f64,
     ) -> bool {
-        let mut lists = [vec![0.0; self.count()], vec![0.0; self.count()]];
+        let mut lists = [
+            Reals::from_elem(0.0, self.count()),
+            Reals::from_elem(0.0, self.count()),
+        ];
         let [ways, course] = &mut lists;
         are_near_beside(squares, units, &self.kinds(), noise, [ways, course])
     }

@@ -15,7 +15,7 @@
 use super::parts::Parts;
 use super::stage::{AIM, Ended, Stage, ended, ratio, times};
 use crate::groups::Group;
-use crate::linalg::Dense;
+use crate::linalg::{Dense, Reals};
 use nalgebra::{SMatrix, SVector};
 
 /// The largest ratio of the second correction by one tangent to the first.
@@ -57,7 +57,7 @@ pub(super) enum Traced<G> {
         /// The root, to the precision of a stage.
         root: G,
         /// The largest distance of a polished root from it, part by part.
-        reach: Vec<f64>,
+        reach: Reals,
     },
 }
 
@@ -106,10 +106,10 @@ pub(super) trait Curve {
     fn moved(&self, from: &Self::Velocity, coordinates: &[f64]) -> Self::Velocity;
 
     /// The lengths of the coordinates of `to` seen from `from`.
-    fn lengths(&self, from: &Self::Velocity, to: &Self::Velocity) -> Vec<f64>;
+    fn lengths(&self, from: &Self::Velocity, to: &Self::Velocity) -> Reals;
 
     /// The residual `P(v) - m`.
-    fn residual(&self, at: &Self::Velocity) -> Vec<f64>;
+    fn residual(&self, at: &Self::Velocity) -> Reals;
 
     /// The derivative of `P` along the algebra.
     fn tangent(&self, at: &Self::Velocity) -> Dense<f64>;
@@ -130,7 +130,7 @@ pub(super) fn trace<C: Curve>(
     let tangent = curve.tangent(&curve.rest());
     let mut stage = Stage::at(curve, curve.rest(), &tangent).ok_or_else(nowhere)?;
     let at_rest = stage.residual.clone();
-    let nothing = vec![0.0; at_rest.len()];
+    let nothing = Reals::from_elem(0.0, at_rest.len());
     let (mut share, mut length) = (0.0, 1.0_f64);
     for _ in 0..MOST_STAGES {
         // A small rest joins the last stage: its own corrections would be rounding.
@@ -223,15 +223,15 @@ impl<G: Group<f64>, const D: usize> Curve for OnGroup<'_, G, D> {
         from.retract(coordinates)
     }
 
-    fn lengths(&self, from: &G, to: &G) -> Vec<f64> {
-        let mut lengths = vec![0.0; self.parts.count()];
+    fn lengths(&self, from: &G, to: &G) -> Reals {
+        let mut lengths = Reals::from_elem(0.0, self.parts.count());
         from.inverse().compose(to).extents(&mut lengths);
         lengths
     }
 
-    fn residual(&self, at: &G) -> Vec<f64> {
+    fn residual(&self, at: &G) -> Reals {
         let size = self.parts.dimension();
-        (self.equations.residual)(at).as_slice()[..size].to_vec()
+        Reals::from_slice(&(self.equations.residual)(at).as_slice()[..size])
     }
 
     fn tangent(&self, at: &G) -> Dense<f64> {

@@ -10,7 +10,7 @@ use super::changes::{CHANGE, Changes};
 use super::looks::{Judged, Left, looks, shared_noise};
 use super::parts::Aside;
 use super::principal::{Curve, FALLS};
-use crate::linalg::Dense;
+use crate::linalg::{Dense, Reals};
 use crate::scalar::larger;
 
 /// Most corrections of a stage after the first two; they fall quadratically.
@@ -43,9 +43,9 @@ const SHORTEST_TRY: f64 = 0.1;
 /// A point of the curve, and the tangent there.
 pub(super) struct Stage<G> {
     velocity: G,
-    pub residual: Vec<f64>,
+    pub residual: Reals,
     inverse: Dense<f64>,
-    pub units: Vec<f64>,
+    pub units: Reals,
     /// Whether a part lacks a scale of its own.
     open: bool,
 }
@@ -70,21 +70,21 @@ impl<G: Clone> Stage<G> {
     }
 
     /// The correction by this tangent where the residual is to become `goal`.
-    pub(super) fn correction(&self, goal: &[f64], residual: &[f64]) -> Vec<f64> {
+    pub(super) fn correction(&self, goal: &[f64], residual: &[f64]) -> Reals {
         corrected(&self.inverse, goal, residual)
     }
 }
 
-fn corrected(inverse: &Dense<f64>, goal: &[f64], residual: &[f64]) -> Vec<f64> {
+fn corrected(inverse: &Dense<f64>, goal: &[f64], residual: &[f64]) -> Reals {
     let change = goal.iter().zip(residual).map(|(x, y)| x - y);
-    inverse.times(&Dense::column_of(change.collect())).data
+    Reals::from_vec(inverse.times(&Dense::column_of(change.collect())).data)
 }
 
-pub(super) fn times(x: &[f64], factor: f64) -> Vec<f64> {
+pub(super) fn times(x: &[f64], factor: f64) -> Reals {
     x.iter().map(|x| x * factor).collect()
 }
 
-pub(super) fn less(x: &[f64], y: &[f64]) -> Vec<f64> {
+pub(super) fn less(x: &[f64], y: &[f64]) -> Reals {
     x.iter().zip(y).map(|(x, y)| x - y).collect()
 }
 
@@ -107,7 +107,7 @@ pub(super) struct Ended<G> {
     /// The tangent there, where it was looked at.
     pub tangent: Option<Dense<f64>>,
     /// The lengths of its course.
-    pub course: Vec<f64>,
+    pub course: Reals,
     /// The second correction over the first: it grows with the length of the stage.
     pub fall: f64,
 }
@@ -151,7 +151,7 @@ pub(super) fn ended<C: Curve>(
         let correction = corrected(&inverse, goal, &curve.residual(&at));
         let lengths = parts.lengths(&correction);
         let known = lengths.iter().enumerate();
-        let known: Vec<f64> = known
+        let known: Reals = known
             .map(|(b, x)| {
                 if *x <= ROUNDED * curve.noise(b) {
                     0.0
@@ -204,7 +204,7 @@ pub(super) fn ended<C: Curve>(
 /// The remainder at a look and the gain between two, over the course.
 struct Judges<'a> {
     value: &'a dyn Fn(&[f64]) -> f64,
-    slope: &'a dyn Fn(&Judged<Vec<f64>>) -> f64,
+    slope: &'a dyn Fn(&Judged<Reals>) -> f64,
 }
 
 /// The most that the equations leave on the way of a stage, and the most that they gain between two looks, as corrections
@@ -218,12 +218,12 @@ fn on_the_way<C: Curve>(
 ) -> [f64; 2] {
     let off = |share: f64| {
         let between = goal.iter().zip(&stage.residual);
-        let between: Vec<f64> = between.map(|(x, y)| y + share * (x - y)).collect();
+        let between: Reals = between.map(|(x, y)| y + share * (x - y)).collect();
         let there = curve.moved(&stage.velocity, &times(first, share));
         stage.correction(&between, &curve.residual(&there))
     };
     let of = |x: &[f64]| ratio(&curve.parts().lengths(x), course);
-    let own: Vec<f64> = (0..curve.parts().count()).map(|b| curve.noise(b)).collect();
+    let own: Reals = (0..curve.parts().count()).map(|b| curve.noise(b)).collect();
     let shared = shared_noise(&own, &stage.units);
     // Where noise is not known, slopes may be rounding.
     let known = shared > 0.0;
@@ -232,7 +232,7 @@ fn on_the_way<C: Curve>(
         larger(curve.noise(b), shared * unit)
     };
     // Rounding does not count.
-    let judge = |x: &Judged<Vec<f64>>| {
+    let judge = |x: &Judged<Reals>| {
         let lengths = curve.parts().lengths(&times(&x.difference, x.factor));
         let known = lengths.iter().enumerate().map(|(b, length)| {
             match *length <= FALLS * x.noise(noise(b)) {
@@ -240,9 +240,9 @@ fn on_the_way<C: Curve>(
                 false => *length,
             }
         });
-        ratio(&known.collect::<Vec<_>>(), course) / STEEP
+        ratio(&known.collect::<Reals>(), course) / STEEP
     };
-    let nothing = vec![0.0; first.len()];
+    let nothing = Reals::from_elem(0.0, first.len());
     let mut seen = vec![(0.0, nothing.clone())];
     let mut so_far = Left::nothing(nothing);
     let (mut left, mut steepest, mut rough) = (0.0, 0.0, vec![]);
@@ -273,9 +273,9 @@ fn on_the_way<C: Curve>(
 
 /// The same between two looks, where the equations are rough.
 fn left_between(
-    off: &dyn Fn(f64) -> Vec<f64>,
+    off: &dyn Fn(f64) -> Reals,
     judges: &Judges<'_>,
-    [from, to]: [&(f64, Vec<f64>); 2],
+    [from, to]: [&(f64, Reals); 2],
     halvings: u8,
 ) -> f64 {
     let half = 0.5 * (to.0 - from.0);

@@ -2,7 +2,7 @@
 //! Takes elements and coordinates; gives elements, and the equations of one lane on it.
 
 use crate::groups::Coordinate;
-use crate::linalg::Dense;
+use crate::linalg::{Dense, Reals};
 use crate::solvers::newton::Parts;
 use crate::solvers::newton::principal::Curve;
 use core::fmt::Debug;
@@ -10,7 +10,7 @@ use core::fmt::Debug;
 /// A group described by a value, as [`Group`](crate::groups::Group) describes it by a type.
 pub trait Chart {
     /// Its elements.
-    type Element: Clone + Debug;
+    type Element: Clone + Debug + Default;
 
     /// Its coordinates.
     fn parts(&self) -> &Parts;
@@ -25,13 +25,13 @@ pub trait Chart {
     fn identity(&self) -> Self::Element;
 
     /// See [`Group::retract`](crate::groups::Group::retract).
-    fn retract(&self, at: &Self::Element, xi: &[f64]) -> Self::Element;
+    fn retract(&self, at: &Self::Element, xi: &[f64], out: &mut Self::Element);
 
     /// See [`Group::retract_from_left`](crate::groups::Group::retract_from_left).
-    fn retract_from_left(&self, at: &Self::Element, xi: &[f64]) -> Self::Element;
+    fn retract_from_left(&self, at: &Self::Element, xi: &[f64], out: &mut Self::Element);
 
     /// See [`Group::combined`](crate::groups::Group::combined).
-    fn combined(&self, weights: &[f64], past: &[Self::Element]) -> Self::Element;
+    fn combined(&self, weights: &[f64], past: &[Self::Element], out: &mut Self::Element);
 
     /// `from^-1 . to`.
     fn between(&self, from: &Self::Element, to: &Self::Element) -> Self::Element;
@@ -51,7 +51,7 @@ pub struct Lane<'a, C: Chart> {
     /// The group.
     pub chart: &'a C,
     /// The residual `P(v) - m`.
-    pub residual: &'a dyn Fn(&C::Element) -> Vec<f64>,
+    pub residual: &'a dyn Fn(&C::Element) -> Reals,
     /// The derivative of `P` along the algebra.
     pub tangent: &'a dyn Fn(&C::Element) -> Dense<f64>,
 }
@@ -84,17 +84,19 @@ impl<C: Chart> Curve for WithNoise<'_, '_, C> {
     }
 
     fn moved(&self, from: &C::Element, coordinates: &[f64]) -> C::Element {
-        self.lane.chart.retract(from, coordinates)
+        let mut moved = C::Element::default();
+        self.lane.chart.retract(from, coordinates, &mut moved);
+        moved
     }
 
-    fn lengths(&self, from: &C::Element, to: &C::Element) -> Vec<f64> {
+    fn lengths(&self, from: &C::Element, to: &C::Element) -> Reals {
         let chart = self.lane.chart;
-        let mut lengths = vec![0.0; chart.parts().count()];
+        let mut lengths = Reals::from_elem(0.0, chart.parts().count());
         chart.extents(&chart.between(from, to), &mut lengths);
         lengths
     }
 
-    fn residual(&self, at: &C::Element) -> Vec<f64> {
+    fn residual(&self, at: &C::Element) -> Reals {
         (self.lane.residual)(at)
     }
 

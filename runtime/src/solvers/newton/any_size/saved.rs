@@ -1,7 +1,7 @@
 //! Saves and restores the memory of a search of any size.
 
 use super::{AnySearch, Chart};
-use crate::linalg::DenseFactors;
+use crate::linalg::{DenseFactors, Reals};
 use crate::saved::{Saved, Words, optional};
 use crate::solvers::newton::REMEMBERED;
 
@@ -29,6 +29,8 @@ impl<C: Chart> AnySearch<C> {
             factors,
             unit,
             age,
+            // Overwritten in every step.
+            work: _,
         } = self;
         let known = words.count(past.len(), REMEMBERED);
         past.resize_with(known, || chart.identity());
@@ -38,7 +40,7 @@ impl<C: Chart> AnySearch<C> {
         lengths.words(words);
         weighed.words(words);
         optional(whole, words, || {
-            Some((DenseFactors::none(0, true), Vec::new()))
+            Some((DenseFactors::none(0, true), Reals::new()))
         });
         units.words(words);
         noise.words(words);
