@@ -1,7 +1,7 @@
 //! The book, chapter by chapter, as a reader follows it: files are written, commands run in order, their output
 //! contains the quoted lines, and models that the book calls rejected are rejected.
 
-use crate::common::{Folder, runs};
+use crate::common::{Folder, clebsch};
 use std::path::Path;
 
 fn source() -> String {
@@ -27,8 +27,8 @@ fn blocks(page: &str) -> Vec<(String, String)> {
     blocks
 }
 
-/// Runs a command of the book in `folder`; gives all it printed.
-fn run(line: &str, folder: &Folder) -> String {
+/// Runs a command of the book in `folder`, which ends with `code`; gives all it printed.
+fn run(line: &str, code: u8, folder: &Folder) -> String {
     let words = line.split_whitespace().skip(1);
     let words: Vec<String> = words
         .map(|word| {
@@ -40,7 +40,7 @@ fn run(line: &str, folder: &Folder) -> String {
         })
         .collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let done = runs(&words);
+    let done = clebsch(&words).exits(code);
     done.out + &done.err
 }
 
@@ -54,7 +54,7 @@ fn follow(chapter: &str) {
             ("clebsch" | "toml", file) if !file.is_empty() => {
                 folder.write(file, &text);
                 if info.starts_with("clebsch") {
-                    run(&format!("clebsch derive {file}"), &folder);
+                    run(&format!("clebsch derive {file}"), 0, &folder);
                 }
             }
             ("clebsch,refused", _) => {
@@ -63,7 +63,10 @@ fn follow(chapter: &str) {
                 assert_ne!(done.code, 0, "{text}");
                 printed = done.err;
             }
-            ("sh", _) => printed = text.lines().map(|line| run(line, &folder)).collect(),
+            ("sh", _) => printed = text.lines().map(|line| run(line, 0, &folder)).collect(),
+            ("sh,refused", _) => {
+                printed = text.lines().map(|line| run(line, 2, &folder)).collect();
+            }
             ("text", _) => {
                 for line in text.lines() {
                     assert!(
@@ -104,6 +107,11 @@ fn chains() {
 }
 
 #[test]
+fn constraints() {
+    follow("constraints");
+}
+
+#[test]
 fn fluids() {
     follow("fluids");
 }
@@ -116,6 +124,32 @@ fn results() {
 #[test]
 fn long_runs() {
     follow("long-runs");
+}
+
+#[test]
+fn how_it_works() {
+    follow("how-it-works");
+}
+
+/// Chapters that include a page of `docs/` without its title define its links, which come before those of the page.
+#[test]
+fn included_pages() {
+    for (chapter, name) in [("your-own-model", "tutorial"), ("limits", "limits")] {
+        let read = |path: String| std::fs::read_to_string(path).expect("a page");
+        let page = read(format!("{}/../../{name}.md", source()));
+        let chapter = read(format!("{}/{chapter}.md", source()));
+        let (links, after) = chapter
+            .split_once(&format!("\n{{{{#include ../../{name}.md:3:}}}}\n"))
+            .expect("the page");
+        assert!(after.is_empty(), "{after}");
+        let mut lines = page.lines();
+        assert!(lines.next().is_some_and(|title| title.starts_with("# ")));
+        assert_eq!(lines.next(), Some(""));
+        let defined = lines.filter_map(|line| Some(line.strip_prefix('[')?.split_once("]: ")?.0));
+        for link in defined {
+            assert!(links.contains(&format!("\n[{link}]: ")), "{name}: {link}");
+        }
+    }
 }
 
 /// The tutorial, as a reader follows it: each model is saved with the case below it, derives and runs; the lines in between and
@@ -181,14 +215,20 @@ fn every_chapter_is_followed() {
         .collect();
     let followed = [
         "fifteen-minutes",
+        // The tutorial.
+        "your-own-model",
         "rigid-body",
         "chains",
+        "constraints",
         "fluids",
         "results",
         "long-runs",
         // Its code runs in `python/tests/test_book.py`.
         "python",
         "programs",
+        "how-it-works",
+        // A page of `docs/` without commands.
+        "limits",
     ];
     assert_eq!(chapters, followed);
 }
