@@ -12,15 +12,15 @@ use clebsch_oracle::handwritten::attitude::Matrix;
 use clebsch_oracle::handwritten::ellipsoid::{ElasticEllipsoid, Ellipsoid, Of};
 
 clebsch::model! {
-    /// Neo-Hookean body on GL(3), seen from itself.
+    /// Neo-Hookean body on GL(3), convective representation.
     model NeoHooke {
-        /// second moments of mass in the reference
+        /// second moments of mass, reference configuration
         param I0: Sym<3>;
         /// shear modulus and first Lamé constant
         param mu, lambda: Real;
         /// placement, reference to space
         group Q: GL<3> velocity G;
-        /// Cauchy-Green tensor
+        /// right Cauchy-Green tensor
         advected C: Sym<3> = Q^T*Q;
         constraint next(Q) = Q*G;
         constraint next(C) = G^T*C*G;
@@ -30,14 +30,14 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// Elastic ellipsoid by its placement, the material of Mooney and Rivlin in the form of Ciarlet and Geymonat: the third
-    /// statement of the motion that `ellipsoid-convective` and `ellipsoid-spatial` state by groups.
+    /// Elastic ellipsoid in terms of its placement, with a Mooney-Rivlin material in the form of Ciarlet and Geymonat.
+    /// `ellipsoid-convective` and `ellipsoid-spatial` state the same motion on GL(n).
     model MooneyRivlin {
-        /// metric of space, and second moments of mass in the reference
+        /// metric of space; second moments of mass, reference configuration
         param C0, I0: Sym<3>;
-        /// stiffness of lengths, of areas and of volumes
+        /// stiffness against changes of length, area and volume
         param a, b, c: Real;
-        /// resistance to collapse; without stress at the identity if d = 2 a + 4 b + 2 c
+        /// resistance to collapse; the identity is stress-free if d = 2 a + 4 b + 2 c
         param d: Real;
         /// placement, reference to space
         field Q: Mat<3>;
@@ -191,14 +191,14 @@ pub fn written_mooney() -> impl FnOnce() {
 }
 
 clebsch::model! {
-    /// Incompressible self-gravitating ellipsoid of a homogeneous fluid, of Dirichlet and Riemann: the flow is linear in the
-    /// place, and the determinant of the placement is held.
+    /// Self-gravitating homogeneous fluid ellipsoid of Dirichlet and Riemann, with a linear flow map.
+    /// The constraint det(Q) = 1 on the placement makes it incompressible.
     model FluidEllipsoid {
-        /// second moments of mass in the reference, M/5 Id for a unit ball
+        /// second moments of mass, reference configuration; M/5 Id for the unit ball
         param I0: Sym<3>;
-        /// mass, in units of a constant of gravitation of one
+        /// mass, in units where the gravitational constant is 1
         param M: Real;
-        /// Carlson's integral R_F of a matrix, by its trace, second invariant and determinant
+        /// Carlson's integral R_F of the eigenvalues of a matrix, from its trace, second invariant and determinant
         given RF(Real, Real, Real): Real = clebsch::functions::carlson_rf_of_invariants;
         /// placement, reference to space
         field Q: Mat<3>;

@@ -10,7 +10,7 @@ clebsch::model! {
         param a: Vec<3>;                     // axis, body frame
         param b: Vec<3>;                     // direction and strength of the field, space frame
         group R: SO<3> velocity W;
-        advected B: Vec<3> = R^T * b;        // the field seen from the body
+        advected B: Vec<3> = R^T * b;        // field, body frame
         constraint next(R) = R * W;
         constraint next(B) = W^T * B;
         lagrangian = -tr(J*W)/h + h*dot(a, B);

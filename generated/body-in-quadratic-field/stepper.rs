@@ -9,10 +9,10 @@ use ::clebsch::emitted::*;
 pub struct BodyInQuadraticFieldParameters<T = f64> {
     /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
     pub J: SMatrix<T, 3, 3>,
-    /// `K`: the field: energy ½ Γ·KΓ; a 3 x 3 matrix, symmetric.
+    /// `K`: matrix of the field, body frame: potential energy ½ Γ·KΓ; a 3 x 3 matrix, symmetric.
     pub K: SMatrix<T, 3, 3>,
 }
-/// Rigid body in a quadratic field.
+/// Rigid body about a fixed point in a quadratic field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyInQuadraticField<T = f64> {
     parameters: BodyInQuadraticFieldParameters<T>,
@@ -21,7 +21,7 @@ pub struct BodyInQuadraticField<T = f64> {
 }
 impl<T: Real> BodyInQuadraticField<T> {
     /// The model as it was stated.
-    pub const SOURCE: &'static str = "/// Rigid body in a quadratic field.\npub model BodyInQuadraticField {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// the field: energy ½ Γ·KΓ\n    param K: Sym<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// axis of the field seen from the body\n    advected Γ: Vec<3>;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// the axis is fixed in space\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - (1/2)*h*dot(Γ, K*Γ);\n}";
+    pub const SOURCE: &'static str = "/// Rigid body about a fixed point in a quadratic field.\npub model BodyInQuadraticField {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// matrix of the field, body frame: potential energy ½ Γ·KΓ\n    param K: Sym<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// axis of the field, body frame\n    advected Γ: Vec<3>;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// the axis is fixed in space\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - (1/2)*h*dot(Γ, K*Γ);\n}";
     /// A number that changes when the model or its derivation does.
     pub const FINGERPRINT: u64 = 17218949872786232600u64;
     /// Checks the parameters.
@@ -260,20 +260,20 @@ impl BodyInQuadraticField<f64> {
     pub const CARD: Card = Card {
         name: "BodyInQuadraticField",
         kebab: "body-in-quadratic-field",
-        doc: "Rigid body in a quadratic field.",
+        doc: "Rigid body about a fixed point in a quadratic field.",
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J Ω_k)/h - ¼ h Γ_k·(K Γ_k) - ¼ h Γ_{k+1}·(K Γ_{k+1})\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
         solver: "Moser-Veselov: C is constant and symmetric: explicit up to the root of one quartic per step",
         parameters: &[
             Kind::SecondMoments.field("J", [3, 3], "Poinsot (second-moment) matrix"),
-            Kind::Symmetric.field("K", [3, 3], "the field: energy ½ Γ·KΓ"),
+            Kind::Symmetric.field("K", [3, 3], "matrix of the field, body frame: potential energy ½ Γ·KΓ"),
         ],
         initial: &[
             Kind::Rotation.spelt("Λ", "Lambda", [3, 3], "attitude, body to space"),
             Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
             Kind::Vector
-                .spelt("Γ", "Gamma", [3, 1], "axis of the field seen from the body"),
+                .spelt("Γ", "Gamma", [3, 1], "axis of the field, body frame"),
         ],
         observables: &[
             Kind::Rotation.spelt("Λ", "Lambda", [3, 3], "attitude, body to space"),
@@ -281,7 +281,7 @@ impl BodyInQuadraticField<f64> {
             Kind::SpatialMomentum
                 .field("spatial_momentum", [3, 1], "momentum, space frame"),
             Kind::Vector
-                .spelt("Γ", "Gamma", [3, 1], "axis of the field seen from the body"),
+                .spelt("Γ", "Gamma", [3, 1], "axis of the field, body frame"),
         ],
         invariants: &[
             Invariant::bounded(

@@ -9,7 +9,7 @@ use ::clebsch::emitted::*;
 pub struct BodyInTwoFieldsParameters<T = f64> {
     /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
     pub J: SMatrix<T, 3, 3>,
-    /// `gU`: weight times support -> centre of mass, body frame; a vector of 3 components.
+    /// `gU`: weight times the vector from support to centre of mass, body frame; a vector of 3 components.
     pub gU: SVector<T, 3>,
     /// `p`: dipole moment, body frame; a vector of 3 components.
     pub p: SVector<T, 3>,
@@ -27,7 +27,7 @@ pub struct BodyInTwoFields<T = f64> {
 }
 impl<T: Real> BodyInTwoFields<T> {
     /// The model as it was stated.
-    pub const SOURCE: &'static str = "/// Rigid body about a fixed point in two uniform fields.\npub model BodyInTwoFields {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// weight times support -> centre of mass, body frame\n    param gU: Vec<3> as \"m g \\chi\";\n    /// dipole moment, body frame\n    param p: Vec<3>;\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// field that acts on the dipole, space frame\n    param b: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// the vertical seen from the body\n    advected Γ: Vec<3> = Λ^T*z;\n    /// the field seen from the body\n    advected B: Vec<3> = Λ^T*b;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// both are fixed in space\n    constraint next(Γ) = Ω^T*Γ;\n    constraint next(B) = Ω^T*B;\n    lagrangian = -tr(J*Ω)/h - h*(dot(gU, Γ) - dot(p, B));\n}";
+    pub const SOURCE: &'static str = "/// Rigid body about a fixed point in two uniform fields.\npub model BodyInTwoFields {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// weight times the vector from support to centre of mass, body frame\n    param gU: Vec<3> as \"m g \\chi\";\n    /// dipole moment, body frame\n    param p: Vec<3>;\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// field that acts on the dipole, space frame\n    param b: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// vertical, body frame\n    advected Γ: Vec<3> = Λ^T*z;\n    /// field that acts on the dipole, body frame\n    advected B: Vec<3> = Λ^T*b;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// Γ and B are fixed in space\n    constraint next(Γ) = Ω^T*Γ;\n    constraint next(B) = Ω^T*B;\n    lagrangian = -tr(J*Ω)/h - h*(dot(gU, Γ) - dot(p, B));\n}";
     /// A number that changes when the model or its derivation does.
     pub const FINGERPRINT: u64 = 2584914887519986145u64;
     /// Checks the parameters.
@@ -270,7 +270,7 @@ impl BodyInTwoFields<f64> {
                 .field(
                     "gU",
                     [3, 1],
-                    "weight times support -> centre of mass, body frame",
+                    "weight times the vector from support to centre of mass, body frame",
                 ),
             Kind::Vector.field("p", [3, 1], "dipole moment, body frame"),
             Kind::Vector.field("z", [3, 1], "vertical (up), space frame"),
@@ -285,8 +285,8 @@ impl BodyInTwoFields<f64> {
             Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
             Kind::SpatialMomentum
                 .field("spatial_momentum", [3, 1], "momentum, space frame"),
-            Kind::Vector.spelt("Γ", "Gamma", [3, 1], "the vertical seen from the body"),
-            Kind::Vector.field("B", [3, 1], "the field seen from the body"),
+            Kind::Vector.spelt("Γ", "Gamma", [3, 1], "vertical, body frame"),
+            Kind::Vector.field("B", [3, 1], "field that acts on the dipole, body frame"),
         ],
         invariants: &[
             Invariant::bounded(

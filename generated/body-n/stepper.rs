@@ -7,7 +7,7 @@ use ::clebsch::emitted::*;
 /// Parameters of [`BodyN`](struct@BodyN), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyNParameters<const N: usize, T = f64> {
-    /// `C`: second moments; any matrix of positive determinant; a n x n matrix.
+    /// `C`: second moments of mass; any matrix with positive determinant; a n x n matrix.
     pub C: SMatrix<T, N, N>,
 }
 /// Free rigid body in n dimensions.
@@ -23,7 +23,7 @@ impl<const N: usize, T: Real> BodyN<N, T> {
         ::core::assert!(3 <= N && N <= 8, "`n` is from 3 to 8 in this model");
     };
     /// The model as it was stated.
-    pub const SOURCE: &'static str = "/// Free rigid body in n dimensions.\npub model BodyN {\n    dim n in 3..=8;\n    /// second moments; any matrix of positive determinant\n    param C: Mat<n>;\n    /// attitude, body to space\n    group Λ: SO<n> velocity Ω;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    lagrangian = -tr(C^T*Ω)/h;\n}";
+    pub const SOURCE: &'static str = "/// Free rigid body in n dimensions.\npub model BodyN {\n    dim n in 3..=8;\n    /// second moments of mass; any matrix with positive determinant\n    param C: Mat<n>;\n    /// attitude, body to space\n    group Λ: SO<n> velocity Ω;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    lagrangian = -tr(C^T*Ω)/h;\n}";
     /// A number that changes when the model or its derivation does.
     pub const FINGERPRINT: u64 = 2002699665632125461u64;
     /// Checks the parameters.
@@ -292,7 +292,7 @@ impl<const N: usize> BodyN<N, f64> {
         orders: &[1],
         parameters: &[
             Kind::Matrix
-                .field("C", [N, N], "second moments; any matrix of positive determinant"),
+                .field("C", [N, N], "second moments of mass; any matrix with positive determinant"),
         ],
         initial: &[
             Kind::Rotation.spelt("Λ", "Lambda", [N, N], "attitude, body to space"),

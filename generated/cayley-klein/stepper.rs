@@ -9,11 +9,11 @@ use ::clebsch::emitted::*;
 pub struct CayleyKleinParameters<T = f64> {
     /// `I`: principal moments of inertia; a 3 x 3 matrix, diagonal.
     pub I: SMatrix<T, 3, 3>,
-    /// `c`: 0: Moser-Veselov; 1: as in the thesis; a number.
+    /// `c`: choice of discretisation: 0 for Moser-Veselov, 1 for the thesis; a number.
     pub c: T,
 }
-/// Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its
-/// fibres over the sphere of body momenta are circles.
+/// Free rigid body in unit quaternions.
+/// The body momentum is q* m q, a Hopf map of q: its fibres over the sphere of body momenta are circles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CayleyKlein<T = f64> {
     parameters: CayleyKleinParameters<T>,
@@ -21,7 +21,7 @@ pub struct CayleyKlein<T = f64> {
 }
 impl<T: Real> CayleyKlein<T> {
     /// The model as it was stated.
-    pub const SOURCE: &'static str = "/// Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its\n/// fibres over the sphere of body momenta are circles.\npub model CayleyKlein {\n    /// principal moments of inertia\n    param I: Diag<3>;\n    /// 0: Moser-Veselov; 1: as in the thesis\n    param c: Real;\n    /// attitude, body to space\n    group q: SU<2> velocity W;\n    constraint next(q) = q*W;\n    lagrangian = -4*c*re(W)/h + 2*dot(im(W), (I - c*Id)*im(W))/h;\n}";
+    pub const SOURCE: &'static str = "/// Free rigid body in unit quaternions.\n/// The body momentum is q* m q, a Hopf map of q: its fibres over the sphere of body momenta are circles.\npub model CayleyKlein {\n    /// principal moments of inertia\n    param I: Diag<3>;\n    /// choice of discretisation: 0 for Moser-Veselov, 1 for the thesis\n    param c: Real;\n    /// attitude, body to space\n    group q: SU<2> velocity W;\n    constraint next(q) = q*W;\n    lagrangian = -4*c*re(W)/h + 2*dot(im(W), (I - c*Id)*im(W))/h;\n}";
     /// A number that changes when the model or its derivation does.
     pub const FINGERPRINT: u64 = 6338969864124962405u64;
     /// Checks the parameters.
@@ -234,14 +234,14 @@ impl CayleyKlein<f64> {
     pub const CARD: Card = Card {
         name: "CayleyKlein",
         kebab: "cayley-klein",
-        doc: "Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its fibres over the sphere of body momenta are circles.",
+        doc: "Free rigid body in unit quaternions. The body momentum is q* m q, a Hopf map of q: its fibres over the sphere of body momenta are circles.",
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -4 c re(W_k)/h + 2 im(W_k)·((I - c Id) im(W_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I - c Id) im(W_k)/h)) W_kᵀ)\nRiccati form         none; in unit quaternions, A = I - c Id, β = c\ninvariants           energy, spatial_momentum, momentum_squared\ntime reversal        symmetric: second order\ncertificate          4 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
         solver: "Unit quaternions: A is constant and symmetric, β constant: one equation for one number a step",
         parameters: &[
             Kind::Diagonal.field("I", [3, 3], "principal moments of inertia"),
-            Kind::Scalar.field("c", [1, 1], "0: Moser-Veselov; 1: as in the thesis"),
+            Kind::Scalar.field("c", [1, 1], "choice of discretisation: 0 for Moser-Veselov, 1 for the thesis"),
         ],
         initial: &[
             Kind::UnitQuaternion.field("q", [4, 1], "attitude, body to space"),

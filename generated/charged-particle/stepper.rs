@@ -23,7 +23,7 @@ pub struct ChargedParticle<T = f64> {
 }
 impl<T: Real> ChargedParticle<T> {
     /// The model as it was stated.
-    pub const SOURCE: &'static str = "/// Charged particle in uniform magnetic and electric fields.\npub model ChargedParticle {\n    /// mass\n    param m: Real;\n    /// charge\n    param q: Real;\n    /// magnetic field\n    param B: Vec<3>;\n    /// electric field\n    param E: Vec<3>;\n    /// place of the particle\n    field X: Vec<3>;\n    lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + (1/2)*q*dot(cross(B, X), next(X) - X) + h*q*dot(E, X);\n}";
+    pub const SOURCE: &'static str = "/// Charged particle in uniform magnetic and electric fields.\npub model ChargedParticle {\n    /// mass\n    param m: Real;\n    /// charge\n    param q: Real;\n    /// magnetic field\n    param B: Vec<3>;\n    /// electric field\n    param E: Vec<3>;\n    /// position of the particle\n    field X: Vec<3>;\n    lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + (1/2)*q*dot(cross(B, X), next(X) - X) + h*q*dot(E, X);\n}";
     /// A number that changes when the model or its derivation does.
     pub const FINGERPRINT: u64 = 13602584445213405510u64;
     /// Checks the parameters.
@@ -257,11 +257,11 @@ impl ChargedParticle<f64> {
             Kind::Vector.field("E", [3, 1], "electric field"),
         ],
         initial: &[
-            Kind::Vector.field("X", [3, 1], "place of the particle"),
+            Kind::Vector.field("X", [3, 1], "position of the particle"),
             Kind::FieldMomentum.field("momentum", [3, 1], "momentum of X"),
         ],
         observables: &[
-            Kind::Vector.field("X", [3, 1], "place of the particle"),
+            Kind::Vector.field("X", [3, 1], "position of the particle"),
             Kind::FieldMomentum.field("momentum", [3, 1], "momentum of X"),
         ],
         invariants: &[

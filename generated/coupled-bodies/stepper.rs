@@ -7,25 +7,25 @@ use ::clebsch::emitted::*;
 /// Parameters of [`CoupledBodies`](struct@CoupledBodies), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoupledBodiesParameters<T = f64> {
-    /// `J1`: Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ; a 3 x 3 matrix, symmetric.
+    /// `J1`: Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames; a 3 x 3 matrix, symmetric.
     pub J1: SMatrix<T, 3, 3>,
-    /// `J2`: Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ; a 3 x 3 matrix, symmetric.
+    /// `J2`: Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames; a 3 x 3 matrix, symmetric.
     pub J2: SMatrix<T, 3, 3>,
-    /// `d1`: joint -> centre of mass, each in its body's axes; a vector of 3 components.
+    /// `d1`: vectors from the joint to the centres of mass, body frames; a vector of 3 components.
     pub d1: SVector<T, 3>,
-    /// `d2`: joint -> centre of mass, each in its body's axes; a vector of 3 components.
+    /// `d2`: vectors from the joint to the centres of mass, body frames; a vector of 3 components.
     pub d2: SVector<T, 3>,
     /// `eps`: reduced mass m₁ m₂/(m₁ + m₂); a number.
     pub eps: T,
 }
-/// Two rigid bodies with a spherical joint.
+/// Two rigid bodies connected by a spherical joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoupledBodies<T = f64> {
     parameters: CoupledBodiesParameters<T>,
 }
 impl<T: Real> CoupledBodies<T> {
     /// The model as it was stated.
-    pub const SOURCE: &'static str = "/// Two rigid bodies with a spherical joint.\npub model CoupledBodies {\n    /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ\n    param J1: Sym<3>;\n    /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ\n    param J2: Sym<3>;\n    /// joint -> centre of mass, each in its body's axes\n    param d1: Vec<3>;\n    /// joint -> centre of mass, each in its body's axes\n    param d2: Vec<3>;\n    /// reduced mass m₁ m₂/(m₁ + m₂)\n    param eps: Real as \"\\varepsilon\";\n    /// attitude of body 1, body to space\n    group Λ1: SO<3> velocity Ω1;\n    /// attitude of body 2, body to space\n    group Λ2: SO<3> velocity Ω2;\n    /// body 2 seen from body 1\n    advected R: SO<3> = Λ1^T*Λ2;\n    constraint next(Λ1) = Λ1*Ω1;\n    constraint next(Λ2) = Λ2*Ω2;\n    constraint next(R) = Ω1^T*R*Ω2;\n    lagrangian = (-tr(J1*Ω1) - tr(J2*Ω2) - eps*dot((Ω1 - Id)*d1, R*(Ω2 - Id)*d2))/h;\n}";
+    pub const SOURCE: &'static str = "/// Two rigid bodies connected by a spherical joint.\npub model CoupledBodies {\n    /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames\n    param J1: Sym<3>;\n    /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames\n    param J2: Sym<3>;\n    /// vectors from the joint to the centres of mass, body frames\n    param d1: Vec<3>;\n    /// vectors from the joint to the centres of mass, body frames\n    param d2: Vec<3>;\n    /// reduced mass m₁ m₂/(m₁ + m₂)\n    param eps: Real as \"\\varepsilon\";\n    /// attitude of body 1, body to space\n    group Λ1: SO<3> velocity Ω1;\n    /// attitude of body 2, body to space\n    group Λ2: SO<3> velocity Ω2;\n    /// attitude of body 2 relative to body 1\n    advected R: SO<3> = Λ1^T*Λ2;\n    constraint next(Λ1) = Λ1*Ω1;\n    constraint next(Λ2) = Λ2*Ω2;\n    constraint next(R) = Ω1^T*R*Ω2;\n    lagrangian = (-tr(J1*Ω1) - tr(J2*Ω2) - eps*dot((Ω1 - Id)*d1, R*(Ω2 - Id)*d2))/h;\n}";
     /// A number that changes when the model or its derivation does.
     pub const FINGERPRINT: u64 = 5825775932552019303u64;
     /// Checks the parameters.
@@ -650,7 +650,7 @@ impl CoupledBodies<f64> {
     pub const CARD: Card = Card {
         name: "CoupledBodies",
         kebab: "coupled-bodies",
-        doc: "Two rigid bodies with a spherical joint.",
+        doc: "Two rigid bodies connected by a spherical joint.",
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J₁ Ω_{1,k})/h - tr(J₂ Ω_{2,k})/h - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h\nmomentum of Λ1       -(J₁/h + eps R_k (Ω_{2,k} - Id) d₂ d₁ᵀ/h) Ω_{1,k}ᵀ + Ω_{1,k} (J₁/h + eps d₁ d₂ᵀ (Ω_{2,k}ᵀ - Id) R_kᵀ/h)\nmomentum of Λ2       -(J₂/h + eps R_kᵀ (Ω_{1,k} - Id) d₁ d₂ᵀ/h) Ω_{2,k}ᵀ + Ω_{2,k} (J₂/h + eps d₂ d₁ᵀ (Ω_{1,k}ᵀ - Id) R_k/h)\nRiccati form         coupled, C = J₁; coupled, C = J₂\ninvariants           energy, total_momentum, total_momentum_squared\ntime reversal        symmetric: second order\ncertificate          32 identities proved by normal form",
@@ -660,18 +660,18 @@ impl CoupledBodies<f64> {
                 .field(
                     "J1",
                     [3, 3],
-                    "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ",
+                    "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames",
                 ),
             Kind::SecondMoments
                 .field(
                     "J2",
                     [3, 3],
-                    "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ",
+                    "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames",
                 ),
             Kind::Vector
-                .field("d1", [3, 1], "joint -> centre of mass, each in its body's axes"),
+                .field("d1", [3, 1], "vectors from the joint to the centres of mass, body frames"),
             Kind::Vector
-                .field("d2", [3, 1], "joint -> centre of mass, each in its body's axes"),
+                .field("d2", [3, 1], "vectors from the joint to the centres of mass, body frames"),
             Kind::Scalar.field("eps", [1, 1], "reduced mass m₁ m₂/(m₁ + m₂)"),
         ],
         initial: &[
@@ -727,7 +727,7 @@ impl CoupledBodies<f64> {
                     [3, 1],
                     "momentum, space frame",
                 ),
-            Kind::Matrix.field("R", [3, 3], "body 2 seen from body 1"),
+            Kind::Matrix.field("R", [3, 3], "attitude of body 2 relative to body 1"),
         ],
         invariants: &[
             Invariant::bounded(

@@ -9,15 +9,15 @@ use ::clebsch::emitted::*;
 pub struct EllipsoidSpatialParameters<const N: usize, T = f64> {
     /// `C0`: metric of space; a n x n matrix, symmetric.
     pub C0: SMatrix<T, N, N>,
-    /// `I0`: second moments of mass in the reference; a n x n matrix, symmetric.
+    /// `I0`: second moments of mass, reference configuration; a n x n matrix, symmetric.
     pub I0: SMatrix<T, N, N>,
-    /// `a`: stiffness of lengths, of areas and of volumes; a number.
+    /// `a`: stiffness against changes of length, area and volume; a number.
     pub a: T,
-    /// `b`: stiffness of lengths, of areas and of volumes; a number.
+    /// `b`: stiffness against changes of length, area and volume; a number.
     pub b: T,
-    /// `c`: stiffness of lengths, of areas and of volumes; a number.
+    /// `c`: stiffness against changes of length, area and volume; a number.
     pub c: T,
-    /// `d`: resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c; a number.
+    /// `d`: resistance to collapse; the identity is stress-free if d = 2 a + 2 (n - 1) b + 2 c; a number.
     pub d: T,
 }
 /// Elastic ellipsoid, spatial representation.
@@ -33,7 +33,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         ::core::assert!(2 <= N && N <= 4, "`n` is from 2 to 4 in this model");
     };
     /// The model as it was stated.
-    pub const SOURCE: &'static str = "/// Elastic ellipsoid, spatial representation.\npub model EllipsoidSpatial {\n    dim n in 2..=4;\n    /// metric of space\n    param C0: Sym<n> as \"C_0\";\n    /// second moments of mass in the reference\n    param I0: Sym<n> as \"I_0\";\n    /// stiffness of lengths, of areas and of volumes\n    param a: Real;\n    /// stiffness of lengths, of areas and of volumes\n    param b: Real;\n    /// stiffness of lengths, of areas and of volumes\n    param c: Real;\n    /// resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c\n    param d: Real;\n    /// placement, reference to space\n    group Q: GL<n> velocity g;\n    /// second moments in space\n    advected S: Sym<n> = Q*I0*Q^T;\n    constraint next(Q) = g*Q;\n    constraint next(S) = g*S*g^T;\n    lagrangian = tr(C0*(g - Id)*S*(g^T - Id))/(2*h) - h*(a*tr(S) + (1/2)*b*(tr(S)^2 - tr(S*S)) + c*det(S) - (1/2)*d*log(det(S)));\n}";
+    pub const SOURCE: &'static str = "/// Elastic ellipsoid, spatial representation.\npub model EllipsoidSpatial {\n    dim n in 2..=4;\n    /// metric of space\n    param C0: Sym<n> as \"C_0\";\n    /// second moments of mass, reference configuration\n    param I0: Sym<n> as \"I_0\";\n    /// stiffness against changes of length, area and volume\n    param a: Real;\n    /// stiffness against changes of length, area and volume\n    param b: Real;\n    /// stiffness against changes of length, area and volume\n    param c: Real;\n    /// resistance to collapse; the identity is stress-free if d = 2 a + 2 (n - 1) b + 2 c\n    param d: Real;\n    /// placement, reference to space\n    group Q: GL<n> velocity g;\n    /// second moments of mass, space frame\n    advected S: Sym<n> = Q*I0*Q^T;\n    constraint next(Q) = g*Q;\n    constraint next(S) = g*S*g^T;\n    lagrangian = tr(C0*(g - Id)*S*(g^T - Id))/(2*h) - h*(a*tr(S) + (1/2)*b*(tr(S)^2 - tr(S*S)) + c*det(S) - (1/2)*d*log(det(S)));\n}";
     /// A number that changes when the model or its derivation does.
     pub const FINGERPRINT: u64 = 5872755012565563645u64;
     /// Checks the parameters.
@@ -475,18 +475,18 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
         parameters: &[
             Kind::Symmetric.field("C0", [N, N], "metric of space"),
             Kind::Symmetric
-                .field("I0", [N, N], "second moments of mass in the reference"),
+                .field("I0", [N, N], "second moments of mass, reference configuration"),
             Kind::Scalar
-                .field("a", [1, 1], "stiffness of lengths, of areas and of volumes"),
+                .field("a", [1, 1], "stiffness against changes of length, area and volume"),
             Kind::Scalar
-                .field("b", [1, 1], "stiffness of lengths, of areas and of volumes"),
+                .field("b", [1, 1], "stiffness against changes of length, area and volume"),
             Kind::Scalar
-                .field("c", [1, 1], "stiffness of lengths, of areas and of volumes"),
+                .field("c", [1, 1], "stiffness against changes of length, area and volume"),
             Kind::Scalar
                 .field(
                     "d",
                     [1, 1],
-                    "resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c",
+                    "resistance to collapse; the identity is stress-free if d = 2 a + 2 (n - 1) b + 2 c",
                 ),
         ],
         initial: &[
@@ -499,7 +499,7 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
             Kind::BodyMomentum.field("body_momentum", [N, N], "momentum, body frame"),
             Kind::SpatialMomentum
                 .field("spatial_momentum", [N, N], "momentum, space frame"),
-            Kind::Symmetric.field("S", [N, N], "second moments in space"),
+            Kind::Symmetric.field("S", [N, N], "second moments of mass, space frame"),
         ],
         invariants: &[
             Invariant::bounded(

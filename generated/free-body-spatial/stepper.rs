@@ -18,7 +18,7 @@ pub struct FreeBodySpatial<T = f64> {
 }
 impl<T: Real> FreeBodySpatial<T> {
     /// The model as it was stated.
-    pub const SOURCE: &'static str = "/// Free rigid body, spatial representation.\npub model FreeBodySpatial {\n    /// attitude, body to space\n    group Λ: SO<3> velocity ω;\n    /// Poinsot (second-moment) matrix in space axes\n    advected J: Sym<3>;\n    /// reconstruction\n    constraint next(Λ) = ω*Λ;\n    /// the body carries its second moments along\n    constraint next(J) = ω*J*ω^T;\n    lagrangian = -tr(ω*J)/h;\n}";
+    pub const SOURCE: &'static str = "/// Free rigid body, spatial representation.\npub model FreeBodySpatial {\n    /// attitude, body to space\n    group Λ: SO<3> velocity ω;\n    /// Poinsot (second-moment) matrix, space frame\n    advected J: Sym<3>;\n    /// reconstruction\n    constraint next(Λ) = ω*Λ;\n    /// advection of the second moments\n    constraint next(J) = ω*J*ω^T;\n    lagrangian = -tr(ω*J)/h;\n}";
     /// A number that changes when the model or its derivation does.
     pub const FINGERPRINT: u64 = 18057726445234217378u64;
     /// Checks the parameters.
@@ -280,7 +280,7 @@ impl FreeBodySpatial<f64> {
             Kind::SpatialMomentum
                 .field("spatial_momentum", [3, 1], "momentum, space frame"),
             Kind::SecondMoments
-                .field("J", [3, 3], "Poinsot (second-moment) matrix in space axes"),
+                .field("J", [3, 3], "Poinsot (second-moment) matrix, space frame"),
         ],
         observables: &[
             Kind::Rotation.spelt("Λ", "Lambda", [3, 3], "attitude, body to space"),
@@ -288,7 +288,7 @@ impl FreeBodySpatial<f64> {
             Kind::SpatialMomentum
                 .field("spatial_momentum", [3, 1], "momentum, space frame"),
             Kind::SecondMoments
-                .field("J", [3, 3], "Poinsot (second-moment) matrix in space axes"),
+                .field("J", [3, 3], "Poinsot (second-moment) matrix, space frame"),
         ],
         invariants: &[
             Invariant::exact(

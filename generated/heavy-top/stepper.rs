@@ -9,7 +9,7 @@ use ::clebsch::emitted::*;
 pub struct HeavyTopParameters<T = f64> {
     /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
     pub J: SMatrix<T, 3, 3>,
-    /// `gU`: weight times support -> centre of mass, body frame; a vector of 3 components.
+    /// `gU`: weight times the vector from support to centre of mass, body frame; a vector of 3 components.
     pub gU: SVector<T, 3>,
     /// `z`: vertical (up), space frame; a vector of 3 components.
     pub z: SVector<T, 3>,
@@ -23,7 +23,7 @@ pub struct HeavyTop<T = f64> {
 }
 impl<T: Real> HeavyTop<T> {
     /// The model as it was stated.
-    pub const SOURCE: &'static str = "/// Heavy top, body representation.\npub model HeavyTop {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// weight times support -> centre of mass, body frame\n    param gU: Vec<3> as \"m g \\chi\";\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// the vertical seen from the body\n    advected Γ: Vec<3> = Λ^T*z;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// how Γ is carried\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);\n}";
+    pub const SOURCE: &'static str = "/// Heavy top, body representation.\npub model HeavyTop {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// weight times the vector from support to centre of mass, body frame\n    param gU: Vec<3> as \"m g \\chi\";\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// vertical, body frame\n    advected Γ: Vec<3> = Λ^T*z;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// advection of Γ\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);\n}";
     /// A number that changes when the model or its derivation does.
     pub const FINGERPRINT: u64 = 13467537385938448784u64;
     /// Checks the parameters.
@@ -239,7 +239,7 @@ impl HeavyTop<f64> {
                 .field(
                     "gU",
                     [3, 1],
-                    "weight times support -> centre of mass, body frame",
+                    "weight times the vector from support to centre of mass, body frame",
                 ),
             Kind::Vector.field("z", [3, 1], "vertical (up), space frame"),
         ],
@@ -252,7 +252,7 @@ impl HeavyTop<f64> {
             Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
             Kind::SpatialMomentum
                 .field("spatial_momentum", [3, 1], "momentum, space frame"),
-            Kind::Vector.spelt("Γ", "Gamma", [3, 1], "the vertical seen from the body"),
+            Kind::Vector.spelt("Γ", "Gamma", [3, 1], "vertical, body frame"),
         ],
         invariants: &[
             Invariant::bounded(

@@ -9,17 +9,17 @@ use ::clebsch::emitted::*;
 pub struct KeplerParameters<T = f64> {
     /// `m`: mass of the planet; a number.
     pub m: T,
-    /// `k`: gravitational parameter of the sun: its mass times the constant of gravitation; a number.
+    /// `k`: gravitational parameter of the sun: the gravitational constant times its mass; a number.
     pub k: T,
 }
-/// Planet about a fixed sun.
+/// Kepler problem: a planet orbits a fixed sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kepler<T = f64> {
     parameters: KeplerParameters<T>,
 }
 impl<T: Real> Kepler<T> {
     /// The model as it was stated.
-    pub const SOURCE: &'static str = "/// Planet about a fixed sun.\npub model Kepler {\n    /// mass of the planet\n    param m: Real;\n    /// gravitational parameter of the sun: its mass times the constant of gravitation\n    param k: Real;\n    /// place of the planet, the sun at the origin\n    field X: Vec<3>;\n    lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + h*m*k/sqrt(dot(X, X));\n}";
+    pub const SOURCE: &'static str = "/// Kepler problem: a planet orbits a fixed sun.\npub model Kepler {\n    /// mass of the planet\n    param m: Real;\n    /// gravitational parameter of the sun: the gravitational constant times its mass\n    param k: Real;\n    /// position of the planet relative to the sun\n    field X: Vec<3>;\n    lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + h*m*k/sqrt(dot(X, X));\n}";
     /// A number that changes when the model or its derivation does.
     pub const FINGERPRINT: u64 = 51819993755699707u64;
     /// Checks the parameters.
@@ -242,7 +242,7 @@ impl Kepler<f64> {
     pub const CARD: Card = Card {
         name: "Kepler",
         kebab: "kepler",
-        doc: "Planet about a fixed sun.",
+        doc: "Kepler problem: a planet orbits a fixed sun.",
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  m ΔX_k·ΔX_k/(2 h) + h m k/(2 |X_k|) + h m k/(2 |X_{k+1}|)\nmomentum of X        m ΔX_k/h\nRiccati form         none; linear, L = m/h, R = 1\ninvariants           energy, momentum_angular\ntime reversal        symmetric: second order\ncertificate          13 identities proved by normal form",
@@ -253,17 +253,17 @@ impl Kepler<f64> {
                 .field(
                     "k",
                     [1, 1],
-                    "gravitational parameter of the sun: its mass times the constant of gravitation",
+                    "gravitational parameter of the sun: the gravitational constant times its mass",
                 ),
         ],
         initial: &[
             Kind::Vector
-                .field("X", [3, 1], "place of the planet, the sun at the origin"),
+                .field("X", [3, 1], "position of the planet relative to the sun"),
             Kind::FieldMomentum.field("momentum", [3, 1], "momentum of X"),
         ],
         observables: &[
             Kind::Vector
-                .field("X", [3, 1], "place of the planet, the sun at the origin"),
+                .field("X", [3, 1], "position of the planet relative to the sun"),
             Kind::FieldMomentum.field("momentum", [3, 1], "momentum of X"),
         ],
         invariants: &[

@@ -7,18 +7,18 @@ use ::clebsch::emitted::*;
 /// Parameters of [`KirchhoffBody`](struct@KirchhoffBody), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KirchhoffBodyParameters<T = f64> {
-    /// `J`: Poinsot matrix of the rotational inertia, fluid included; a 3 x 3 matrix, symmetric.
+    /// `J`: Poinsot matrix of the rotational inertia plus the added inertia of the fluid, body frame; a 3 x 3 matrix, symmetric.
     pub J: SMatrix<T, 3, 3>,
-    /// `M`: mass and added masses; a 3 x 3 matrix, symmetric.
+    /// `M`: mass plus added mass, body frame; a 3 x 3 matrix, symmetric.
     pub M: SMatrix<T, 3, 3>,
-    /// `D`: coupling of rotation and translation; a 3 x 3 matrix.
+    /// `D`: coupling of angular and linear velocity, body frame; a 3 x 3 matrix.
     pub D: SMatrix<T, 3, 3>,
-    /// `b`: (moment of weight less buoyancy, net weight), body frame; a vector of 4 components.
+    /// `b`: (moment of weight minus buoyancy, net weight), body frame; a vector of 4 components.
     pub b: SVector<T, 4>,
-    /// `Z`: (vertical up, 0), the plane of height 0 in space; a vector of 4 components.
+    /// `Z`: (vertical (up), 0), the plane of height 0, space frame; a vector of 4 components.
     pub Z: SVector<T, 4>,
 }
-/// Rigid body in an ideal fluid, with added masses, coupling, and net weight.
+/// Rigid body in an ideal fluid, with added mass, rotation-translation coupling and net weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KirchhoffBody<T = f64> {
     parameters: KirchhoffBodyParameters<T>,
@@ -26,7 +26,7 @@ pub struct KirchhoffBody<T = f64> {
 }
 impl<T: Real> KirchhoffBody<T> {
     /// The model as it was stated.
-    pub const SOURCE: &'static str = "/// Rigid body in an ideal fluid, with added masses, coupling, and net weight.\npub model KirchhoffBody {\n    /// Poinsot matrix of the rotational inertia, fluid included\n    param J: Sym<3>;\n    /// mass and added masses\n    param M: Sym<3>;\n    /// coupling of rotation and translation\n    param D: Mat<3>;\n    /// (moment of weight less buoyancy, net weight), body frame\n    param b: Vec<4>;\n    /// (vertical up, 0), the plane of height 0 in space\n    param Z: Vec<4>;\n    /// position, body to space\n    group G: SE<3> velocity V;\n    /// (vertical, height) seen from the body\n    advected P: Vec<4> = G^T*Z;\n    constraint next(G) = G*V;\n    constraint next(P) = V^T*P;\n    lagrangian = -tr(J*rot(V))/h + dot((1/2)*(pos(V) + rot(V)^T*pos(V)), (1/2)*M*(pos(V) + rot(V)^T*pos(V)))/(2*h) + dot(vee(rot(V)), (1/2)*D*(pos(V) + rot(V)^T*pos(V)))/h - h*dot(b, P);\n}";
+    pub const SOURCE: &'static str = "/// Rigid body in an ideal fluid, with added mass, rotation-translation coupling and net weight.\npub model KirchhoffBody {\n    /// Poinsot matrix of the rotational inertia plus the added inertia of the fluid, body frame\n    param J: Sym<3>;\n    /// mass plus added mass, body frame\n    param M: Sym<3>;\n    /// coupling of angular and linear velocity, body frame\n    param D: Mat<3>;\n    /// (moment of weight minus buoyancy, net weight), body frame\n    param b: Vec<4>;\n    /// (vertical (up), 0), the plane of height 0, space frame\n    param Z: Vec<4>;\n    /// position and attitude, body to space\n    group G: SE<3> velocity V;\n    /// (vertical, height), body frame\n    advected P: Vec<4> = G^T*Z;\n    constraint next(G) = G*V;\n    constraint next(P) = V^T*P;\n    lagrangian = -tr(J*rot(V))/h + dot((1/2)*(pos(V) + rot(V)^T*pos(V)), (1/2)*M*(pos(V) + rot(V)^T*pos(V)))/(2*h) + dot(vee(rot(V)), (1/2)*D*(pos(V) + rot(V)^T*pos(V)))/h - h*dot(b, P);\n}";
     /// A number that changes when the model or its derivation does.
     pub const FINGERPRINT: u64 = 10767151957343806239u64;
     /// Checks the parameters.
@@ -796,7 +796,7 @@ impl KirchhoffBody<f64> {
     pub const CARD: Card = Card {
         name: "KirchhoffBody",
         kebab: "kirchhoff-body",
-        doc: "Rigid body in an ideal fluid, with added masses, coupling, and net weight.",
+        doc: "Rigid body in an ideal fluid, with added mass, rotation-translation coupling and net weight.",
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J rot(V_k))/h + ((½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/(2 h) + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h - ½ h b·P_k - ½ h b·P_{k+1}\nmomentum of G        ((pos(V_k) × (M rot(V_k)ᵀ pos(V_k)))/(4 h) + (pos(V_k) × (M pos(V_k)))/(4 h) + (pos(V_k) × (Dᵀ vee(rot(V_k))))/(2 h) - 2 vee(J rot(V_k)ᵀ)/h + vee(rot(V_k) hat(D rot(V_k)ᵀ pos(V_k)))/(2 h) + vee(rot(V_k) hat(D pos(V_k)))/(2 h), M rot(V_k)ᵀ pos(V_k)/(4 h) + M pos(V_k)/(4 h) + Dᵀ vee(rot(V_k))/(2 h) + rot(V_k) M rot(V_k)ᵀ pos(V_k)/(4 h) + rot(V_k) M pos(V_k)/(4 h) + rot(V_k) Dᵀ vee(rot(V_k))/(2 h))\nRiccati form         none: the group is not SO(n)\ninvariants           energy, P_part_squared, momentum_linear_across_P_part_squared, spatial_momentum_linear_across_Z, spatial_momentum_angular_Z\ntime reversal        symmetric: second order\ncertificate          12 identities proved by normal form, 5 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
@@ -806,29 +806,29 @@ impl KirchhoffBody<f64> {
                 .field(
                     "J",
                     [3, 3],
-                    "Poinsot matrix of the rotational inertia, fluid included",
+                    "Poinsot matrix of the rotational inertia plus the added inertia of the fluid, body frame",
                 ),
-            Kind::Symmetric.field("M", [3, 3], "mass and added masses"),
-            Kind::Matrix.field("D", [3, 3], "coupling of rotation and translation"),
+            Kind::Symmetric.field("M", [3, 3], "mass plus added mass, body frame"),
+            Kind::Matrix.field("D", [3, 3], "coupling of angular and linear velocity, body frame"),
             Kind::Vector
                 .field(
                     "b",
                     [4, 1],
-                    "(moment of weight less buoyancy, net weight), body frame",
+                    "(moment of weight minus buoyancy, net weight), body frame",
                 ),
             Kind::Vector
-                .field("Z", [4, 1], "(vertical up, 0), the plane of height 0 in space"),
+                .field("Z", [4, 1], "(vertical (up), 0), the plane of height 0, space frame"),
         ],
         initial: &[
-            Kind::RigidMotion.field("G", [4, 4], "position, body to space"),
+            Kind::RigidMotion.field("G", [4, 4], "position and attitude, body to space"),
             Kind::BodyMomentum.field("body_momentum", [6, 1], "momentum, body frame"),
         ],
         observables: &[
-            Kind::RigidMotion.field("G", [4, 4], "position, body to space"),
+            Kind::RigidMotion.field("G", [4, 4], "position and attitude, body to space"),
             Kind::BodyMomentum.field("body_momentum", [6, 1], "momentum, body frame"),
             Kind::SpatialMomentum
                 .field("spatial_momentum", [6, 1], "momentum, space frame"),
-            Kind::Vector.field("P", [4, 1], "(vertical, height) seen from the body"),
+            Kind::Vector.field("P", [4, 1], "(vertical, height), body frame"),
         ],
         invariants: &[
             Invariant::bounded(

@@ -7,30 +7,30 @@ use ::clebsch::emitted::*;
 /// Parameters of [`MixedFour`](struct@MixedFour), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixedFourParameters<T = f64> {
-    /// `J`: second moments of the first body about its fixed point; a 3 x 3 matrix, symmetric.
+    /// `J`: second moments of mass of the first body about its fixed point, body frame; a 3 x 3 matrix, symmetric.
     pub J: SMatrix<T, 3, 3>,
-    /// `A`: second moments of the rigid motion about its own point; a 3 x 3 matrix, symmetric.
+    /// `A`: second moments of mass of the free body about its reference point, body frame; a 3 x 3 matrix, symmetric.
     pub A: SMatrix<T, 3, 3>,
-    /// `M`: mass of the rigid motion; a number.
+    /// `M`: mass of the free body; a number.
     pub M: T,
     /// `I`: principal moments of inertia of the second body; a 3 x 3 matrix, diagonal.
     pub I: SMatrix<T, 3, 3>,
-    /// `m`: mass of the point; a number.
+    /// `m`: mass of the point mass; a number.
     pub m: T,
-    /// `b`: weight of the quartic term of its kinetic energy; a number.
+    /// `b`: coefficient of the quartic kinetic energy of the point mass; a number.
     pub b: T,
     /// `k`: stiffness of the springs; a number.
     pub k: T,
-    /// `p`: where springs are fixed: in the first body, in the rigid motion, in the second body; a vector of 3 components.
+    /// `p`: attachment points of the springs, body frames: first body, free body, second body; a vector of 3 components.
     pub p: SVector<T, 3>,
-    /// `s`: where springs are fixed: in the first body, in the rigid motion, in the second body; a vector of 3 components.
+    /// `s`: attachment points of the springs, body frames: first body, free body, second body; a vector of 3 components.
     pub s: SVector<T, 3>,
-    /// `e`: where springs are fixed: in the first body, in the rigid motion, in the second body; a vector of 3 components.
+    /// `e`: attachment points of the springs, body frames: first body, free body, second body; a vector of 3 components.
     pub e: SVector<T, 3>,
-    /// `g`: acceleration of gravity, which acts on the point; a vector of 3 components.
+    /// `g`: gravitational acceleration of the point mass, space frame; a vector of 3 components.
     pub g: SVector<T, 3>,
 }
-/// Two bodies, a rigid motion and a point mass joined by springs.
+/// Two rigid bodies with fixed points, a free rigid body and a point mass, coupled by springs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixedFour<T = f64> {
     parameters: MixedFourParameters<T>,
@@ -40,7 +40,7 @@ pub struct MixedFour<T = f64> {
 }
 impl<T: Real> MixedFour<T> {
     /// The model as it was stated.
-    pub const SOURCE: &'static str = "/// Two bodies, a rigid motion and a point mass joined by springs.\npub model MixedFour {\n    /// second moments of the first body about its fixed point\n    param J: Sym<3>;\n    /// second moments of the rigid motion about its own point\n    param A: Sym<3>;\n    /// mass of the rigid motion\n    param M: Real;\n    /// principal moments of inertia of the second body\n    param I: Diag<3>;\n    /// mass of the point\n    param m: Real;\n    /// weight of the quartic term of its kinetic energy\n    param b: Real;\n    /// stiffness of the springs\n    param k: Real;\n    /// where springs are fixed: in the first body, in the rigid motion, in the second body\n    param p: Vec<3>;\n    /// where springs are fixed: in the first body, in the rigid motion, in the second body\n    param s: Vec<3>;\n    /// where springs are fixed: in the first body, in the rigid motion, in the second body\n    param e: Vec<3>;\n    /// acceleration of gravity, which acts on the point\n    param g: Vec<3>;\n    /// attitude of the first body\n    group R: SO<3> velocity V;\n    /// attitude and place of the rigid motion\n    group G: SE<3> velocity W;\n    /// attitude of the second body\n    group q: SU<2> velocity Y;\n    /// place of the point\n    field X: Vec<3>;\n    constraint next(R) = R*V;\n    constraint next(G) = G*W;\n    constraint next(q) = q*Y;\n    lagrangian = -tr(J*V)/h - tr(A*rot(W))/h + M*dot(pos(next(G)) - pos(G), pos(next(G)) - pos(G))/(2*h) + 2*dot(im(Y), I*im(Y))/h + m*dot(next(X) - X, next(X) - X)/(2*h) + b*dot(next(X) - X, next(X) - X)^2/h^3 + h*m*dot(g, X) - (1/2)*h*k*dot(X - R*p, X - R*p) - (1/2)*h*k*dot(pos(G) + rot(G)*s - X, pos(G) + rot(G)*s - X) - h*k*dot(rot(q)*e, R*p);\n}";
+    pub const SOURCE: &'static str = "/// Two rigid bodies with fixed points, a free rigid body and a point mass, coupled by springs.\npub model MixedFour {\n    /// second moments of mass of the first body about its fixed point, body frame\n    param J: Sym<3>;\n    /// second moments of mass of the free body about its reference point, body frame\n    param A: Sym<3>;\n    /// mass of the free body\n    param M: Real;\n    /// principal moments of inertia of the second body\n    param I: Diag<3>;\n    /// mass of the point mass\n    param m: Real;\n    /// coefficient of the quartic kinetic energy of the point mass\n    param b: Real;\n    /// stiffness of the springs\n    param k: Real;\n    /// attachment points of the springs, body frames: first body, free body, second body\n    param p: Vec<3>;\n    /// attachment points of the springs, body frames: first body, free body, second body\n    param s: Vec<3>;\n    /// attachment points of the springs, body frames: first body, free body, second body\n    param e: Vec<3>;\n    /// gravitational acceleration of the point mass, space frame\n    param g: Vec<3>;\n    /// attitude of the first body, body to space\n    group R: SO<3> velocity V;\n    /// position and attitude of the free body, body to space\n    group G: SE<3> velocity W;\n    /// attitude of the second body, body to space\n    group q: SU<2> velocity Y;\n    /// position of the point mass, space frame\n    field X: Vec<3>;\n    constraint next(R) = R*V;\n    constraint next(G) = G*W;\n    constraint next(q) = q*Y;\n    lagrangian = -tr(J*V)/h - tr(A*rot(W))/h + M*dot(pos(next(G)) - pos(G), pos(next(G)) - pos(G))/(2*h) + 2*dot(im(Y), I*im(Y))/h + m*dot(next(X) - X, next(X) - X)/(2*h) + b*dot(next(X) - X, next(X) - X)^2/h^3 + h*m*dot(g, X) - (1/2)*h*k*dot(X - R*p, X - R*p) - (1/2)*h*k*dot(pos(G) + rot(G)*s - X, pos(G) + rot(G)*s - X) - h*k*dot(rot(q)*e, R*p);\n}";
     /// A number that changes when the model or its derivation does.
     pub const FINGERPRINT: u64 = 497044879311639715u64;
     /// Checks the parameters.
@@ -1382,7 +1382,7 @@ impl MixedFour<f64> {
     pub const CARD: Card = Card {
         name: "MixedFour",
         kebab: "mixed-four",
-        doc: "Two bodies, a rigid motion and a point mass joined by springs.",
+        doc: "Two rigid bodies with fixed points, a free rigid body and a point mass, coupled by springs.",
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J V_k)/h - tr(A rot(W_k))/h + M pos(W_k)·pos(W_k)/(2 h) + 2 im(Y_k)·(I im(Y_k))/h + m ΔX_k·ΔX_k/(2 h) + b (ΔX_k·ΔX_k)²/h³ + ½ h m g·X_k - ¼ h k (X_k - R_k p)·(X_k - R_k p) - ¼ h k (pos(G_k) + rot(G_k) s - X_k)·(pos(G_k) + rot(G_k) s - X_k) - ½ h k e·(relative_{R,q,k}ᵀ p) + ½ h m g·X_{k+1} - ¼ h k (X_{k+1} - R_{k+1} p)·(X_{k+1} - R_{k+1} p) - ¼ h k (pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1})·(pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1}) - ½ h k e·(relative_{R,q,k+1}ᵀ p)\nmomentum of R        -J V_kᵀ/h + V_k J/h\nmomentum of G        (-2 vee(A rot(W_k)ᵀ)/h, M pos(W_k)/h)\nmomentum of q        2 im(Y_k quat(I im(Y_k)))/h\nmomentum of X        4 b (ΔX_k·ΔX_k) ΔX_k/h³ + m ΔX_k/h\nRiccati form         exact, C = J; none: the group is not SO(n); none; in unit quaternions, A = I, β = 0; none: the balance is not linear in ΔX\ninvariants           total_momentum_angular_g\ntime reversal        symmetric: second order\ncertificate          51 identities proved by normal form, 10 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
@@ -1392,68 +1392,68 @@ impl MixedFour<f64> {
                 .field(
                     "J",
                     [3, 3],
-                    "second moments of the first body about its fixed point",
+                    "second moments of mass of the first body about its fixed point, body frame",
                 ),
             Kind::SecondMoments
                 .field(
                     "A",
                     [3, 3],
-                    "second moments of the rigid motion about its own point",
+                    "second moments of mass of the free body about its reference point, body frame",
                 ),
-            Kind::Scalar.field("M", [1, 1], "mass of the rigid motion"),
+            Kind::Scalar.field("M", [1, 1], "mass of the free body"),
             Kind::Diagonal
                 .field("I", [3, 3], "principal moments of inertia of the second body"),
-            Kind::Scalar.field("m", [1, 1], "mass of the point"),
+            Kind::Scalar.field("m", [1, 1], "mass of the point mass"),
             Kind::Scalar
-                .field("b", [1, 1], "weight of the quartic term of its kinetic energy"),
+                .field("b", [1, 1], "coefficient of the quartic kinetic energy of the point mass"),
             Kind::Scalar.field("k", [1, 1], "stiffness of the springs"),
             Kind::Vector
                 .field(
                     "p",
                     [3, 1],
-                    "where springs are fixed: in the first body, in the rigid motion, in the second body",
+                    "attachment points of the springs, body frames: first body, free body, second body",
                 ),
             Kind::Vector
                 .field(
                     "s",
                     [3, 1],
-                    "where springs are fixed: in the first body, in the rigid motion, in the second body",
+                    "attachment points of the springs, body frames: first body, free body, second body",
                 ),
             Kind::Vector
                 .field(
                     "e",
                     [3, 1],
-                    "where springs are fixed: in the first body, in the rigid motion, in the second body",
+                    "attachment points of the springs, body frames: first body, free body, second body",
                 ),
             Kind::Vector
-                .field("g", [3, 1], "acceleration of gravity, which acts on the point"),
+                .field("g", [3, 1], "gravitational acceleration of the point mass, space frame"),
         ],
         initial: &[
-            Kind::Rotation.field("R", [3, 3], "attitude of the first body"),
+            Kind::Rotation.field("R", [3, 3], "attitude of the first body, body to space"),
             Kind::BodyMomentum.field("body_momentum_R", [3, 1], "momentum, body frame"),
             Kind::RigidMotion
-                .field("G", [4, 4], "attitude and place of the rigid motion"),
+                .field("G", [4, 4], "position and attitude of the free body, body to space"),
             Kind::BodyMomentum.field("body_momentum_G", [6, 1], "momentum, body frame"),
-            Kind::UnitQuaternion.field("q", [4, 1], "attitude of the second body"),
+            Kind::UnitQuaternion.field("q", [4, 1], "attitude of the second body, body to space"),
             Kind::BodyMomentum.field("body_momentum_q", [3, 1], "momentum, body frame"),
-            Kind::Vector.field("X", [3, 1], "place of the point"),
+            Kind::Vector.field("X", [3, 1], "position of the point mass, space frame"),
             Kind::FieldMomentum.field("momentum_X", [3, 1], "momentum of X"),
         ],
         observables: &[
-            Kind::Rotation.field("R", [3, 3], "attitude of the first body"),
+            Kind::Rotation.field("R", [3, 3], "attitude of the first body, body to space"),
             Kind::BodyMomentum.field("body_momentum_R", [3, 1], "momentum, body frame"),
             Kind::SpatialMomentum
                 .field("spatial_momentum_R", [3, 1], "momentum, space frame"),
             Kind::RigidMotion
-                .field("G", [4, 4], "attitude and place of the rigid motion"),
+                .field("G", [4, 4], "position and attitude of the free body, body to space"),
             Kind::BodyMomentum.field("body_momentum_G", [6, 1], "momentum, body frame"),
             Kind::SpatialMomentum
                 .field("spatial_momentum_G", [6, 1], "momentum, space frame"),
-            Kind::UnitQuaternion.field("q", [4, 1], "attitude of the second body"),
+            Kind::UnitQuaternion.field("q", [4, 1], "attitude of the second body, body to space"),
             Kind::BodyMomentum.field("body_momentum_q", [3, 1], "momentum, body frame"),
             Kind::SpatialMomentum
                 .field("spatial_momentum_q", [3, 1], "momentum, space frame"),
-            Kind::Vector.field("X", [3, 1], "place of the point"),
+            Kind::Vector.field("X", [3, 1], "position of the point mass, space frame"),
             Kind::FieldMomentum.field("momentum_X", [3, 1], "momentum of X"),
             Kind::Matrix.field("relative_R_q", [3, 3], ""),
         ],

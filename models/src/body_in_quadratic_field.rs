@@ -5,15 +5,15 @@ use crate::case::{Case, Citations, Entry, Place, bounds, diagonal, poinsot, rota
 use crate::thesis::THESIS;
 
 clebsch::model! {
-    /// Rigid body in a quadratic field.
+    /// Rigid body about a fixed point in a quadratic field.
     pub model BodyInQuadraticField {
         /// Poinsot (second-moment) matrix
         param J: Sym<3>;
-        /// the field: energy ½ Γ·KΓ
+        /// matrix of the field, body frame: potential energy ½ Γ·KΓ
         param K: Sym<3>;
         /// attitude, body to space
         group Λ: SO<3> velocity Ω;
-        /// axis of the field seen from the body
+        /// axis of the field, body frame
         advected Γ: Vec<3>;
         /// reconstruction
         constraint next(Λ) = Λ*Ω;
@@ -60,14 +60,14 @@ pub fn entry() -> Entry {
         cases: vec![
             case(
                 "satellite",
-                "K = 3 n² I with the mean motion n = 0.3 of an orbit whose turning is left out: Brun's integrable case",
+                "K = 3 n² I with the mean motion n = 0.3, orbital rotation neglected: Brun's integrable case",
                 moments,
                 diagonal(moments.map(|i| 0.27 * i)),
                 [0.48, 0.6, 0.64],
             ),
             case(
                 "general",
-                "a field whose axes are not those of the body",
+                "field whose principal axes differ from those of the body",
                 moments,
                 vec![1.0, 0.3, -0.2, 0.3, -0.5, 0.4, -0.2, 0.4, 0.7],
                 [0.48, 0.6, 0.64],

@@ -9,7 +9,7 @@ clebsch::model! {
     pub model BodyInTwoFields {
         /// Poinsot (second-moment) matrix
         param J: Sym<3>;
-        /// weight times support -> centre of mass, body frame
+        /// weight times the vector from support to centre of mass, body frame
         param gU: Vec<3> as r"m g \chi";
         /// dipole moment, body frame
         param p: Vec<3>;
@@ -19,13 +19,13 @@ clebsch::model! {
         param b: Vec<3>;
         /// attitude, body to space
         group Λ: SO<3> velocity Ω;
-        /// the vertical seen from the body
+        /// vertical, body frame
         advected Γ: Vec<3> = Λ^T*z;
-        /// the field seen from the body
+        /// field that acts on the dipole, body frame
         advected B: Vec<3> = Λ^T*b;
         /// reconstruction
         constraint next(Λ) = Λ*Ω;
-        /// both are fixed in space
+        /// Γ and B are fixed in space
         constraint next(Γ) = Ω^T*Γ;
         constraint next(B) = Ω^T*B;
         lagrangian = -tr(J*Ω)/h - h*(dot(gU, Γ) - dot(p, B));

@@ -9,7 +9,7 @@ clebsch::model! {
     /// Free rigid body in n dimensions.
     pub model BodyN {
         dim n in 3..=8;
-        /// second moments; any matrix of positive determinant
+        /// second moments of mass; any matrix with positive determinant
         param C: Mat<n>;
         /// attitude, body to space
         group Λ: SO<n> velocity Ω;
@@ -88,50 +88,50 @@ pub fn entry() -> Entry {
         cases: vec![
             case(
                 "four",
-                "four dimensions, 0.3 of the bound",
+                "four dimensions, momentum at 0.3 of the existence bound",
                 moments::<4>(),
                 0.3,
             ),
             case(
                 "three",
-                "three dimensions, 0.3 of the bound",
+                "three dimensions, momentum at 0.3 of the existence bound",
                 moments::<3>(),
                 0.3,
             ),
             case(
                 "five",
-                "five dimensions, 0.3 of the bound",
+                "five dimensions, momentum at 0.3 of the existence bound",
                 moments::<5>(),
                 0.3,
             ),
             case(
                 "six",
-                "six dimensions, 0.3 of the bound",
+                "six dimensions, momentum at 0.3 of the existence bound",
                 moments::<6>(),
                 0.3,
             ),
             case(
                 "seven",
-                "seven dimensions, 0.3 of the bound",
+                "seven dimensions, momentum at 0.3 of the existence bound",
                 moments::<7>(),
                 0.3,
             ),
             case(
                 "eight",
-                "eight dimensions, 0.3 of the bound",
+                "eight dimensions, momentum at 0.3 of the existence bound",
                 moments::<8>(),
                 0.3,
             ),
             case(
                 "near-the-bound",
-                "four dimensions, 0.95 of the bound",
+                "four dimensions, momentum at 0.95 of the existence bound",
                 moments::<4>(),
                 0.95,
             ),
             case(
                 "turned",
-                "four dimensions, a left factor that is not symmetric, 0.3 of the bound; for this step only: \
-                 with a factor that stays, the term tr(Cᵀ ξ) does not shrink with the step",
+                "four dimensions, non-symmetric left factor, momentum at 0.3 of the existence bound; for this step size \
+                 only, since with a fixed factor the term tr(Cᵀ ξ) does not vanish as h -> 0",
                 moments::<4>() * turn::<4>(),
                 0.3,
             ),

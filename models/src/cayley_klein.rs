@@ -4,12 +4,12 @@
 use crate::case::{Case, Citations, Entry, bounds, diagonal};
 
 clebsch::model! {
-    /// Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its
-    /// fibres over the sphere of body momenta are circles.
+    /// Free rigid body in unit quaternions.
+    /// The body momentum is q* m q, a Hopf map of q: its fibres over the sphere of body momenta are circles.
     pub model CayleyKlein {
         /// principal moments of inertia
         param I: Diag<3>;
-        /// 0: Moser-Veselov; 1: as in the thesis
+        /// choice of discretisation: 0 for Moser-Veselov, 1 for the thesis
         param c: Real;
         /// attitude, body to space
         group q: SU<2> velocity W;
@@ -53,7 +53,7 @@ pub fn entry() -> Entry {
             ),
             case(
                 "figure-2-9-thesis",
-                "the same body with the discretisation of the thesis's type, c = 1",
+                "the same body with c = 1, the type of discretisation in the thesis",
                 SYMMETRIC,
                 1.0,
                 1e-3,
@@ -61,7 +61,7 @@ pub fn entry() -> Entry {
             ),
             case(
                 "asymmetric",
-                "moments (3.5, 2.5, 2) with c = 1: the energy oscillates",
+                "asymmetric body, moments (3.5, 2.5, 2), with c = 1: the energy oscillates",
                 [3.5, 2.5, 2.0],
                 1.0,
                 1e-3,

@@ -7,11 +7,11 @@ use crate::cayley_klein::{MOMENTUM, SYMMETRIC};
 clebsch::model! {
     /// Free rigid body in unit quaternions, spatial representation.
     pub model CayleyKleinSpatial {
-        /// 0: Moser-Veselov; 1: as in the thesis
+        /// choice of discretisation: 0 for Moser-Veselov, 1 for the thesis
         param c: Real;
         /// attitude, body to space
         group q: SU<2> velocity w;
-        /// inertia, space frame
+        /// inertia tensor, space frame
         advected I: Sym<3>;
         constraint next(q) = w*q;
         constraint next(I) = rot(w)*I*rot(w)^T;
@@ -49,7 +49,7 @@ pub fn entry() -> Entry {
             ),
             case(
                 "asymmetric",
-                "moments (3.5, 2.5, 2) with c = 1",
+                "asymmetric body, moments (3.5, 2.5, 2), with c = 1",
                 [3.5, 2.5, 2.0],
                 1.0,
             ),

@@ -14,7 +14,7 @@ clebsch::model! {
         param B: Vec<3>;
         /// electric field
         param E: Vec<3>;
-        /// place of the particle
+        /// position of the particle
         field X: Vec<3>;
         let d = next(X) - X;
         lagrangian = m*dot(d, d)/(2*h) + (q/2)*dot(cross(B, X), d) + h*q*dot(E, X);
@@ -45,12 +45,12 @@ pub fn entry() -> Entry {
         cases: vec![
             case(
                 "drift",
-                "crossed fields, E of a tenth of B: the centre of the helix drifts along E x B",
+                "crossed fields, |E| = |B|/10: the guiding centre drifts along E x B",
                 [0.1, 0.0, 0.0],
             ),
             case(
                 "gyration",
-                "a helix about the magnetic field, no electric one",
+                "helix about the magnetic field, without electric field",
                 [0.0; 3],
             ),
         ],

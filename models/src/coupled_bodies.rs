@@ -5,11 +5,11 @@ use crate::case::{Case, Citations, Entry, Place, bounds, diagonal, identity, poi
 use crate::thesis::{THESIS, system};
 
 clebsch::model! {
-    /// Two rigid bodies with a spherical joint.
+    /// Two rigid bodies connected by a spherical joint.
     pub model CoupledBodies {
-        /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ
+        /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames
         param J1, J2: Sym<3>;
-        /// joint -> centre of mass, each in its body's axes
+        /// vectors from the joint to the centres of mass, body frames
         param d1, d2: Vec<3>;
         /// reduced mass m₁ m₂/(m₁ + m₂)
         param eps: Real as r"\varepsilon";
@@ -17,7 +17,7 @@ clebsch::model! {
         group Λ1: SO<3> velocity Ω1;
         /// attitude of body 2, body to space
         group Λ2: SO<3> velocity Ω2;
-        /// body 2 seen from body 1
+        /// attitude of body 2 relative to body 1
         advected R: SO<3> = Λ1^T*Λ2;
         constraint next(Λ1) = Λ1*Ω1;
         constraint next(Λ2) = Λ2*Ω2;
@@ -149,7 +149,7 @@ pub fn entry() -> Entry {
         cases: vec![
             case(
                 "symmetric",
-                "identical symmetric bodies (2, 2, 1) at right angles, arms along their axes: μ₃ of each is exact",
+                "identical symmetric bodies (2, 2, 1) at right angles, arms along their axes: both μ₃ are conserved exactly",
                 10_000,
                 [along, along],
                 right_angle.clone(),
@@ -157,7 +157,7 @@ pub fn entry() -> Entry {
             ),
             case(
                 "figure-2-12",
-                "identical bodies at right angles; masses and arms, which the thesis omits, chosen as eps = 0.5, d = e₁",
+                "identical bodies at right angles, with eps = 0.5 and d = e₁, since the thesis omits masses and arms",
                 1_000,
                 [across, across],
                 right_angle.clone(),
@@ -165,7 +165,7 @@ pub fn entry() -> Entry {
             ),
             case(
                 "figure-2-13",
-                "identical bodies initially aligned, the same choice: exchange symmetry, an unstable motion",
+                "identical bodies initially aligned, same eps and d: exchange symmetry, unstable motion",
                 10_000,
                 [across, across],
                 identity(),
@@ -181,7 +181,7 @@ pub fn entry() -> Entry {
             ),
             case(
                 "general",
-                "two different asymmetric bodies with arms off their axes: chaotic",
+                "two different asymmetric bodies with arms off their principal axes: chaotic",
                 10_000,
                 general,
                 identity(),

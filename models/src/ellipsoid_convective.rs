@@ -12,15 +12,15 @@ clebsch::model! {
         dim n in 2..=4;
         /// metric of space
         param C0: Sym<n> as "C_0";
-        /// second moments of mass in the reference
+        /// second moments of mass, reference configuration
         param I0: Sym<n> as "I_0";
-        /// stiffness of lengths, of areas and of volumes
+        /// stiffness against changes of length, area and volume
         param a, b, c: Real;
-        /// resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c
+        /// resistance to collapse; the identity is stress-free if d = 2 a + 2 (n - 1) b + 2 c
         param d: Real;
         /// placement, reference to space
         group Q: GL<n> velocity G;
-        /// metric of space seen from the body
+        /// metric of space, pulled back to the reference configuration
         advected C: Sym<n> = Q^T*C0*Q;
         constraint next(Q) = Q*G;
         constraint next(C) = G^T*C*G;

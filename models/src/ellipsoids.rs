@@ -107,7 +107,7 @@ pub(crate) fn ellipsoids() -> Vec<Ellipsoid> {
         isotropic(
             3,
             "natural",
-            "a ball of Mooney and Rivlin's material, set spinning and pulsing from its natural state",
+            "Mooney-Rivlin ball that rotates and pulsates from its natural state",
         ),
         Ellipsoid {
             h: 0.05,
@@ -118,7 +118,7 @@ pub(crate) fn ellipsoids() -> Vec<Ellipsoid> {
             ..isotropic(
                 3,
                 "figure-3-1",
-                "stretches and material of thesis figure 3.1, whose d = 50 is below that of the natural state, slowly turning",
+                "stretches and material of thesis figure 3.1, with d = 50 below the natural-state value, in slow rotation",
             )
         },
         Ellipsoid {
@@ -128,7 +128,7 @@ pub(crate) fn ellipsoids() -> Vec<Ellipsoid> {
             ..isotropic(
                 3,
                 "anisotropic",
-                "metric and second moments without a common axis, prestressed",
+                "metric and second moments without a common principal axis, prestressed",
             )
         },
         isotropic(2, "two", "two dimensions, from the natural state"),

@@ -93,14 +93,14 @@ pub fn entry() -> Entry {
             ),
             case(
                 "figure-2-15",
-                "moments (1, 2, 3), energy for many steps: thesis figure 2.15, whose body is not stated",
+                "moments (1, 2, 3), long-time energy: thesis figure 2.15, which does not state the body",
                 flat,
                 [-0.5, 0.0, 1.0],
                 1_000,
             ),
             case(
                 "figure-2-16",
-                "the same body, a million steps: thesis figure 2.16, time of computation",
+                "the same body over a million steps: thesis figure 2.16, computing time",
                 flat,
                 [-0.5, 0.0, 1.0],
                 1_000_000,
@@ -109,7 +109,7 @@ pub fn entry() -> Entry {
                 h: 0.01,
                 ..case(
                     "figure-2-17",
-                    "the same body with h = 0.01: thesis figure 2.17, drift beside a splitting method",
+                    "the same body with h = 0.01: thesis figure 2.17, drift compared with a splitting method",
                     flat,
                     [-0.5, 0.0, 1.0],
                     10_000,
@@ -117,7 +117,7 @@ pub fn entry() -> Entry {
             },
             case(
                 "flat-body",
-                "moments (1, 2, 3), whose Poinsot matrix is singular: the inertia of thesis figure 2.17",
+                "moments (1, 2, 3), with a singular Poinsot matrix: the inertia of thesis figure 2.17",
                 flat,
                 [0.5, 0.3, 1.0],
                 10_000,

@@ -11,11 +11,11 @@ clebsch::model! {
     pub model FreeBodySpatial {
         /// attitude, body to space
         group Λ: SO<3> velocity ω;
-        /// Poinsot (second-moment) matrix in space axes
+        /// Poinsot (second-moment) matrix, space frame
         advected J: Sym<3>;
         /// reconstruction
         constraint next(Λ) = ω*Λ;
-        /// the body carries its second moments along
+        /// advection of the second moments
         constraint next(J) = ω*J*ω^T;
         lagrangian = -tr(ω*J)/h;
     }
@@ -97,7 +97,7 @@ pub fn entry() -> Entry {
             ),
             case(
                 "turned",
-                "the asymmetric body started from the attitude of the quaternion (√0.86, 0.1, -0.3, 0.2)",
+                "asymmetric body, initial attitude from the quaternion (√0.86, 0.1, -0.3, 0.2)",
                 [3.5, 2.5, 2.0],
                 rotation([0.86_f64.sqrt(), 0.1, -0.3, 0.2]),
                 [-0.5, 0.0, 1.0],

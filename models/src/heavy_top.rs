@@ -8,17 +8,17 @@ clebsch::model! {
     pub model HeavyTop {
         /// Poinsot (second-moment) matrix
         param J: Sym<3>;
-        /// weight times support -> centre of mass, body frame
+        /// weight times the vector from support to centre of mass, body frame
         param gU: Vec<3> as r"m g \chi";
         /// vertical (up), space frame
         param z: Vec<3>;
         /// attitude, body to space
         group Λ: SO<3> velocity Ω;
-        /// the vertical seen from the body
+        /// vertical, body frame
         advected Γ: Vec<3> = Λ^T * z;
         /// reconstruction
         constraint next(Λ) = Λ * Ω;
-        /// how Γ is carried
+        /// advection of Γ
         constraint next(Γ) = Ω^T * Γ;
         lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);
     }
@@ -100,7 +100,7 @@ pub fn entry() -> Entry {
         cases: vec![
             case(
                 "lagrange",
-                "Lagrange top (2, 2, 1), m g χ = e₃, tilted by the angle of the 3-4-5 triangle",
+                "Lagrange top (2, 2, 1), m g χ = e₃, tilted by arccos(4/5)",
                 symmetric,
                 centre,
                 tilted(0.8, 0.6),
@@ -111,7 +111,7 @@ pub fn entry() -> Entry {
                 steps: 1_000,
                 ..case(
                     "figure-2-11",
-                    "hanging top of thesis figure 2.11; m g χ, which the thesis omits, is chosen as -e₃",
+                    "hanging top of thesis figure 2.11, with m g χ = -e₃, which the thesis omits",
                     symmetric,
                     [0.0, 0.0, -1.0],
                     identity(),

@@ -13,15 +13,15 @@ clebsch::model! {
         param z: Vec<3>;
         /// attitude, body to space
         group Λ: SO<3> velocity ω;
-        /// Poinsot (second-moment) matrix in space axes
+        /// Poinsot (second-moment) matrix, space frame
         advected J: Sym<3>;
-        /// support -> centre of mass, space axes
+        /// vector from support to centre of mass, space frame
         advected χ: Vec<3>;
         /// reconstruction
         constraint next(Λ) = ω*Λ;
-        /// the body carries its second moments along
+        /// advection of the second moments
         constraint next(J) = ω*J*ω^T;
-        /// and its centre of mass
+        /// advection of the centre of mass
         constraint next(χ) = ω*χ;
         lagrangian = -tr(ω*J)/h - h*w*dot(χ, z);
     }
@@ -82,7 +82,7 @@ pub fn entry() -> Entry {
         cases: vec![
             case(
                 "lagrange",
-                "Lagrange top (2, 2, 1), m g χ = e₃ in body axes, tilted by the angle of the 3-4-5 triangle",
+                "Lagrange top (2, 2, 1), m g χ = e₃ in the body frame, tilted by arccos(4/5)",
                 symmetric,
                 [0.0, 0.0, 1.0],
                 [0.1, 0.0, 1.0],
@@ -90,7 +90,7 @@ pub fn entry() -> Entry {
             ),
             case(
                 "hanging",
-                "the same top hanging, m g χ = -e₃ in body axes",
+                "the same Lagrange top, hanging: m g χ = -e₃ in the body frame",
                 symmetric,
                 [0.0, 0.0, -1.0],
                 [0.1, 0.0, 1.0],

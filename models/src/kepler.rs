@@ -4,13 +4,13 @@
 use crate::case::{Case, Citations, Entry, bounds};
 
 clebsch::model! {
-    /// Planet about a fixed sun.
+    /// Kepler problem: a planet orbits a fixed sun.
     pub model Kepler {
         /// mass of the planet
         param m: Real;
-        /// gravitational parameter of the sun: its mass times the constant of gravitation
+        /// gravitational parameter of the sun: the gravitational constant times its mass
         param k: Real;
-        /// place of the planet, the sun at the origin
+        /// position of the planet relative to the sun
         field X: Vec<3>;
         let d = next(X) - X;
         lagrangian = m*dot(d, d)/(2*h) + h*m*k/sqrt(dot(X, X));
@@ -40,7 +40,7 @@ pub fn entry() -> Entry {
         cases: vec![
             case(
                 "circular",
-                "circle of radius 1 about a sun of parameter 1, 125 steps a revolution",
+                "circular orbit of radius 1, gravitational parameter 1, 125 steps per revolution",
                 0.05,
                 1.0,
                 1.0,
@@ -48,7 +48,7 @@ pub fn entry() -> Entry {
             ),
             case(
                 "eccentric",
-                "ellipse of half-axis 1 and eccentricity 0.6 from its perihelion, 314 steps a revolution",
+                "ellipse of semi-major axis 1 and eccentricity 0.6, started at perihelion, 314 steps per revolution",
                 0.02,
                 0.4,
                 2.0,

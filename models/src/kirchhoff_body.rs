@@ -6,21 +6,21 @@
 use crate::case::{Case, Citations, Entry, bounds, diagonal};
 
 clebsch::model! {
-    /// Rigid body in an ideal fluid, with added masses, coupling, and net weight.
+    /// Rigid body in an ideal fluid, with added mass, rotation-translation coupling and net weight.
     pub model KirchhoffBody {
-        /// Poinsot matrix of the rotational inertia, fluid included
+        /// Poinsot matrix of the rotational inertia plus the added inertia of the fluid, body frame
         param J: Sym<3>;
-        /// mass and added masses
+        /// mass plus added mass, body frame
         param M: Sym<3>;
-        /// coupling of rotation and translation
+        /// coupling of angular and linear velocity, body frame
         param D: Mat<3>;
-        /// (moment of weight less buoyancy, net weight), body frame
+        /// (moment of weight minus buoyancy, net weight), body frame
         param b: Vec<4>;
-        /// (vertical up, 0), the plane of height 0 in space
+        /// (vertical (up), 0), the plane of height 0, space frame
         param Z: Vec<4>;
-        /// position, body to space
+        /// position and attitude, body to space
         group G: SE<3> velocity V;
-        /// (vertical, height) seen from the body
+        /// (vertical, height), body frame
         advected P: Vec<4> = G^T*Z;
         constraint next(G) = G*V;
         constraint next(P) = V^T*P;
@@ -62,28 +62,28 @@ pub fn entry() -> Entry {
         cases: vec![
             case(
                 "ellipsoid",
-                "neutrally buoyant body with three planes of symmetry, 2000 steps",
+                "neutrally buoyant body with three symmetry planes, 2000 steps",
                 [0.0; 3],
                 [0.0; 4],
                 2_000,
             ),
             case(
                 "screw",
-                "neutrally buoyant body whose rotation and translation are coupled",
+                "neutrally buoyant body with rotation-translation coupling",
                 [0.1, -0.05, 0.15],
                 [0.0; 4],
                 2_000,
             ),
             case(
                 "floating",
-                "weight and buoyancy in balance, the centre of mass off the centre of buoyancy",
+                "weight equal to buoyancy, centre of mass off the centre of buoyancy",
                 [0.1, -0.05, 0.15],
                 [0.1, 0.0, -0.2, 0.0],
                 2_000,
             ),
             case(
                 "sinking",
-                "a heavy body, its centre of mass off the centre of buoyancy",
+                "negatively buoyant body, centre of mass off the centre of buoyancy",
                 [0.1, -0.05, 0.15],
                 [0.1, 0.0, -0.2, 0.3],
                 1_000,

@@ -6,33 +6,33 @@ use crate::case::{Case, Citations, Entry, Place, diagonal, identity};
 use crate::thesis::THESIS;
 
 clebsch::model! {
-    /// Two bodies, a rigid motion and a point mass joined by springs.
+    /// Two rigid bodies with fixed points, a free rigid body and a point mass, coupled by springs.
     pub model MixedFour {
-        /// second moments of the first body about its fixed point
+        /// second moments of mass of the first body about its fixed point, body frame
         param J: Sym<3>;
-        /// second moments of the rigid motion about its own point
+        /// second moments of mass of the free body about its reference point, body frame
         param A: Sym<3>;
-        /// mass of the rigid motion
+        /// mass of the free body
         param M: Real;
         /// principal moments of inertia of the second body
         param I: Diag<3>;
-        /// mass of the point
+        /// mass of the point mass
         param m: Real;
-        /// weight of the quartic term of its kinetic energy
+        /// coefficient of the quartic kinetic energy of the point mass
         param b: Real;
         /// stiffness of the springs
         param k: Real;
-        /// where springs are fixed: in the first body, in the rigid motion, in the second body
+        /// attachment points of the springs, body frames: first body, free body, second body
         param p, s, e: Vec<3>;
-        /// acceleration of gravity, which acts on the point
+        /// gravitational acceleration of the point mass, space frame
         param g: Vec<3>;
-        /// attitude of the first body
+        /// attitude of the first body, body to space
         group R: SO<3> velocity V;
-        /// attitude and place of the rigid motion
+        /// position and attitude of the free body, body to space
         group G: SE<3> velocity W;
-        /// attitude of the second body
+        /// attitude of the second body, body to space
         group q: SU<2> velocity Y;
-        /// place of the point
+        /// position of the point mass, space frame
         field X: Vec<3>;
         constraint next(R) = R*V;
         constraint next(G) = G*W;
@@ -98,12 +98,12 @@ pub fn entry() -> Entry {
         cases: vec![
             case(
                 "quartic",
-                "all four in motion, the quartic part of the point's kinetic energy a tenth of the quadratic one at the start",
+                "all bodies in motion; initially the quartic kinetic energy of the point mass is a tenth of the quadratic part",
                 0.3,
             ),
             case(
                 "strongly-quartic",
-                "the same, with nearly half of the quadratic part",
+                "the same motion, with a quartic kinetic energy of nearly half of the quadratic part",
                 3.0,
             ),
         ],

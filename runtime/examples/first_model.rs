@@ -8,10 +8,10 @@ clebsch::model! {
     /// Heavy top, body representation.
     pub model Top {
         param J: Sym<3>;                     // second moments of mass (Poinsot matrix)
-        param gU: Vec<3>;                    // weight times support -> centre of mass, body frame
+        param gU: Vec<3>;                    // weight times the vector from support to centre of mass, body frame
         param z: Vec<3>;                     // vertical (up), space frame
         group Λ: SO<3> velocity Ω;           // attitude and its discrete velocity
-        advected Γ: Vec<3> = Λ^T * z;        // the vertical seen from the body
+        advected Γ: Vec<3> = Λ^T * z;        // vertical, body frame
         constraint next(Λ) = Λ * Ω;
         constraint next(Γ) = Ω^T * Γ;
         lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);

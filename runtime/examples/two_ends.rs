@@ -12,7 +12,7 @@ use clebsch::prelude::*;
 clebsch::model! {
     /// Kirchhoff's rod at rest, read along its arc length: h is the length of a segment.
     pub model Rod {
-        param K1, K3: Real;                  // stiffness against bending and against twist
+        param K1, K3: Real;                  // bending stiffness, torsional stiffness
         param n: Vec<3>;                     // force on the far end, space frame
         group Λ: SO<3> velocity Ω;           // attitude of a section; its third axis is the tangent
         advected ν: Vec<3> = Λ^T * n;

@@ -284,7 +284,7 @@ pub(super) fn sample_table(text: &mut String, model: &Model, domain: bool) {
     }
     let _ = writeln!(
         text,
-        "\n[{TABLE}]\n# expressions in the components x, y, z of the argument, with parameters of the model and pi"
+        "\n[{TABLE}]\n# expressions in the components x, y, z of the argument, the parameters of the model and pi"
     );
     for f in &open {
         let argument = f.argument.components().unwrap_or(1);

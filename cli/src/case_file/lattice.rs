@@ -27,11 +27,11 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
     let mut text = format!(
         "# A case of the model {}; run it with\n#   clebsch run {named} --case THIS-FILE.toml\n\
          # Units: any consistent system. The model fixes none.\n\
-         # Site data: a number for all sites, a text with an expression in the label, in its number and in the\n\
-         # numbers below, a list with an element for each site, or an array [site, component] of a file beside this\n\
-         # one, {{ npz = \"n.npz\", key = \"q\" }}, where that of a run's end is {{ npz = \"out/trajectory.npz\" }}.\n{held}\
-         model = \"{}\"\nname = \"sample\"\ndoc = \"sample values, to start a case of your own from\"\n\
-         h = 0.01     # time step, positive\nsteps = 1000     # number of steps, at least 1\n\n[labels]\n",
+         # Site data: a number for all sites; an expression in quotes, of the label, the number of sites and the scalars\n\
+         # below; a list with one element per site; or an array [site, component] from a file next to this one,\n\
+         # {{ npz = \"n.npz\", key = \"q\" }}. {{ npz = \"out/trajectory.npz\" }} takes the last sample of a run.\n{held}\
+         model = \"{}\"\nname = \"sample\"\ndoc = \"placeholder values; edit them for a case of your own\"\n\
+         h = 0.01     # step size, positive\nsteps = 1000     # number of steps, at least 1\n\n[labels]\n",
         card.kebab, card.kebab
     );
     let space = Space::sample(stated);
@@ -47,7 +47,7 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
             };
             let _ = writeln!(
                 text,
-                "{} = {cells}     # cells of the grid along each direction",
+                "{} = {cells}     # number of grid cells in each direction",
                 l.index.text
             );
             continue;
@@ -55,8 +55,10 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
         let what = match l.set {
             true if space.is_some() => "number of particles",
             true => "number of sites",
-            false if lattice.periodic.is_some() => "number of segments, of a ring also of nodes",
-            false => "number of segments, one less than nodes",
+            false if lattice.periodic.is_some() => {
+                "number of segments; on a ring also the number of nodes"
+            }
+            false => "number of segments, one less than the number of nodes",
         };
         let _ = writeln!(text, "{} = {}     # {what}", l.index.text, choice.count(i));
     }
@@ -125,7 +127,7 @@ fn ends(text: &mut String, stated: &Stated, choice: &Choice) {
     };
     let _ = writeln!(
         text,
-        "\n[ends]\n{} = {value}     # {ring}the first end ({}) and the last one ({})",
+        "\n[ends]\n{} = {value}     # {ring}[first end, last end]: first end {}; last end {}",
         line.index.text,
         first.join(", "),
         last.join(", ")

@@ -13,11 +13,11 @@ use std::fmt::Write as _;
 pub(super) fn domain(text: &mut String, stated: &Stated, space: &Space) {
     let (torus, d) = (Space::torus(stated), space.lengths.len());
     text.push_str(
-        "# Expressions below may hold the place x, y too, the lengths Lx, Ly of the domain, and what is given at the same sites.\n",
+        "# Expressions below may also contain the position x, y, the lengths Lx, Ly of the domain, and values given at the same sites.\n",
     );
     let _ = writeln!(
         text,
-        "\n[domain]\n{} = {:?}     # along each direction",
+        "\n[domain]\n{} = {:?}     # in each direction",
         torus.unwrap_or("lengths"),
         space.lengths
     );
@@ -42,10 +42,10 @@ pub(super) fn tables(text: &mut String, card: &Card, stated: &Stated, space: &Sp
     for q in quantities.iter().filter(|q| q.kind == Kind::Parameter) {
         let name = ascii(&q.name.text);
         let _ = match stated.lattice.is_grid(q.label) {
-            true => writeln!(text, "# {name}, where it is left out: the trapezoid rule"),
+            true => writeln!(text, "# {name}: trapezoidal quadrature weights by default"),
             false => writeln!(
                 text,
-                "{name} = {{ depth = \"1 + 0.1*cos(2*pi*x/Lx)\" }}     # a particle's share of this depth; or a number, an expression, a list"
+                "{name} = {{ depth = \"1 + 0.1*cos(2*pi*x/Lx)\" }}     # mass of a particle, from this depth; or a number, an expression, a list"
             ),
         };
     }

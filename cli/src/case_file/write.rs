@@ -41,7 +41,7 @@ pub fn write(card: &Card, case: &Case, named: &str) -> String {
     line("model", quoted(card.kebab));
     line("name", quoted(&case.name));
     line("doc", quoted(&case.doc));
-    line("h", format!("{:?}     # time step, positive", case.h));
+    line("h", format!("{:?}     # step size, positive", case.h));
     line(
         "steps",
         format!("{}     # number of steps, at least 1", case.steps),
@@ -82,7 +82,7 @@ pub(super) fn bounds(text: &mut String, card: &Card, given: &[(String, f64)]) {
     let _ = writeln!(text, "\n[bounds]");
     comment(
         text,
-        "Largest drift |I(t) - I(0)| / scale at any node (absolute if the scale is 0); beyond it the exit code is 3.",
+        "Bounds on the drift |I(t) - I(0)| / scale at all nodes (absolute if the scale is 0). If a drift exceeds its bound, the exit code is 3.",
     );
     for invariant in card.invariants {
         comment(text, &format!("{}: {}", invariant.name, invariant.formula));
@@ -91,12 +91,12 @@ pub(super) fn bounds(text: &mut String, card: &Card, given: &[(String, f64)]) {
             (Some((_, bound)), _) => writeln!(text, "{} = {bound:?}", invariant.name),
             (None, Conserved::Exactly) => writeln!(
                 text,
-                "# {} = {DEFAULT_BOUND:?}     # kept to rounding: this is the default",
+                "# {} = {DEFAULT_BOUND:?}     # exactly conserved, up to rounding; this is the default bound",
                 invariant.name
             ),
             (None, Conserved::Boundedly) => writeln!(
                 text,
-                "# {} = 1e-3     # oscillates within O(h^2): no default, it is only reported",
+                "# {} = 1e-3     # oscillates within O(h^2); without a bound it is only reported",
                 invariant.name
             ),
         };
@@ -120,8 +120,8 @@ fn about(field: &Field) -> String {
         Kind::Vector => format!("vector of {rows}"),
         Kind::Symmetric => format!("symmetric {rows}x{cols} matrix, written in full"),
         Kind::SecondMoments => format!(
-            "symmetric {rows}x{cols} matrix of second moments, written in full; or by the inertia, \
-             {} = {{ I = [a, b, c] }} or a matrix, with I = tr(J) Id - J",
+            "symmetric {rows}x{cols} matrix of second moments, written in full; or the inertia, \
+             {} = {{ I = [a, b, c] }} or {{ I = matrix }}, where I = tr(J) Id - J",
             field.ascii
         ),
         Kind::Skew => format!("skew {rows}x{cols} matrix, written in full"),
@@ -131,10 +131,10 @@ fn about(field: &Field) -> String {
             format!("rotation body -> space: {rows}x{cols} matrix, row by row")
         }
         Kind::Rotation => {
-            "rotation body -> space: 3x3 matrix, unit quaternion [w, x, y, z], { axis, angle }, { euler = \"zxz\", angles } about the body's axes in turn, or { from, to }; angles in radians".to_owned()
+            "rotation body -> space: 3x3 matrix, unit quaternion [w, x, y, z], { axis, angle }, { euler = \"zxz\", angles } about successive body axes, or { from, to }; angles in radians".to_owned()
         }
         Kind::UnitQuaternion => {
-            "unit quaternion body -> space: [w, x, y, z], or a rotation in another form".to_owned()
+            "unit quaternion body -> space: [w, x, y, z], or another form of a rotation".to_owned()
         }
         Kind::RigidMotion => {
             format!(

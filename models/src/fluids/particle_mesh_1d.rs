@@ -1,20 +1,20 @@
 //! Particle-mesh shallow water in one dimension, compiled for every number of particles.
 
 clebsch::model! {
-    /// Shallow water in one dimension, as particles whose depth lives on a grid and is smoothed there.
+    /// Particle-mesh model of shallow water in one dimension, with a smoothed depth.
     pub model ParticleMesh1D {
         time k step dt;
         label a in 0..N;
         grid n;
         /// mass of a particle
         param m: Real at a;
-        /// weight of a node of the grid in the sum over the domain
+        /// quadrature weight of a grid node
         param w: Real at n;
-        /// speed of long waves at depth 1
+        /// speed of long gravity waves at depth 1
         param c0: Real;
-        /// length over which the depth is smoothed
+        /// smoothing length of the depth
         param alpha: Real;
-        /// place of a particle
+        /// position of a particle
         field X: Real at a on box;
         mesh H: Real at n = deposit(X, m);
         mesh S: Real at n = smooth(H, alpha);

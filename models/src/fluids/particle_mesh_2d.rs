@@ -1,23 +1,23 @@
 //! Particle-mesh shallow water in the plane, compiled for every number of particles.
 
 clebsch::model! {
-    /// Rotating shallow water in the plane, as particles whose depth lives on a grid and is smoothed there; each direction
-    /// of the domain closes on itself or ends in walls.
+    /// Particle-mesh model of rotating shallow water in the plane, with a smoothed depth.
+    /// Each direction of the domain is periodic or bounded by walls.
     pub model ParticleMesh2D {
         time k step dt;
         label a in 0..N;
         grid n;
         /// mass of a particle
         param m: Real at a;
-        /// weight of a node of the grid in the sum over the domain
+        /// quadrature weight of a grid node
         param w: Real at n;
-        /// speed of long waves at depth 1
+        /// speed of long gravity waves at depth 1
         param c0: Real;
         /// Coriolis parameter
         param f: Real;
-        /// length over which the depth is smoothed
+        /// smoothing length of the depth
         param alpha: Real;
-        /// place of a particle
+        /// position of a particle
         field X: Vec<2> at a on box;
         mesh H: Real at n = deposit(X, m);
         mesh S: Real at n = smooth(H, alpha);

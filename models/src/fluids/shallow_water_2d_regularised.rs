@@ -1,24 +1,24 @@
 //! Two-dimensional shallow water with a smoothed depth, compiled for every number of particles.
 
 clebsch::model! {
-    /// Rotating shallow water on a doubly periodic plane, as particles: the depth of their Voronoi cells smoothed over a
-    /// length, and a core that keeps particles apart.
+    /// Particle model of rotating shallow water on a doubly periodic plane, with smoothed Voronoi depths.
+    /// A repulsive core keeps particles apart.
     pub model ShallowWater2DRegularised {
         time k step dt;
         label a in 0..N;
         /// mass of a particle
         param m: Real at a;
-        /// acceleration of gravity
+        /// gravitational acceleration
         param g: Real;
         /// Coriolis parameter
         param f: Real;
-        /// length over which the depth is smoothed
+        /// smoothing length of the depth
         param alpha: Real;
-        /// radius of the core
+        /// radius of the repulsive core
         param rc: Real;
-        /// strength of the core
+        /// strength of the repulsive core
         param kappa: Real;
-        /// place of a particle
+        /// position of a particle
         field X: Vec<2> at a on torus(L);
         mesh phi: Real at a = helmholtz_depth(X, m, alpha);
         mesh core: Real at a = pair_core(X, m, rc, kappa);

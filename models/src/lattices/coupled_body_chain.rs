@@ -1,16 +1,16 @@
 //! Bodies with kinetic coupling between neighbours, compiled for every number of bodies.
 
 clebsch::model! {
-    /// Bodies in a row whose kinetic energy joins the velocities of neighbours: each carries a mass at d
-    /// that drags on that of the next one.
+    /// Chain of rigid bodies whose kinetic energy couples neighbours.
+    /// Each body has a point mass at d; the coupling is the scalar product of the velocities of neighbouring point masses.
     pub model CoupledBodyChain {
         label i in 0..N;
         periodic;
         /// second moments of mass, body frame
         param J: Sym<3>;
-        /// place of the mass, body frame
+        /// position of the point mass, body frame
         param d: Vec<3>;
-        /// strength of the coupling
+        /// coupling strength
         param eps: Real;
         group Λ: SO<3> at nodes velocity Ω;
         constraint next(Λ) = Λ*Ω;

@@ -1,22 +1,21 @@
 //! A geometrically exact elastic rod, compiled for every number of sections.
 
 clebsch::model! {
-    /// A geometrically exact elastic rod: places of its centreline at nodes, attitudes of its sections
-    /// at segments.
+    /// Geometrically exact elastic rod: positions of the centreline at nodes, attitudes of the cross-sections at segments.
     pub model GeometricallyExactRod {
         label i in 0..N step s;
         periodic;
-        /// mass of a node; half at an end
+        /// mass of a node; half as much at an end
         param m: Real at nodes;
-        /// second moments of mass of a unit length, frame of the section
+        /// second moments of mass per unit length, section frame
         param J: Sym<3> at segments;
-        /// stiffness against shear and extension, frame of the section
+        /// shear and extensional stiffness, section frame
         param S: Sym<3>;
-        /// stiffness against bending and twist, as second moments: B with tr(B) Id - B the stiffness
+        /// bending and torsional stiffness as a second-moment matrix, section frame: the stiffness is tr(B) Id - B
         param B: Sym<3>;
-        /// acceleration of gravity, space frame
+        /// gravitational acceleration, space frame
         param g: Vec<3>;
-        /// place of a node; once around a ring it grows by X
+        /// position of a node, space frame; it increases by X once around a ring
         field φ: Vec<3> at nodes offset X;
         group Λ: SO<3> at segments velocity Ω;
         constraint next(Λ) = Λ*Ω;

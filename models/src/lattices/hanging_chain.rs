@@ -1,7 +1,7 @@
 //! A chain of rigid links, compiled for every number of links.
 
 clebsch::model! {
-    /// A chain of rigid links: beads at distances that do not change, hung up at its first one.
+    /// Chain of beads joined by rigid links, suspended from its first bead.
     pub model HangingChain {
         label i in 0..N;
         periodic;
@@ -9,9 +9,9 @@ clebsch::model! {
         param m: Real at nodes;
         /// length of a link
         param a: Real at segments;
-        /// acceleration of gravity
+        /// gravitational acceleration
         param g: Vec<3>;
-        /// place of a bead
+        /// position of a bead
         field x: Vec<3> at nodes;
         hold λ: dot(next(x, i) - x, next(x, i) - x) = a^2;
         let V = (next(x) - x)/h;

@@ -1,23 +1,23 @@
 //! A geometrically exact elastic rod in unit quaternions, compiled for every number of sections.
 
 clebsch::model! {
-    /// A geometrically exact elastic rod: places of its centreline at nodes, attitudes of its sections at
-    /// segments, by unit quaternions. The strain of bending and twist is the imaginary part of the quaternion from one
-    /// section to the next.
+    /// Geometrically exact elastic rod with the attitudes of its cross-sections as unit quaternions.
+    /// Positions of the centreline are at nodes, attitudes at segments. The bending and torsional strain is the imaginary part
+    /// of the relative quaternion of adjacent cross-sections.
     pub model QuaternionRod {
         label i in 0..N step s;
         periodic;
-        /// mass of a node; half at an end
+        /// mass of a node; half as much at an end
         param m: Real at nodes;
-        /// moments of inertia of a unit length, frame of the section
+        /// moments of inertia per unit length, section frame
         param I: Sym<3> at segments;
-        /// stiffness against shear and extension, frame of the section
+        /// shear and extensional stiffness, section frame
         param S: Sym<3>;
-        /// stiffness against bending and twist, frame of the section
+        /// bending and torsional stiffness, section frame
         param K: Sym<3>;
-        /// acceleration of gravity, space frame
+        /// gravitational acceleration, space frame
         param g: Vec<3>;
-        /// place of a node
+        /// position of a node, space frame
         field φ: Vec<3> at nodes offset X;
         group q: SU<2> at segments velocity W;
         constraint next(q) = q*W;

@@ -1,16 +1,17 @@
 //! A rod of uniform tension, compiled for every number of sections.
 
 clebsch::model! {
-    /// A rod of Kirchhoff's whose tension is the same everywhere: attitudes of its sections, whose third axes are the tangent
-    /// of its centreline, and one force that keeps its two ends X apart. The centreline has no inertia of its own.
+    /// Kirchhoff rod of uniform tension, without inertia of the centreline.
+    /// The unknowns are the attitudes of the cross-sections, whose third axes are tangent to the centreline, and one force that
+    /// keeps the two ends X apart.
     pub model UniformTensionRod {
         label i in 0..N step s;
         periodic;
-        /// second moments of mass of a unit length, frame of the section
+        /// second moments of mass per unit length, section frame
         param J: Sym<3> at segments;
-        /// stiffness against bending and twist, as second moments: B with tr(B) Id - B the stiffness
+        /// bending and torsional stiffness as a second-moment matrix, section frame: the stiffness is tr(B) Id - B
         param B: Sym<3>;
-        /// from the first end to the last one; of a closed rod zero
+        /// vector from the first end to the last, space frame; zero for a closed rod
         param X: Vec<3>;
         group Λ: SO<3> at segments velocity Ω;
         constraint next(Λ) = Λ*Ω;

@@ -563,7 +563,7 @@ fn a_smoother_without_a_length_smooths_over_alpha() {
         let text = printed.unwrap().text;
         text.split_once("Sites\n").map(|(_, rest)| rest.to_owned())
     };
-    let remark = "/** length over which the depth is smoothed */ param alpha: Real;";
+    let remark = "/** smoothing length of the depth */ param alpha: Real;";
     let stated = fluid(remark, ", alpha");
     assert!(stated.as_ref().is_some_and(|t| t.contains("smooth(H, α)")));
     for parameter in ["", remark] {

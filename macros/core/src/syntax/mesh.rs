@@ -76,7 +76,7 @@ pub(super) fn with_lengths(mut model: Model) -> Model {
             at: None,
         };
         model.statements.insert(0, length);
-        let remark = " length over which the depth is smoothed".to_owned();
+        let remark = " smoothing length of the depth".to_owned();
         model.remarks.insert(0, vec![remark]);
     }
     model
