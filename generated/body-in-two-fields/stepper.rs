@@ -29,7 +29,7 @@ impl<T: Real> BodyInTwoFields<T> {
     /// The model as it was stated.
     pub const SOURCE: &'static str = "/// Rigid body about a fixed point in two uniform fields.\npub model BodyInTwoFields {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// weight times the vector from support to centre of mass, body frame\n    param gU: Vec<3> as \"m g \\chi\";\n    /// dipole moment, body frame\n    param p: Vec<3>;\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// field that acts on the dipole, space frame\n    param b: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// vertical, body frame\n    advected Γ: Vec<3> = Λ^T*z;\n    /// field that acts on the dipole, body frame\n    advected B: Vec<3> = Λ^T*b;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// Γ and B are fixed in space\n    constraint next(Γ) = Ω^T*Γ;\n    constraint next(B) = Ω^T*B;\n    lagrangian = -tr(J*Ω)/h - h*(dot(gU, Γ) - dot(p, B));\n}";
     /// A number that changes when the model or its derivation does.
-    pub const FINGERPRINT: u64 = 2584914887519986145u64;
+    pub const FINGERPRINT: u64 = 4245126510531692259u64;
     /// Checks the parameters.
     ///
     /// # Errors

@@ -25,7 +25,7 @@ impl<const N: usize, T: Real> BodyN<N, T> {
     /// The model as it was stated.
     pub const SOURCE: &'static str = "/// Free rigid body in n dimensions.\npub model BodyN {\n    dim n in 3..=8;\n    /// second moments of mass; any matrix with positive determinant\n    param C: Mat<n>;\n    /// attitude, body to space\n    group Λ: SO<n> velocity Ω;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    lagrangian = -tr(C^T*Ω)/h;\n}";
     /// A number that changes when the model or its derivation does.
-    pub const FINGERPRINT: u64 = 2002699665632125461u64;
+    pub const FINGERPRINT: u64 = 4749394489071051681u64;
     /// Checks the parameters.
     ///
     /// # Errors
@@ -292,7 +292,11 @@ impl<const N: usize> BodyN<N, f64> {
         orders: &[1],
         parameters: &[
             Kind::Matrix
-                .field("C", [N, N], "second moments of mass; any matrix with positive determinant"),
+                .field(
+                    "C",
+                    [N, N],
+                    "second moments of mass; any matrix with positive determinant",
+                ),
         ],
         initial: &[
             Kind::Rotation.spelt("Λ", "Lambda", [N, N], "attitude, body to space"),

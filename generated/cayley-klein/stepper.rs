@@ -23,7 +23,7 @@ impl<T: Real> CayleyKlein<T> {
     /// The model as it was stated.
     pub const SOURCE: &'static str = "/// Free rigid body in unit quaternions.\n/// The body momentum is q* m q, a Hopf map of q: its fibres over the sphere of body momenta are circles.\npub model CayleyKlein {\n    /// principal moments of inertia\n    param I: Diag<3>;\n    /// choice of discretisation: 0 for Moser-Veselov, 1 for the thesis\n    param c: Real;\n    /// attitude, body to space\n    group q: SU<2> velocity W;\n    constraint next(q) = q*W;\n    lagrangian = -4*c*re(W)/h + 2*dot(im(W), (I - c*Id)*im(W))/h;\n}";
     /// A number that changes when the model or its derivation does.
-    pub const FINGERPRINT: u64 = 6338969864124962405u64;
+    pub const FINGERPRINT: u64 = 17749404698490029629u64;
     /// Checks the parameters.
     ///
     /// # Errors
@@ -241,7 +241,12 @@ impl CayleyKlein<f64> {
         solver: "Unit quaternions: A is constant and symmetric, β constant: one equation for one number a step",
         parameters: &[
             Kind::Diagonal.field("I", [3, 3], "principal moments of inertia"),
-            Kind::Scalar.field("c", [1, 1], "choice of discretisation: 0 for Moser-Veselov, 1 for the thesis"),
+            Kind::Scalar
+                .field(
+                    "c",
+                    [1, 1],
+                    "choice of discretisation: 0 for Moser-Veselov, 1 for the thesis",
+                ),
         ],
         initial: &[
             Kind::UnitQuaternion.field("q", [4, 1], "attitude, body to space"),

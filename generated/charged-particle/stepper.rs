@@ -25,7 +25,7 @@ impl<T: Real> ChargedParticle<T> {
     /// The model as it was stated.
     pub const SOURCE: &'static str = "/// Charged particle in uniform magnetic and electric fields.\npub model ChargedParticle {\n    /// mass\n    param m: Real;\n    /// charge\n    param q: Real;\n    /// magnetic field\n    param B: Vec<3>;\n    /// electric field\n    param E: Vec<3>;\n    /// position of the particle\n    field X: Vec<3>;\n    lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + (1/2)*q*dot(cross(B, X), next(X) - X) + h*q*dot(E, X);\n}";
     /// A number that changes when the model or its derivation does.
-    pub const FINGERPRINT: u64 = 13602584445213405510u64;
+    pub const FINGERPRINT: u64 = 13364345416425682192u64;
     /// Checks the parameters.
     ///
     /// # Errors

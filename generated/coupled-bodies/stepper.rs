@@ -27,7 +27,7 @@ impl<T: Real> CoupledBodies<T> {
     /// The model as it was stated.
     pub const SOURCE: &'static str = "/// Two rigid bodies connected by a spherical joint.\npub model CoupledBodies {\n    /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames\n    param J1: Sym<3>;\n    /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames\n    param J2: Sym<3>;\n    /// vectors from the joint to the centres of mass, body frames\n    param d1: Vec<3>;\n    /// vectors from the joint to the centres of mass, body frames\n    param d2: Vec<3>;\n    /// reduced mass m₁ m₂/(m₁ + m₂)\n    param eps: Real as \"\\varepsilon\";\n    /// attitude of body 1, body to space\n    group Λ1: SO<3> velocity Ω1;\n    /// attitude of body 2, body to space\n    group Λ2: SO<3> velocity Ω2;\n    /// attitude of body 2 relative to body 1\n    advected R: SO<3> = Λ1^T*Λ2;\n    constraint next(Λ1) = Λ1*Ω1;\n    constraint next(Λ2) = Λ2*Ω2;\n    constraint next(R) = Ω1^T*R*Ω2;\n    lagrangian = (-tr(J1*Ω1) - tr(J2*Ω2) - eps*dot((Ω1 - Id)*d1, R*(Ω2 - Id)*d2))/h;\n}";
     /// A number that changes when the model or its derivation does.
-    pub const FINGERPRINT: u64 = 5825775932552019303u64;
+    pub const FINGERPRINT: u64 = 17740339557977192018u64;
     /// Checks the parameters.
     ///
     /// # Errors
@@ -669,9 +669,17 @@ impl CoupledBodies<f64> {
                     "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames",
                 ),
             Kind::Vector
-                .field("d1", [3, 1], "vectors from the joint to the centres of mass, body frames"),
+                .field(
+                    "d1",
+                    [3, 1],
+                    "vectors from the joint to the centres of mass, body frames",
+                ),
             Kind::Vector
-                .field("d2", [3, 1], "vectors from the joint to the centres of mass, body frames"),
+                .field(
+                    "d2",
+                    [3, 1],
+                    "vectors from the joint to the centres of mass, body frames",
+                ),
             Kind::Scalar.field("eps", [1, 1], "reduced mass m₁ m₂/(m₁ + m₂)"),
         ],
         initial: &[

@@ -20,7 +20,7 @@ impl<T: Real> FreeBodySpatial<T> {
     /// The model as it was stated.
     pub const SOURCE: &'static str = "/// Free rigid body, spatial representation.\npub model FreeBodySpatial {\n    /// attitude, body to space\n    group Λ: SO<3> velocity ω;\n    /// Poinsot (second-moment) matrix, space frame\n    advected J: Sym<3>;\n    /// reconstruction\n    constraint next(Λ) = ω*Λ;\n    /// advection of the second moments\n    constraint next(J) = ω*J*ω^T;\n    lagrangian = -tr(ω*J)/h;\n}";
     /// A number that changes when the model or its derivation does.
-    pub const FINGERPRINT: u64 = 18057726445234217378u64;
+    pub const FINGERPRINT: u64 = 9490886532172270337u64;
     /// Checks the parameters.
     ///
     /// # Errors

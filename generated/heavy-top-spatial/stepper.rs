@@ -22,7 +22,7 @@ impl<T: Real> HeavyTopSpatial<T> {
     /// The model as it was stated.
     pub const SOURCE: &'static str = "/// Heavy top, spatial representation.\npub model HeavyTopSpatial {\n    /// weight\n    param w: Real;\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity ω;\n    /// Poinsot (second-moment) matrix, space frame\n    advected J: Sym<3>;\n    /// vector from support to centre of mass, space frame\n    advected χ: Vec<3>;\n    /// reconstruction\n    constraint next(Λ) = ω*Λ;\n    /// advection of the second moments\n    constraint next(J) = ω*J*ω^T;\n    /// advection of the centre of mass\n    constraint next(χ) = ω*χ;\n    lagrangian = -tr(ω*J)/h - h*w*dot(χ, z);\n}";
     /// A number that changes when the model or its derivation does.
-    pub const FINGERPRINT: u64 = 9639972943391398617u64;
+    pub const FINGERPRINT: u64 = 12931622307764238321u64;
     /// Checks the parameters.
     ///
     /// # Errors
@@ -344,7 +344,12 @@ impl HeavyTopSpatial<f64> {
             Kind::SecondMoments
                 .field("J", [3, 3], "Poinsot (second-moment) matrix, space frame"),
             Kind::Vector
-                .spelt("χ", "chi", [3, 1], "vector from support to centre of mass, space frame"),
+                .spelt(
+                    "χ",
+                    "chi",
+                    [3, 1],
+                    "vector from support to centre of mass, space frame",
+                ),
         ],
         observables: &[
             Kind::Rotation.spelt("Λ", "Lambda", [3, 3], "attitude, body to space"),
@@ -354,7 +359,12 @@ impl HeavyTopSpatial<f64> {
             Kind::SecondMoments
                 .field("J", [3, 3], "Poinsot (second-moment) matrix, space frame"),
             Kind::Vector
-                .spelt("χ", "chi", [3, 1], "vector from support to centre of mass, space frame"),
+                .spelt(
+                    "χ",
+                    "chi",
+                    [3, 1],
+                    "vector from support to centre of mass, space frame",
+                ),
         ],
         invariants: &[
             Invariant::bounded(

@@ -25,7 +25,7 @@ impl<T: Real> HeavyTop<T> {
     /// The model as it was stated.
     pub const SOURCE: &'static str = "/// Heavy top, body representation.\npub model HeavyTop {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// weight times the vector from support to centre of mass, body frame\n    param gU: Vec<3> as \"m g \\chi\";\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// vertical, body frame\n    advected Γ: Vec<3> = Λ^T*z;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// advection of Γ\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);\n}";
     /// A number that changes when the model or its derivation does.
-    pub const FINGERPRINT: u64 = 13467537385938448784u64;
+    pub const FINGERPRINT: u64 = 13950948476138768826u64;
     /// Checks the parameters.
     ///
     /// # Errors

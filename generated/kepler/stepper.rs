@@ -21,7 +21,7 @@ impl<T: Real> Kepler<T> {
     /// The model as it was stated.
     pub const SOURCE: &'static str = "/// Kepler problem: a planet orbits a fixed sun.\npub model Kepler {\n    /// mass of the planet\n    param m: Real;\n    /// gravitational parameter of the sun: the gravitational constant times its mass\n    param k: Real;\n    /// position of the planet relative to the sun\n    field X: Vec<3>;\n    lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + h*m*k/sqrt(dot(X, X));\n}";
     /// A number that changes when the model or its derivation does.
-    pub const FINGERPRINT: u64 = 51819993755699707u64;
+    pub const FINGERPRINT: u64 = 10275978829428782379u64;
     /// Checks the parameters.
     ///
     /// # Errors

@@ -28,7 +28,7 @@ impl<T: Real> KirchhoffBody<T> {
     /// The model as it was stated.
     pub const SOURCE: &'static str = "/// Rigid body in an ideal fluid, with added mass, rotation-translation coupling and net weight.\npub model KirchhoffBody {\n    /// Poinsot matrix of the rotational inertia plus the added inertia of the fluid, body frame\n    param J: Sym<3>;\n    /// mass plus added mass, body frame\n    param M: Sym<3>;\n    /// coupling of angular and linear velocity, body frame\n    param D: Mat<3>;\n    /// (moment of weight minus buoyancy, net weight), body frame\n    param b: Vec<4>;\n    /// (vertical (up), 0), the plane of height 0, space frame\n    param Z: Vec<4>;\n    /// position and attitude, body to space\n    group G: SE<3> velocity V;\n    /// (vertical, height), body frame\n    advected P: Vec<4> = G^T*Z;\n    constraint next(G) = G*V;\n    constraint next(P) = V^T*P;\n    lagrangian = -tr(J*rot(V))/h + dot((1/2)*(pos(V) + rot(V)^T*pos(V)), (1/2)*M*(pos(V) + rot(V)^T*pos(V)))/(2*h) + dot(vee(rot(V)), (1/2)*D*(pos(V) + rot(V)^T*pos(V)))/h - h*dot(b, P);\n}";
     /// A number that changes when the model or its derivation does.
-    pub const FINGERPRINT: u64 = 10767151957343806239u64;
+    pub const FINGERPRINT: u64 = 2595064832746986287u64;
     /// Checks the parameters.
     ///
     /// # Errors
@@ -809,7 +809,12 @@ impl KirchhoffBody<f64> {
                     "Poinsot matrix of the rotational inertia plus the added inertia of the fluid, body frame",
                 ),
             Kind::Symmetric.field("M", [3, 3], "mass plus added mass, body frame"),
-            Kind::Matrix.field("D", [3, 3], "coupling of angular and linear velocity, body frame"),
+            Kind::Matrix
+                .field(
+                    "D",
+                    [3, 3],
+                    "coupling of angular and linear velocity, body frame",
+                ),
             Kind::Vector
                 .field(
                     "b",
@@ -817,7 +822,11 @@ impl KirchhoffBody<f64> {
                     "(moment of weight minus buoyancy, net weight), body frame",
                 ),
             Kind::Vector
-                .field("Z", [4, 1], "(vertical (up), 0), the plane of height 0, space frame"),
+                .field(
+                    "Z",
+                    [4, 1],
+                    "(vertical (up), 0), the plane of height 0, space frame",
+                ),
         ],
         initial: &[
             Kind::RigidMotion.field("G", [4, 4], "position and attitude, body to space"),

@@ -42,7 +42,7 @@ impl<T: Real> MixedFour<T> {
     /// The model as it was stated.
     pub const SOURCE: &'static str = "/// Two rigid bodies with fixed points, a free rigid body and a point mass, coupled by springs.\npub model MixedFour {\n    /// second moments of mass of the first body about its fixed point, body frame\n    param J: Sym<3>;\n    /// second moments of mass of the free body about its reference point, body frame\n    param A: Sym<3>;\n    /// mass of the free body\n    param M: Real;\n    /// principal moments of inertia of the second body\n    param I: Diag<3>;\n    /// mass of the point mass\n    param m: Real;\n    /// coefficient of the quartic kinetic energy of the point mass\n    param b: Real;\n    /// stiffness of the springs\n    param k: Real;\n    /// attachment points of the springs, body frames: first body, free body, second body\n    param p: Vec<3>;\n    /// attachment points of the springs, body frames: first body, free body, second body\n    param s: Vec<3>;\n    /// attachment points of the springs, body frames: first body, free body, second body\n    param e: Vec<3>;\n    /// gravitational acceleration of the point mass, space frame\n    param g: Vec<3>;\n    /// attitude of the first body, body to space\n    group R: SO<3> velocity V;\n    /// position and attitude of the free body, body to space\n    group G: SE<3> velocity W;\n    /// attitude of the second body, body to space\n    group q: SU<2> velocity Y;\n    /// position of the point mass, space frame\n    field X: Vec<3>;\n    constraint next(R) = R*V;\n    constraint next(G) = G*W;\n    constraint next(q) = q*Y;\n    lagrangian = -tr(J*V)/h - tr(A*rot(W))/h + M*dot(pos(next(G)) - pos(G), pos(next(G)) - pos(G))/(2*h) + 2*dot(im(Y), I*im(Y))/h + m*dot(next(X) - X, next(X) - X)/(2*h) + b*dot(next(X) - X, next(X) - X)^2/h^3 + h*m*dot(g, X) - (1/2)*h*k*dot(X - R*p, X - R*p) - (1/2)*h*k*dot(pos(G) + rot(G)*s - X, pos(G) + rot(G)*s - X) - h*k*dot(rot(q)*e, R*p);\n}";
     /// A number that changes when the model or its derivation does.
-    pub const FINGERPRINT: u64 = 497044879311639715u64;
+    pub const FINGERPRINT: u64 = 11034751247602276517u64;
     /// Checks the parameters.
     ///
     /// # Errors
@@ -1405,7 +1405,11 @@ impl MixedFour<f64> {
                 .field("I", [3, 3], "principal moments of inertia of the second body"),
             Kind::Scalar.field("m", [1, 1], "mass of the point mass"),
             Kind::Scalar
-                .field("b", [1, 1], "coefficient of the quartic kinetic energy of the point mass"),
+                .field(
+                    "b",
+                    [1, 1],
+                    "coefficient of the quartic kinetic energy of the point mass",
+                ),
             Kind::Scalar.field("k", [1, 1], "stiffness of the springs"),
             Kind::Vector
                 .field(
@@ -1426,30 +1430,46 @@ impl MixedFour<f64> {
                     "attachment points of the springs, body frames: first body, free body, second body",
                 ),
             Kind::Vector
-                .field("g", [3, 1], "gravitational acceleration of the point mass, space frame"),
+                .field(
+                    "g",
+                    [3, 1],
+                    "gravitational acceleration of the point mass, space frame",
+                ),
         ],
         initial: &[
-            Kind::Rotation.field("R", [3, 3], "attitude of the first body, body to space"),
+            Kind::Rotation
+                .field("R", [3, 3], "attitude of the first body, body to space"),
             Kind::BodyMomentum.field("body_momentum_R", [3, 1], "momentum, body frame"),
             Kind::RigidMotion
-                .field("G", [4, 4], "position and attitude of the free body, body to space"),
+                .field(
+                    "G",
+                    [4, 4],
+                    "position and attitude of the free body, body to space",
+                ),
             Kind::BodyMomentum.field("body_momentum_G", [6, 1], "momentum, body frame"),
-            Kind::UnitQuaternion.field("q", [4, 1], "attitude of the second body, body to space"),
+            Kind::UnitQuaternion
+                .field("q", [4, 1], "attitude of the second body, body to space"),
             Kind::BodyMomentum.field("body_momentum_q", [3, 1], "momentum, body frame"),
             Kind::Vector.field("X", [3, 1], "position of the point mass, space frame"),
             Kind::FieldMomentum.field("momentum_X", [3, 1], "momentum of X"),
         ],
         observables: &[
-            Kind::Rotation.field("R", [3, 3], "attitude of the first body, body to space"),
+            Kind::Rotation
+                .field("R", [3, 3], "attitude of the first body, body to space"),
             Kind::BodyMomentum.field("body_momentum_R", [3, 1], "momentum, body frame"),
             Kind::SpatialMomentum
                 .field("spatial_momentum_R", [3, 1], "momentum, space frame"),
             Kind::RigidMotion
-                .field("G", [4, 4], "position and attitude of the free body, body to space"),
+                .field(
+                    "G",
+                    [4, 4],
+                    "position and attitude of the free body, body to space",
+                ),
             Kind::BodyMomentum.field("body_momentum_G", [6, 1], "momentum, body frame"),
             Kind::SpatialMomentum
                 .field("spatial_momentum_G", [6, 1], "momentum, space frame"),
-            Kind::UnitQuaternion.field("q", [4, 1], "attitude of the second body, body to space"),
+            Kind::UnitQuaternion
+                .field("q", [4, 1], "attitude of the second body, body to space"),
             Kind::BodyMomentum.field("body_momentum_q", [3, 1], "momentum, body frame"),
             Kind::SpatialMomentum
                 .field("spatial_momentum_q", [3, 1], "momentum, space frame"),
