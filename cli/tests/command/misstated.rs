@@ -103,7 +103,7 @@ fn words_of_other_languages_in_a_case_are_answered() {
 /// The message of a model begins with what is wrong, on its first line.
 #[test]
 fn rates_and_degrees_in_a_model_are_answered() {
-    let rate = "writes a rate of change as a difference over the step: `(next(x) - x)/h`";
+    let rate = "write a rate of change as a difference over the step: `(next(x) - x)/h`";
     for (lagrangian, said) in [
         ("m*h*(d/dt x)^2/2", rate),
         ("m*h*dt(x)^2/2", rate),

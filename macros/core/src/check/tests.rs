@@ -65,7 +65,7 @@ fn numbers_glued_to_names_are_refused() {
         ("2h", "2h", vec!["`2*h`"]),
     ] {
         let message = refused("", text);
-        let said = format!("`{spelled}` is a number glued to a name");
+        let said = format!("`{spelled}` is neither a number nor a name");
         assert!(message.contains(&said), "{text}: {message}");
         for remedy in remedies {
             assert!(message.contains(remedy), "{text}: {message}");
@@ -88,7 +88,7 @@ fn juxtaposition_after_a_divisor_is_refused() {
         ("m/sqrt(g) m", "`/(a*m)`", "`/a*m`"),
     ] {
         let message = refused("", text);
-        assert!(message.contains("read in two ways"), "{text}: {message}");
+        assert!(message.contains("is ambiguous"), "{text}: {message}");
         assert!(message.contains(below), "{text}: {message}");
         assert!(message.contains(beside), "{text}: {message}");
     }
@@ -253,7 +253,7 @@ fn advected_quantities_are_declared_together_as_apart() {
     for (declared, said) in [
         (
             "advected A, B: Sym<3> = Λ^T*J*Λ;",
-            "a definition belongs to one quantity",
+            "only one quantity can have a definition",
         ),
         ("advected A, A: Sym<3>;", "`A`"),
         ("advected A, J: Sym<3>;", "`J`"),
@@ -309,10 +309,10 @@ fn numbers_of_other_languages_are_refused() {
         ("0b11*m", "write `3`"),
         ("m^0x2", "write `2`"),
         ("0o1_7*m", "write `15`"),
-        ("0xffffffffffffffffffffffffffffffffff*m", "decimal digits"),
+        ("0xffffffffffffffffffffffffffffffffff*m", "numbers are decimal"),
         ("2f64*m", "write `2`"),
         ("1.5f32*m", "write `1.5`"),
-        ("3u8*m", "no type here"),
+        ("3u8*m", "have no type"),
     ] {
         let message = refused("", text);
         assert!(message.contains(said), "{text}: {message}");
@@ -481,15 +481,15 @@ fn what_papers_write_otherwise_is_told_as_the_language_writes_it() {
         ("param u: Vec3;", "m", "write `Vec<3>`"),
         ("param u: Sym3;", "m", "write `Sym<3>`"),
         ("param u: SO3;", "m", "write `SO<3>`"),
-        ("param u: Vec(3);", "m", "sizes stand in angle brackets"),
-        ("param u: Real = 1.0;", "m", "values stand in the case"),
+        ("param u: Vec(3);", "m", "write sizes in angle brackets"),
+        ("param u: Real = 1.0;", "m", "values belong in the case"),
         (
             "group R: SO(3) velocity w;",
             "m",
-            "sizes stand in angle brackets",
+            "write sizes in angle brackets",
         ),
-        ("# a remark\n", "m", "remarks begin with `//`"),
-        ("L = m;", "m", "stated by `lagrangian = ...;`"),
+        ("# a remark\n", "m", "write a comment after `//`"),
+        ("L = m;", "m", "write `lagrangian = ...;`"),
         ("E = m*g;", "m", "given a name by `let E = ...;`"),
         ("q: Vec<3>;", "m", "`field q: ...;` moves"),
         ("", "m/dt^2", "the time step is `h` here"),
@@ -498,8 +498,8 @@ fn what_papers_write_otherwise_is_told_as_the_language_writes_it() {
             "m*t",
             "cannot depend on the time `t` unless a clock is declared",
         ),
-        ("", "v.z", "a component of a vector is written `v[3]`"),
-        ("", "m**2", "a power is written `a^2`"),
+        ("", "v.z", "write a component of a vector as `v[3]`"),
+        ("", "m**2", "write a power as `a^2`"),
         ("", "|v|", "the length of a vector is `sqrt(dot(X, X))`"),
         ("", "m/|v|", "the length of a vector is `sqrt(dot(X, X))`"),
         ("", "dot(dΓ, v)", "`(next(Γ) - Γ)/h`"),

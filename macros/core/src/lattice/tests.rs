@@ -200,7 +200,7 @@ fn mistakes_are_told_in_the_words_of_the_statement() {
         (format!("{kinetic}; scale q;"), "stands once"),
         (
             format!("{kinetic}; end i = 0 {{ q = given; }}"),
-            "an end condition has a name",
+            "name the end condition",
         ),
         (format!("{kinetic}; periodic; periodic;"), "stated twice"),
         (format!("{kinetic} - h*q_1*q;"), "`q_1` is not declared"),

@@ -62,8 +62,8 @@ fn constraints_that_cannot_be_held_are_told_on_their_tokens() {
         ("hold m: dot(x, x) = L^2;", "`m` is declared twice"),
         ("hold λ: x*x^T = Id;", "6 equations hold 3 directions"),
         ("hold λ: dot(x, x) = x;", "this is"),
-        ("hold λ dot(x, x) = L^2;", "a held constraint reads"),
-        ("hold λ: dot(x, x);", "a held constraint reads"),
+        ("hold λ dot(x, x) = L^2;", "the name of the multiplier, then the equation"),
+        ("hold λ: dot(x, x);", "the name of the multiplier, then the equation"),
         (
             "hold λ: dot(x, x) = L^2; hold ν: 2*dot(x, x) = m;",
             "the constraint of `ν` follows from the others",
@@ -112,7 +112,7 @@ fn functions_are_given_by_paths() {
         (
             "given f(Sym<3>): Real;",
             "f(Q*Q^T)",
-            "a function is given by its path",
+            "give the path of the function",
         ),
     ] {
         let told = given(statement, potential);
