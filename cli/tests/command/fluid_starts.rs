@@ -206,13 +206,13 @@ fn what_has_no_value_is_told_with_what_to_write() {
     for [text, said] in table("
         slope(S, 3)   | slope(S, 3): the domain has two directions: write 1 or 2
         slope(S, 0)   | the domain has two directions
-        slope(S, x)   | the direction of a slope is a whole number, as in slope(S, 1)
-        slope(S)      | a slope is that of a mesh along a direction, as in slope(S, 1)
-        slope(2, 1)   | a slope is that of a mesh by its name
+        slope(S, x)   | the direction of a slope must be a whole number, as in slope(S, 1)
+        slope(S)      | `slope` takes a mesh and a direction, as in slope(S, 1)
+        slope(2, 1)   | `slope` takes the name of a mesh
         slope(S^2, 1) | 2*S*slope(S, 1) of S^2
         slope(m, 1)   | `m` is no mesh of the model; slopes are those of meshes on a grid, of which the model has `H`, `S`
         slope(Q, 1)   | `Q` is no mesh of the model
-        grad(S, 1)    | `grad` is no function of site data; there are sin
+        grad(S, 1)    | `grad` is not a function of site data; there are sin
         Q             | `Q` has no value here
         w             | `w` has no value here
 ") {

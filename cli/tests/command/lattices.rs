@@ -293,6 +293,6 @@ fn a_wrong_sum_is_told_in_the_model_where_a_case_is_given() {
     );
     folder
         .clebsch("run @m.clebsch --case @c.toml")
-        .refuses("stands within another one")
+        .refuses("contains another sum over sites")
         .says("m.clebsch:6:");
 }

@@ -72,7 +72,7 @@ pub(crate) fn name_of_function(name: &str, place: Place) -> Diagnostic {
     Diagnostic::new(
         place,
         format!(
-            "`{name}` is already a function of the model's stepper or of its state, and this would become another one"
+            "`{name}` is already the name of a function of the stepper or of its state"
         ),
     )
     .help(format!(
@@ -113,7 +113,7 @@ fn name_of_column(name: &str, place: Place) -> Diagnostic {
     Diagnostic::new(
         place,
         format!(
-            "the files of a run have a column `{name}` already, and this would be a second one"
+            "the output files already have a column named `{name}`"
         ),
     )
     .help(format!("choose another name, for example `{name}1`"))
@@ -143,7 +143,8 @@ fn components(declared: &Declared, errors: &mut Errors) {
             errors.push(
                 Diagnostic::new(
                     *place,
-                    format!("the files of a run call component {digits} of `{of}` `{name}`, and this would be a second column of that name"),
+                    format!("the output files name component {digits} of `{of}` `{name}`, so they would have two columns of \
+                        that name"),
                 )
                 .help(format!("choose another name, for example `{stem}{digits}`")),
             );

@@ -125,7 +125,7 @@ fn parentheses_after_what_is_no_function_are_refused() {
         assert!(message.contains(&said), "{message}");
     }
     let message = refused("param rot: Real;", "rot(m)");
-    assert!(message.contains("hides the function") && message.contains("`rot*(...)`"));
+    assert!(message.contains("shadows the function") && message.contains("`rot*(...)`"));
     assert!(checked("param rot: Real;", "rot*(m)").is_ok());
 }
 
@@ -139,7 +139,7 @@ fn components_are_counted_from_one() {
     same("J^T[1, 3]", "J[3, 1]");
     for (text, said) in [
         ("Γ[0]", "counted from 1 to 3"),
-        ("Γ[4]", "there is no component 4"),
+        ("Γ[4]", "no component 4"),
         ("w[5]", "counted from 1 to 4"),
         ("F[1, 3]", "counted from 1 to 2"),
         ("F[4, 1]", "counted from 1 to 3"),
@@ -412,29 +412,29 @@ fn unit_vectors_are_those_of_the_size() {
         (
             "size 2",
             "dot(Λ*v, E3)",
-            "there is no `E3` in 2 dimensions\n  help: the unit vectors are `E1` and `E2` here",
+            "`E3` does not exist in 2 dimensions\n  help: the unit vectors here are `E1` and `E2`",
         ),
-        ("size 2", "dot(Λ*E3, v)", "there is no `E3` in 2 dimensions"),
+        ("size 2", "dot(Λ*E3, v)", "`E3` does not exist in 2 dimensions"),
         (
             "size 2",
             "tr(Λ*E1*E3^T)",
-            "there is no `E3` in 2 dimensions",
+            "`E3` does not exist in 2 dimensions",
         ),
         (
             "size 3",
             "dot(Λ*v, E4)",
-            "there is no `E4` in 3 dimensions\n  help: the unit vectors are `E1` to `E3` here",
+            "`E4` does not exist in 3 dimensions\n  help: the unit vectors here are `E1` to `E3`",
         ),
         ("size 3", "dot(Λ*v, E1 + E5)", "there is no `E5`"),
         (
             "size 3",
             "dot(Λ*v, E9)",
-            "the unit vectors with a name are `E1` to `E8`",
+            "the named unit vectors are `E1` to `E8`",
         ),
         (
             "dim n in 3..=8;",
             "dot(Λ*v, E4)",
-            "there is no `E4` for the smallest `n`, which is 3",
+            "`E4` does not exist for the smallest `n`, which is 3",
         ),
     ] {
         let message = of_size(n, term);
@@ -446,19 +446,19 @@ fn unit_vectors_are_those_of_the_size() {
 #[test]
 fn definitions_in_a_circle_are_told_as_one() {
     let cases = [
-        ("let a = 2*a;", "`a` is defined by itself"),
+        ("let a = 2*a;", "`a` is defined in terms of itself"),
         (
             "let a = 2*b; let b = m + a;",
-            "these definitions go in a circle: `a` uses `b`, `b` uses `a`",
+            "these definitions are circular: `a` uses `b`, `b` uses `a`",
         ),
         (
             "let a = tr(J)*b; let b = -(c[1]); let c = a*v; let d = a;",
-            "these definitions go in a circle: `a` uses `b`, `b` uses `c`, `c` uses `a`",
+            "these definitions are circular: `a` uses `b`, `b` uses `c`, `c` uses `a`",
         ),
         (
             // The circle that there is, not the way to it.
             "let d = a; let a = b^2; let b = sin(a);",
-            "these definitions go in a circle: `a` uses `b`, `b` uses `a`",
+            "these definitions are circular: `a` uses `b`, `b` uses `a`",
         ),
     ];
     for (lets, said) in cases {
@@ -492,11 +492,11 @@ fn what_papers_write_otherwise_is_told_as_the_language_writes_it() {
         ("L = m;", "m", "write `lagrangian = ...;`"),
         ("E = m*g;", "m", "given a name by `let E = ...;`"),
         ("q: Vec<3>;", "m", "`field q: ...;` moves"),
-        ("", "m/dt^2", "the time step is `h` here"),
+        ("", "m/dt^2", "the time step is named `h` here"),
         (
             "",
             "m*t",
-            "cannot depend on the time `t` unless a clock is declared",
+            "cannot depend on the time `t` unless you declare a clock",
         ),
         ("", "v.z", "write a component of a vector as `v[3]`"),
         ("", "m**2", "write a power as `a^2`"),

@@ -310,7 +310,7 @@ fn without_clocks(representative: &RepresentativeChain) -> Result<(), Refused> {
     match spec.clocks().first() {
         None => Ok(()),
         Some(clock) => Err(Refused::Form(format!(
-            "`{}` goes on with the step by itself",
+            "`{}` advances with the step by itself",
             spec.symbols.get(*clock).name
         ))),
     }

@@ -289,7 +289,7 @@ fn loops_over_sites_keep_no_time() {
         let Err(Refused::Form(why)) = refused else {
             panic!("a clock is taken");
         };
-        assert!(why.contains("goes on with the step by itself"), "{why}");
+        assert!(why.contains("advances with the step by itself"), "{why}");
     }
 }
 

@@ -189,7 +189,7 @@ fn what_is_too_large_is_said_with_the_number_and_the_limit() {
            let u = w*w*w*w + exp(w*w*w);";
     let message = refusal(&potential(&nested, "u"));
     assert!(
-        beyond(&message, 1_000) && message.contains("a `let` stands for"),
+        beyond(&message, 1_000) && message.contains("a `let` counts in full"),
         "{message}"
     );
     let power = "*(1 + dot(a, J*g) + tr(S) + det(S))".repeat(30);

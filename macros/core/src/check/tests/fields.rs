@@ -93,7 +93,7 @@ fn what_a_field_does_not_carry_is_told_so() {
     says(&matrix(""), &["`constraint next(Y) = Y;`"]);
     says(
         &matrix("constraint next(Y) = hat(next(X))*Y;"),
-        &["has no inverse", "by `X` in the Lagrangian"],
+        &["has no inverse", "in terms of `X` in the Lagrangian"],
     );
     let contrary = carried("constraint next(Y) = Y - (next(X) - X);")
         .replace("advected Y: Vec<3>", "advected Y: Vec<3> = X - a");
@@ -121,12 +121,12 @@ fn a_field_has_no_constraint() {
              lagrangian = -tr(R*W)/h + m*dot(d, d)/(2*h) - h*dot(X, X);"
         );
         let message = refused(&body);
-        assert!(message.contains("a field has no constraint"), "{message}");
+        assert!(message.contains("a field cannot have a constraint"), "{message}");
         assert!(
             message.contains("by its increment `next(X) - X`"),
             "{message}"
         );
-        assert!(message.contains("leave the constraint out"), "{message}");
+        assert!(message.contains("remove the constraint"), "{message}");
         assert_eq!(message.matches("help: ").count(), 2, "{message}");
     }
 }
@@ -189,7 +189,7 @@ fn names_of_functions_are_refused_where_they_are_declared() {
         for body in [field, group, carried] {
             let message = refused(&body);
             assert!(
-                message.contains(&format!("`{name}` is already a function")),
+                message.contains(&format!("`{name}` is already the name of a function")),
                 "{message}"
             );
             assert!(

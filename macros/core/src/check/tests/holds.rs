@@ -54,7 +54,7 @@ fn constraints_that_cannot_be_held_are_told_on_their_tokens() {
             "hold λ: dot(x, next(x)) = L^2;",
             "nonholonomic constraints are not supported yet",
         ),
-        ("hold λ: dot(next(x), next(x)) = L^2;", "leave `next` out"),
+        ("hold λ: dot(next(x), next(x)) = L^2;", "remove `next`"),
         (
             "hold λ: dot(x, x) = dot(x, x);",
             "both sides of the constraint of `λ` are the same",
@@ -106,7 +106,7 @@ fn functions_are_given_by_paths() {
         (
             statement,
             "f(Q*Q^T, Q)",
-            "is given with 1 arguments, and 2 stand here",
+            "takes 1 arguments, and this call has 2",
         ),
         (statement, "f(det(Q))", "this is"),
         (
@@ -206,7 +206,7 @@ fn matrices_are_held_by_their_independent_entries() {
 #[test]
 fn a_sum_needs_sites() {
     let told = held("hold λ: sum(x) = E1;");
-    assert!(told.contains("goes over the sites of a label"), "{told}");
+    assert!(told.contains("runs over the sites of a label"), "{told}");
 }
 
 #[test]
@@ -214,8 +214,8 @@ fn constraints_know_no_time() {
     let clock = "advected τ: Real; constraint next(τ) = τ + h;";
     let message = held(&format!("{clock} hold λ: dot(x, x) = (L + m*τ)^2;"));
     for part in [
-        "`τ` goes on with the step by itself",
-        "by a stiff spring to where it should be",
+        "`τ` advances with the step by itself",
+        "drive the configuration by a stiff spring",
     ] {
         assert!(message.contains(part), "{message}");
     }

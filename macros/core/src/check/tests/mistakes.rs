@@ -23,9 +23,9 @@ fn notation_of_papers_is_told_with_what_to_write() {
         ("param A: Mat<3>;", "dot(x, Aᵀ*x)", "`A^T` for a transpose"),
         ("", "q[k+1]", "`next(q)` at the next node in time"),
         ("", "q_{k+1}", "write `next(q)` for the next node in time"),
-        ("", "q_next", "the value at the next node is `next(q)`"),
-        ("", "x_3", "a component is written `x[3]`"),
-        ("", "q/h", "the time step is `dt` here"),
+        ("", "q_next", "write the value at the next node as `next(q)`"),
+        ("", "x_3", "write a component as `x[3]`"),
+        ("", "q/h", "the time step is named `dt` here"),
         ("", "q % 2", "the language has no remainder"),
         ("param l = 1;", "q", "values belong in the case"),
         (
@@ -34,8 +34,8 @@ fn notation_of_papers_is_told_with_what_to_write() {
             "a vector with three components is `Vec<3>`",
         ),
         ("param l: Scalar;", "q", "write `Real`"),
-        ("", "M_PI*q", "the language writes `pi`"),
-        ("", "dot(e_z, x)", "the language writes `E3`"),
+        ("", "M_PI*q", "write `pi`"),
+        ("", "dot(e_z, x)", "write `E3`"),
         ("", "q^m", "`exp(a*log(x))`"),
         (
             "given f(Real): Real = x^2;",

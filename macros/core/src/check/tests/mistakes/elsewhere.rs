@@ -197,7 +197,7 @@ fn names_and_shapes_are_told_with_what_is_meant() {
             "",
             "q*cos(c*t)",
             "t",
-            "cannot depend on the time `t` unless a clock is declared",
+            "cannot depend on the time `t` unless you declare a clock",
         ),
         (
             "",
@@ -264,7 +264,7 @@ fn constraints_on_velocities_are_said_not_to_be_supported() {
             "hold v: dot(next(x), next(x)) = 1;",
             "q",
             "dot(next(x), next(x)) = 1",
-            "leave `next` out",
+            "remove `next`",
         ),
     ]);
 }
