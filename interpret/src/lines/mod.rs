@@ -202,9 +202,9 @@ impl LineModel {
             let (multiplier, is_rate) = held(line, f)?;
             let reason = match is_rate {
                 true => format!(
-                    "the rate of change of what {multiplier} holds vanishes: the momentum is projected on arrival"
+                    "the rate of change of the constraint of {multiplier} vanishes: the momentum is projected at every node"
                 ),
-                false => format!("held by the multiplier {multiplier}"),
+                false => format!("enforced by the multiplier {multiplier}"),
             };
             Some((ascii(f), 1, reason))
         });

@@ -60,7 +60,7 @@ fn constraints_that_cannot_be_held_are_told_on_their_tokens() {
             "both sides of the constraint of `λ` are the same",
         ),
         ("hold m: dot(x, x) = L^2;", "`m` is declared twice"),
-        ("hold λ: x*x^T = Id;", "6 equations hold 3 directions"),
+        ("hold λ: x*x^T = Id;", "6 equations constrain only 3 directions"),
         ("hold λ: dot(x, x) = x;", "this is"),
         ("hold λ dot(x, x) = L^2;", "the name of the multiplier, then the equation"),
         ("hold λ: dot(x, x);", "the name of the multiplier, then the equation"),
@@ -82,7 +82,7 @@ fn constraints_that_cannot_be_held_are_told_on_their_tokens() {
     );
     let two = two.replace("-tr(J*W)/h", "-tr(J*W)/h - tr(J*V)/h");
     let told = refused(&format!("{two} hold l: R*a = S*b;"));
-    assert!(told.contains("3 equations hold 2 directions"), "{told}");
+    assert!(told.contains("3 equations constrain only 2 directions"), "{told}");
     assert!(told.contains("`dot(R*c, S*b) = 0`"), "{told}");
     let told = refused(&format!("{two} hold l: dot(R*a, S*b) = 0;"));
     assert!(told.starts_with("derives"), "{told}");
@@ -198,7 +198,7 @@ fn matrices_are_held_by_their_independent_entries() {
     let turning = "param J: Sym<3>; param A: SO<3>; group Λ: SO<3> velocity W; \
         constraint next(Λ) = Λ*W; lagrangian = -tr(J*W)/h;";
     let told = refused(&format!("{turning} hold l: Λ = A;"));
-    for wanted in ["9 equations hold 3 directions", "vee(A^T*B) = 0"] {
+    for wanted in ["9 equations constrain only 3 directions", "vee(A^T*B) = 0"] {
         assert!(told.contains(wanted), "{told}");
     }
 }

@@ -234,7 +234,7 @@ fn what_has_no_effect_is_said() {
     );
     let assumed = format!("{BODY} param a: Real; assume a > 0; lagrangian = -tr(J*Ω)/h;");
     assert_eq!(topics(&assumed), [UnusedParameter]);
-    assert!(words(&assumed).contains("an assumption only"));
+    assert!(words(&assumed).contains("only in assumptions"));
     let hidden = format!("{BODY} param a: Real; let w = a*a; lagrangian = -tr(J*Ω)/h;");
     assert_eq!(topics(&hidden), [UnusedLet]);
     // Used in a scale, or in the definition of what is carried.

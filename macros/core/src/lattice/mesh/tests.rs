@@ -212,7 +212,7 @@ fn mistakes_in_functionals_are_told() {
         (
             area,
             "- k*dot(next(X) - X, next(X) - X)/A",
-            "beside a velocity",
+            "a functional of all sites and a velocity",
         ),
         (
             "field Y: Vec<2> at a on torus(M); mesh A: Real at a = voronoi_area(X);",
