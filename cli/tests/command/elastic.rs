@@ -234,7 +234,7 @@ fn the_printed_sign_of_the_force_in_3_62_explodes() {
     let done =
         folder.clebsch("run @wrong.clebsch --case models/elastic/pseudo-rigid.toml --steps 30");
     assert_ne!(done.code, 0);
-    done.says("no step from node 8");
+    done.says("step from node 8");
 }
 
 /// Multipliers are observables, and constraints at both levels are invariants. The message for inconsistent
@@ -258,7 +258,7 @@ fn multipliers_and_constraints_are_seen() {
         (
             "x = [0.3,",
             "x = [0.4,",
-            "the initial configuration is off the constraint",
+            "the initial configuration violates the constraint",
         ),
         (
             "momentum = [0.0,",

@@ -215,7 +215,7 @@ fn a_wrong_case_is_told_by_key_and_site() {
             (
                 "X = { lattice = \"brick\", jitter = 0.1, seed = 1 }",
                 "X = [\"0.5\", \"0.5\"]",
-                "at one place",
+                "at the same position",
             ),
             (
                 "jitter = 0.1",

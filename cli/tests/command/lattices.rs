@@ -105,7 +105,7 @@ fn every_model_is_derived_and_runs_its_case() {
         // give.
         if text_of(&format!("lattices/{name}.clebsch")).contains("sum(") {
             done.ended(2);
-            done.says("off the constraint");
+            done.says("violates the constraint");
             sample.prints("must satisfy them");
             let done =
                 clebsch(&format!("run models/lattices/{name}.clebsch --case sample")).exits(2);

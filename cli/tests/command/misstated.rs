@@ -24,8 +24,9 @@ fn a_momentum_that_is_not_tangent_is_told_of_the_constraint_that_takes_it() {
         x = [0.0, -1.0]\ny = [1.0, 0.0]\nmomentum_x = [1.0, 0.0]\nmomentum_y = [0.5, 0.25]\n";
     let done = run(&folder, PENDULA, case);
     assert_ne!(done.code, 0);
-    let told = "q: the initial momentum is not tangent to the constraint `y_k·y_k = 1`: constraint forces take 5.000e-1 \
-        of its size 1.559e0, with the multiplier 0.25 for this constraint; subtract the multiplier times the gradient";
+    let told = "q: the initial momentum is not tangent to the constraint `y_k·y_k = 1`: projecting it onto the constraints \
+        removes 5.000e-1 of its size 1.559e0, with the multiplier 0.25 for this constraint; subtract the multiplier times the \
+        gradient";
     done.says(told);
     // Without that part it runs.
     let done = run(
@@ -43,7 +44,7 @@ fn what_overflows_is_told_from_what_has_no_value() {
     let case = "model = \"spring\"\nname = \"own\"\nh = 5.0\nsteps = 400\n[parameters]\nm = 1.0\nk = 1.0\n[initial]\nx = 1.0\nmomentum = 0.0\n";
     let done = run(&folder, model, case);
     assert_ne!(done.code, 0);
-    let why = "the invariant `energy` is inf: it is larger than any number of double precision, 1.8e308; reduce the step size";
+    let why = "the invariant `energy` is inf: it exceeds the largest double, 1.8e308; reduce the step size";
     done.says(why);
 }
 

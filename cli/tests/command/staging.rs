@@ -117,7 +117,7 @@ fn results_of_a_run_that_stopped_are_kept_beside_a_folder_made_meanwhile() {
     let done = run_while(event, &out, &["--case", &file]);
     kept_beside(&done, &folder.path("out-2"));
     assert!(
-        done.err.starts_with("clebsch: no step from node 9 "),
+        done.err.starts_with("clebsch: step from node 9 "),
         "{}",
         done.err
     );

@@ -62,14 +62,14 @@ impl From<LineError> for Unstarted {
 impl fmt::Display for Unstarted {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Missing(quantity) => write!(f, "`{quantity}` is not given"),
+            Self::Missing(quantity) => write!(f, "`{quantity}` is missing"),
             Self::Components {
                 quantity,
                 components,
                 found,
             } => write!(
                 f,
-                "`{quantity}` takes {components} numbers for each value, and {found} are given"
+                "`{quantity}` takes {components} numbers for each value, found {found}"
             ),
             Self::Line(e) => write!(f, "{e}"),
         }

@@ -318,7 +318,7 @@ fn assert_met(error: &StepError, function: Function, before: f64) {
     for words in [
         "leaves the domain of",
         &function.to_string(),
-        "after the node",
+        "after the start of a step",
     ] {
         assert!(error.to_string().contains(words), "{error}");
     }

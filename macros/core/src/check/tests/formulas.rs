@@ -173,7 +173,7 @@ fn what_is_no_such_function_is_refused() {
         (
             "given b(Real): Real = \"u*x\";",
             "b(u)",
-            "`u` is not known here",
+            "`u` is unknown",
         ),
         (
             "given b(Real): Real = \"next(x)\";",
