@@ -38,7 +38,9 @@ pub fn held(
         for (index, value) in values(scene, stated, setup, (hold, moving), node)? {
             let entries: Vec<Number> = match value {
                 Value::Known(m) => m.entries,
-                Value::Open(_) => return Err(format!("the constraint `{}` has no size", hold.name)),
+                Value::Open(_) => {
+                    return Err(format!("the constraint `{}` has no size", hold.name));
+                }
             };
             for x in entries {
                 let slopes = x

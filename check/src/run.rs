@@ -201,10 +201,10 @@ impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "action as stated: ")?;
         if let Some(why) = self.not_judged.as_ref().filter(|_| !self.is_broken()) {
-            return write!(f, "not checked: {why}");
+            return write!(f, "not judged: {why}");
         }
         let Some((node, part)) = &self.worst else {
-            return write!(f, "no step was checked");
+            return write!(f, "no step judged");
         };
         let steps = if self.judged == 1 { "step" } else { "steps" };
         let ratio = self.ratio();
@@ -222,7 +222,7 @@ impl fmt::Display for Verdict {
             return write!(
                 f,
                 ". It does NOT hold: {}{site}, component {}, at the {end} of that step is off by {:.3e}, and rounding explains \
-                    {:.3e}",
+                 {:.3e}",
                 part.what, part.component, part.residual, part.bound
             );
         }
@@ -230,7 +230,7 @@ impl fmt::Display for Verdict {
             return write!(
                 f,
                 ". FAILURE OF THE CHECK: {} equations with rounded terms have residuals of at most {} of one rounding, far \
-                    below rounding: this check measures nothing",
+                 below rounding: this check measures nothing",
                 self.tested,
                 short(self.roundings)
             );

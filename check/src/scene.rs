@@ -168,10 +168,7 @@ impl<'a> Scene<'a> {
             (None, 1) => 1,
             (Some(node), 0 | 1) => node,
             _ => {
-                return Err(format!(
-                    "`{}` is taken at a node outside the step",
-                    q.name
-                ));
+                return Err(format!("`{}` is taken at a node outside the step", q.name));
             }
         };
         let own = self.setup.observed(&q.name, site);
@@ -248,7 +245,10 @@ impl<'a> Scene<'a> {
         };
         let identity = Matrix::identity(group.rows());
         if here.time != 0 {
-            return Err(format!("the velocity of `{}` is taken at another edge", q.name));
+            return Err(format!(
+                "the velocity of `{}` is taken at another edge",
+                q.name
+            ));
         }
         if self.setup.observed(&q.name, site).is_none() {
             return Ok(Value::Known(identity));

@@ -160,7 +160,8 @@ impl Stated {
             }
             line => {
                 let label = self.line.or_else(|| (self.labels.len() == 1).then_some(0));
-                let label = label.ok_or("several labels in addition to a chain are not supported here")?;
+                let label =
+                    label.ok_or("several labels in addition to a chain are not supported here")?;
                 self.line = Some(label);
                 match line {
                     Site::Segments => (label, Sites::Segments),

@@ -87,9 +87,12 @@ impl fmt::Display for Refused {
             Self::Method { model, method } => write!(
                 f,
                 "a model file cannot use this method yet: {model} is solved as follows: {method}; compile the model with \
-                    `model! {{ ... }}` in a crate"
+                 `model! {{ ... }}` in a crate"
             ),
-            Self::Form { why } => write!(f, "clebsch cannot run the model with loops over sites: {why}"),
+            Self::Form { why } => write!(
+                f,
+                "clebsch cannot run the model with loops over sites: {why}"
+            ),
             Self::TooLong {
                 why,
                 asked: (label, asked),
@@ -97,7 +100,7 @@ impl fmt::Display for Refused {
             } => write!(
                 f,
                 "`{label} = {asked}` is too large: clebsch cannot run this model with loops over sites, because {why}; change \
-                    this, or use at most `{label} = {most}`, for which clebsch expands the model body by body"
+                 this, or use at most `{label} = {most}`, for which clebsch expands the model body by body"
             ),
             Self::TooManySites {
                 asked: (label, asked),
@@ -105,7 +108,7 @@ impl fmt::Display for Refused {
             } => write!(
                 f,
                 "`{label} = {asked}` is too large for a model file: the limit is `{label} = {most}`, some hundred bytes for \
-                    each site"
+                 each site"
             ),
             Self::Functional { path } => write!(
                 f,

@@ -71,7 +71,7 @@ fn write(value: &Bound<'_, PyAny>, argument: &str, out: &mut String, depth: usiz
                 let found = found.name()?;
                 return wrong(format!(
                     "expected a number, an array of numbers, a string or a dictionary, found {found}; convert it with \
-                        numpy.asarray"
+                     numpy.asarray"
                 ));
             }
         }

@@ -102,8 +102,8 @@ pub(crate) fn run_many<'py>(
             };
             // A defect that one case meets must not end the others.
             let own = catch_unwind(AssertUnwindSafe(|| one(model, case, &request, &stop)));
-            let own = own
-                .unwrap_or_else(|_| Ended::Refused("clebsch met an internal error".to_owned()));
+            let own =
+                own.unwrap_or_else(|_| Ended::Refused("clebsch met an internal error".to_owned()));
             *place.lock().unwrap_or_else(PoisonError::into_inner) = own;
             done.fetch_add(1, Ordering::Relaxed);
         }

@@ -540,7 +540,7 @@ impl fmt::Display for OpenError {
             Self::Unseen { field } => write!(
                 f,
                 "the steps of this model cannot be subdivided: `{field}` is an initial value that is not observed later; use a \
-                    smaller step size"
+                 smaller step size"
             ),
             Self::Order { asked, offered } => {
                 let list: Vec<String> = offered.iter().map(u32::to_string).collect();
@@ -553,14 +553,11 @@ impl fmt::Display for OpenError {
                     [1] => write!(
                         f,
                         ": its step is not symmetric under time reversal, so a composition gains nothing; `clebsch derive` \
-                            shows the terms that prevent it: write `node symmetric;` for terms at one end of the step, or add \
-                            an assumption on the parameters"
+                         shows the terms that prevent it: write `node symmetric;` for terms at one end of the step, or add \
+                         an assumption on the parameters"
                     ),
                     _ if asked % 2 == 1 => {
-                        write!(
-                            f,
-                            ": a symmetric step has even order; choose one of these"
-                        )
+                        write!(f, ": a symmetric step has even order; choose one of these")
                     }
                     _ => write!(f, "; choose one of these"),
                 }

@@ -135,7 +135,7 @@ impl fmt::Display for Contact {
             } => write!(
                 f,
                 "`{configuration}` becomes singular: its smallest singular value is {ratio:.1e} of its largest, needed \
-                    {LEAST_RATIO:e}"
+                 {LEAST_RATIO:e}"
             )?,
             Met::Outside { call, before, .. } if self.share == Some(0.0) => {
                 return write!(
@@ -163,11 +163,7 @@ impl fmt::Display for Contact {
             )?;
         }
         match self.works() {
-            Some(works) => write!(
-                f,
-                "; a step of {} from this state succeeds",
-                Plain(works)
-            ),
+            Some(works) => write!(f, "; a step of {} from this state succeeds", Plain(works)),
             None => write!(
                 f,
                 "; start where the motion stays inside the domain, or add a potential that keeps it there"

@@ -220,7 +220,7 @@ impl fmt::Display for Problem {
             } => write!(
                 f,
                 "the initial configuration violates the constraint `{equation}`: its sides differ by {size:e}, with terms of \
-                    size {scale:e}"
+                 size {scale:e}"
             ),
             Self::AcrossConstraint {
                 equation,
@@ -230,7 +230,7 @@ impl fmt::Display for Problem {
             } => write!(
                 f,
                 "the initial momentum is not tangent to the constraint `{equation}`: projecting it onto the constraints \
-                    removes {taken:.3e} of its size {whole:.3e}, with the multiplier {impulse} for this constraint"
+                 removes {taken:.3e} of its size {whole:.3e}, with the multiplier {impulse} for this constraint"
             ),
             Self::NoInertia => write!(
                 f,
@@ -239,13 +239,13 @@ impl fmt::Display for Problem {
             Self::DependentConstraints { equation } => write!(
                 f,
                 "the constraint force of `{equation}` is not determined: at the initial configuration its derivative vanishes \
-                    or is a combination of the derivatives of other constraints"
+                 or is a combination of the derivatives of other constraints"
             ),
             Self::SignAroundRing => write!(
                 f,
                 "around the ring these attitudes make an odd number of turns, so unit quaternions that vary continuously from \
-                    site to site return with the opposite sign; a coupling of neighbours would see a whole turn between the \
-                    last site and the first"
+                 site to site return with the opposite sign; a coupling of neighbours would see a whole turn between the \
+                 last site and the first"
             ),
             Self::OutsideDomain {
                 function,
@@ -278,11 +278,11 @@ impl PoinsotError {
         let remedy = match self {
             Self::NoInertia { .. } => {
                 "add to J the second moments of the mass about its own centre, so that J has rank two or three; a hundredth of \
-                    J is enough"
+                 J is enough"
             }
             Self::Triangle { .. } => {
                 "the Moser-Veselov equation needs second moments J = tr(I)/2 - I that are not negative, as for a real mass \
-                    distribution; positive moments of inertia are not enough"
+                 distribution; positive moments of inertia are not enough"
             }
             Self::NotFinite { .. } | Self::NotSymmetric { .. } => {
                 "give the matrix of second moments J = tr(I)/2 - I of a real mass distribution"
@@ -536,7 +536,7 @@ impl fmt::Display for StepCause {
             Self::Unread { what } => write!(
                 f,
                 "a model read from its text cannot take this step ({what}); compile the model with `model! {{ ... }}` in a \
-                    crate"
+                 crate"
             ),
         }
     }

@@ -138,7 +138,7 @@ impl fmt::Display for KineticWarning {
         write!(
             f,
             "The Lagrangian is kinetic minus potential energy, and inertias, metrics and second moments of mass must be \
-                positive definite; if a rigid body is stated by its second moments J, this applies to I = tr(J) Id - J"
+             positive definite; if a rigid body is stated by its second moments J, this applies to I = tr(J) Id - J"
         )
     }
 }

@@ -62,7 +62,7 @@ impl fmt::Display for SnapshotError {
             Self::Unlike { words } => write!(
                 f,
                 "the snapshot, of {words} words, belongs to a value of another kind or size; start the model from the same \
-                    data as the snapshot"
+                 data as the snapshot"
             ),
             Self::Foreign => f.write_str(
                 "this is not a snapshot of this version: it must begin with `clebsch` and the version 1",
@@ -199,7 +199,8 @@ mod as_text {
                 (text.len() == 2).then(|| u8::from_str_radix(text, 16).ok())?
             };
             let bytes: Option<Vec<u8>> = pairs.map(byte).collect();
-            let bytes = bytes.ok_or_else(|| D::Error::custom("these are not pairs of hexadecimal digits"))?;
+            let bytes = bytes
+                .ok_or_else(|| D::Error::custom("these are not pairs of hexadecimal digits"))?;
             Self::from_bytes(&bytes).map_err(D::Error::custom)
         }
     }

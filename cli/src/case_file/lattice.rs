@@ -55,7 +55,7 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
         let what = match l.set {
             true if space.is_some() => "number of particles",
             true => "number of sites",
-            false if lattice.periodic.is_some() => "number of segments, of a ring also of nodes",
+            false if lattice.periodic.is_some() => "number of segments; on a ring also of nodes",
             false => "number of segments, one less than nodes",
         };
         let _ = writeln!(text, "{} = {}     # {what}", l.index.text, choice.count(i));

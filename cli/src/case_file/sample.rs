@@ -13,7 +13,8 @@ use std::fmt::Write as _;
 pub(super) fn domain(text: &mut String, stated: &Stated, space: &Space) {
     let (torus, d) = (Space::torus(stated), space.lengths.len());
     text.push_str(
-        "# Expressions below may hold the place x, y too, the lengths Lx, Ly of the domain, and what is given at the same sites.\n",
+        "# Expressions below may also contain the position x, y, the lengths Lx, Ly of the domain, and values at the same \
+         sites.\n",
     );
     let _ = writeln!(
         text,
@@ -42,7 +43,7 @@ pub(super) fn tables(text: &mut String, card: &Card, stated: &Stated, space: &Sp
     for q in quantities.iter().filter(|q| q.kind == Kind::Parameter) {
         let name = ascii(&q.name.text);
         let _ = match stated.lattice.is_grid(q.label) {
-            true => writeln!(text, "# {name}, where it is left out: the trapezoid rule"),
+            true => writeln!(text, "# {name}: if omitted, the trapezoid rule"),
             false => writeln!(
                 text,
                 "{name} = {{ depth = \"1 + 0.1*cos(2*pi*x/Lx)\" }}     # a particle's share of this depth; or a number, an expression, a list"

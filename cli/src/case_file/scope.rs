@@ -86,14 +86,14 @@ impl Scope {
                 .flatten()
                 .find(|n| self.number(n).is_none());
             let Some(next) = next else {
-                return format!("{why}: {} is no finite number", chain.join(", "));
+                return format!("{why}: {} is not a finite number", chain.join(", "));
             };
             if chain
                 .iter()
                 .any(|link| link.starts_with(&format!("{next} = ")))
             {
                 return format!(
-                    "{why}: {} refer to one another in a circle",
+                    "{why}: the definitions of {} are circular",
                     chain.join(", ")
                 );
             }
@@ -107,9 +107,9 @@ impl Scope {
         names.sort_unstable();
         names.truncate(LISTED);
         match names.is_empty() {
-            true => format!("{why}; an expression may hold numbers, functions and `pi`"),
+            true => format!("{why}; an expression may contain numbers, functions and `pi`"),
             false => format!(
-                "{why}; an expression may hold the step and the parameters that are one number: {}",
+                "{why}; an expression may contain the step and parameters that are single numbers: {}",
                 names.join(", ")
             ),
         }

@@ -68,7 +68,7 @@ impl Gallery {
             Some(near) => format!("did you mean `{near}`?"),
             None => "`clebsch list` shows all models".to_owned(),
         };
-        Failure::Usage(format!("no model `{}`; {near}", shown(name)))
+        Failure::Usage(format!("model `{}` does not exist; {near}", shown(name)))
     }
 }
 
@@ -113,7 +113,7 @@ pub(crate) fn no_case<'a>(
 ) -> Failure {
     let model = shown(model);
     Failure::Usage(match name {
-        None => format!("model `{model}` has no case of its own; give one: --case FILE.toml"),
+        None => format!("model `{model}` has no cases; give one with --case FILE.toml"),
         Some(name) => format!(
             "model `{model}` has no case `{}`{} (a case file ends in .toml)",
             shown(name),

@@ -285,7 +285,7 @@ fn a_sample_of_a_held_model_is_at_rest_and_says_so() {
     );
     let sample = folder.clebsch("case @ring.clebsch");
     sample.prints("\nmomentum = [0.0, 0.0]\n");
-    sample.prints("must satisfy them");
+    sample.prints("must satisfy the constraints");
     folder.write(
         "rod.clebsch",
         "model Rod { label i in 0..N step s; param m: Real at nodes; field q: Vec<3> at nodes;

@@ -150,7 +150,7 @@ fn a_lattice_that_cannot_fill_its_domain_evenly_is_refused_with_numbers_that_can
             .unwrap_or_else(|| panic!("{}", done.err));
         let (numbers, rest) = rest.split_once(" particles").expect("numbers");
         assert!(
-            rest.contains("lattice = \"random\", which takes any number"),
+            rest.contains("lattice = \"random\", which accepts any number"),
             "{rest}"
         );
         let numbers = numbers.replace(" or ", ", ");
@@ -227,7 +227,7 @@ fn what_has_no_value_is_told_with_what_to_write() {
         &of("1 + 0.2*exp", "1 + 0.2*S*exp"),
         &[
             "parameters.m: ",
-            "`S` is a mesh, whose values the parameters and the places X decide",
+            "`S` is a mesh, whose values depend on the parameters and the positions X",
             "velocity_X = [\"-slope(S, 2)\"",
         ],
     );
@@ -245,7 +245,7 @@ fn what_has_no_value_is_told_with_what_to_write() {
         ),
         &[
             "initial.X: ",
-            "`S` depends on the places X, which are stated here",
+            "`S` depends on the positions X, which are given here",
         ],
     );
     check(
@@ -254,7 +254,7 @@ fn what_has_no_value_is_told_with_what_to_write() {
     );
     check(
         &velocity("S").replace("\"0.1*c0\"", "-1.0"),
-        &["`S` has no value at these places: "],
+        &["`S` has no value at these positions: "],
     );
     // Another set of sites.
     let two = MODEL

@@ -17,10 +17,10 @@ fn printed(model: &str, case: &str) -> f64 {
         number.unwrap_or_else(|| panic!("{}{}", done.out, done.err))
     };
     let frequency = number(
-        "fastest small motion about the start, at rest: frequency ω = ",
+        "fastest small motion about the initial configuration: ω = ",
         "; ",
     );
-    let step = number("longest step 2/ω = ", ", of which h is ");
+    let step = number("stability limit 2/ω = ", "; h is ");
     assert!((frequency * step / 2.0 - 1.0).abs() < 0.01);
     step
 }
@@ -402,7 +402,7 @@ fn where_nothing_is_known_of_a_held_line_the_reason_is_said() {
         let all = all.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(all.contains(words), "{all}");
     };
-    let not = "longest step of small motions about the start: not computed, since ";
+    let not = "stability limit of small motions: not computed, since ";
     said(
         of("loose", "1.0", ""),
         &format!("{not}at rest nothing resists"),

@@ -202,7 +202,7 @@ fn slips_of_a_new_user_are_answered_by_what_to_write() {
         check two.clebsch --case sample        | first step: solved
         run toda-chain --set N=100             | `N` is the number of sites of `i`
         run free-body --set Lambda.angle=1     | `--set 'Lambda={axis=[0,1,0], angle=1}'`
-        run free-body --set I=[0.2,0.2,0.55]   | moments of inertia obey I3 <= I1 + I2; 0.55 > 0.4
+        run free-body --set I=[0.2,0.2,0.55]   | moments of inertia must satisfy I3 <= I1 + I2; 0.55 > 0.4
 ",
     ) {
         let found = said(words);

@@ -213,7 +213,7 @@ fn a_killed_run_is_not_begun_anew_by_mistake() {
     let folder = Folder::new("killed-not-lost");
     let out = folder.path("out");
     let child = long(&out, "checkpoint", "--checkpoint 0.01");
-    run(LONG, &out, "--resume").says("still going on");
+    run(LONG, &out, "--resume").says("another run is writing into this folder");
     ended_by("-KILL", child);
     let short = "heavy-top --steps 10";
     run(short, &out, "").refuses("--resume");
@@ -228,7 +228,7 @@ fn a_killed_run_is_not_begun_anew_by_mistake() {
         "trajectory.npz\", sample = -1 }",
     ]);
     let other = run("heavy-top --steps 11 --h 0.003", &out, "--resume");
-    other.says("it holds another run, with another `h`");
+    other.says("it contains another run, with another `h`");
     assert!(before == contents(&out));
 }
 

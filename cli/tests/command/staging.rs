@@ -121,7 +121,7 @@ fn results_of_a_run_that_stopped_are_kept_beside_a_folder_made_meanwhile() {
         "{}",
         done.err
     );
-    let made = "made by someone else during the run";
+    let made = "another program created it during the run";
     done.says(made);
     assert_eq!(folder.names(), ["out", "out-2", "stiff.toml"]);
 }
@@ -138,7 +138,7 @@ fn a_folder_made_meanwhile_is_left_as_it_is() {
     };
     let done = run_while(event, &out, &[]);
     kept_beside(&done, &folder.path("out-2"));
-    done.says("made by someone else during the run");
+    done.says("another program created it during the run");
     assert_eq!(
         fs::read_to_string(&thesis).expect("the file"),
         "years of work"

@@ -31,7 +31,7 @@ fn the_site_of_a_value_without_an_action_is_named() {
             let err = refused(&format!("undefined-{count}-{site}"), FIELD, &case);
             let said = format!(
                 "cannot take the first step: at i = {site}, `exp(x)` exceeds the largest double: `x` is 800; change the \
-                    initial values or parameters there"
+                 initial values or parameters at that point"
             );
             assert!(err.contains(&said), "{err}");
         }

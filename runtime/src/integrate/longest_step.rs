@@ -268,15 +268,15 @@ impl LongestStep {
         if self.is_elliptic() {
             return Some(format!(
                 "small motions about the initial configuration grow, fastest where they alternate between neighbours, with the \
-                    rate {:.3e}: is the sign of the potential energy or of a coupling of neighbours wrong? If the label is a \
-                    coordinate, the problem is elliptic, and the growth rate increases with the number of sites for any step",
+                 rate {:.3e}: is the sign of the potential energy or of a coupling of neighbours wrong? If the label is a \
+                 coordinate, the problem is elliptic, and the growth rate increases with the number of sites for any step",
                 self.growth
             ));
         }
         if h > self.step {
             return Some(format!(
                 "the step h = {h} is {:.2} times the stability limit {:.3e} of small motions about the initial configuration \
-                    (2/ω of the fastest mode): disturbances grow in every step; reduce h",
+                 (2/ω of the fastest mode): disturbances grow in every step; reduce h",
                 h / self.step,
                 self.step
             ));
@@ -300,7 +300,7 @@ impl LongestStep {
                 ),
                 _ => format!(
                     "{grow}: is the sign of the potential energy or of a coupling of neighbours wrong? If the instability is \
-                        real, steps of h = {h} do not resolve the growth; use at most {:.3e}",
+                     real, steps of h = {h} do not resolve the growth; use at most {:.3e}",
                     self.resolving()
                 ),
             });

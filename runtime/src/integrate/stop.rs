@@ -50,10 +50,7 @@ impl fmt::Display for NotFinite {
         } = self;
         write!(f, "at node {node} (time {time}) ")?;
         if node.abs_diff(*since) > 1 {
-            write!(
-                f,
-                "or since the last checked node, {since}, "
-            )?;
+            write!(f, "or since the last checked node, {since}, ")?;
         }
         // Counted from 1, as in files and plots.
         match (self.index, self.columns) {

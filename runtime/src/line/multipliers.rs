@@ -55,16 +55,16 @@ impl fmt::Display for NoReaction {
             return write!(
                 f,
                 "the constraints are not independent there: their derivatives vanish, or one is a combination of others, so \
-                    the constraint forces are undetermined; remove a constraint that follows from others, or prescribe less at \
-                    the ends"
+                 the constraint forces are undetermined; remove a constraint that follows from others, or prescribe less at \
+                 the ends"
             );
         }
         let percent = 100.0 * self.share;
         write!(
             f,
             "no constraint forces enforce the constraints at the end of the step: continuation reached {percent:.1} percent of \
-                the way from the unconstrained motion, where the constraints become dependent or change too fast; reduce the \
-                step size, or remove a constraint that follows from others"
+             the way from the unconstrained motion, where the constraints become dependent or change too fast; reduce the \
+             step size, or remove a constraint that follows from others"
         )
     }
 }

@@ -20,7 +20,7 @@ impl fmt::Display for SingularFactor {
         write!(
             f,
             "the velocity is not determined: {} is singular to working precision, so the kinetic energy does not depend on \
-                every velocity; check its parameters and the state",
+             every velocity; check its parameters and the state",
             self.factor
         )
     }

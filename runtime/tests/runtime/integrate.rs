@@ -323,7 +323,7 @@ fn a_number_that_is_none_stops_the_run_at_its_node() {
                 Watched::Scale,
                 8,
                 "at node 8 (time 4) or since the last checked node, 4, component 2 of the natural scale of the invariant \
-                    `pair` is ",
+                 `pair` is ",
             ),
             (
                 Watched::Observable,

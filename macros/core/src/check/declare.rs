@@ -286,9 +286,7 @@ impl Declared {
                 if kinds.is_none() {
                     let message = format!("an argument of `{}` is not declared", name.text);
                     let d = Diagnostic::new(name.place, message);
-                    errors.push(
-                        d.help("declare its field and parameters before the functional"),
-                    );
+                    errors.push(d.help("declare its field and parameters before the functional"));
                 }
                 self.functional(name, kinds, shape, (path, Reach::Sites), errors);
             }
@@ -436,7 +434,8 @@ impl Declared {
     fn typeset_as_another(&self, name: &Name) -> Option<Diagnostic> {
         let latex = self.in_latex(name);
         let text = &name.text;
-        let help = "write another text after `as`: names must differ in print, not counting a time index";
+        let help =
+            "write another text after `as`: names must differ in print, not counting a time index";
         if let Some((shown, place)) = &name.typeset {
             let fixed = PRINTED.into_iter().find(|sign| seen(sign, "") == latex);
             let step = &self.symbols.get(self.step).name;
@@ -481,9 +480,15 @@ impl Declared {
             Some((id, Role::Element | Role::Advected)) => Some(id),
             Some((_, Role::Velocity)) => {
                 errors.push(
-                    Diagnostic::new(name.place, format!("`{}` is a velocity: it belongs to one edge and has no evolution \
-                        constraint", name.text))
-                        .help("write constraints for group elements and advected quantities"),
+                    Diagnostic::new(
+                        name.place,
+                        format!(
+                            "`{}` is a velocity: it belongs to one edge and has no evolution \
+                        constraint",
+                            name.text
+                        ),
+                    )
+                    .help("write constraints for group elements and advected quantities"),
                 );
                 None
             }

@@ -99,11 +99,11 @@ pub(super) fn without_clocks(spec: &Spec) -> Result<(), Errors> {
         let name = &spec.symbols.get(clock.symbol).name;
         let message = format!(
             "`{name}` advances with the step by itself, and a `hold` constraint must not depend on time: no velocity could \
-                keep it"
+             keep it"
         );
         errors.push(Diagnostic::new(hold.place, message).help(format!(
             "drive the configuration by a stiff spring, as in `-h*(K/2)*(x - A*sin(w*{name}))^2`, or constrain it to a field \
-                that clebsch solves for"
+             that clebsch solves for"
         )));
     }
     errors.propagate()
@@ -120,7 +120,7 @@ fn refused(symbols: &Symbols, name: &Name, value: &Expr, place: Place) -> Option
         );
         return Some(Diagnostic::new(place, message).help(
             "constrain the configuration, for example `hold λ: dot(x, x) = L^2;`; clebsch constrains its rate of change too. \
-                Nonholonomic constraints are not supported yet",
+             Nonholonomic constraints are not supported yet",
         ));
     }
     if letters.iter().any(|l| l.shift != Shift::HERE) {
@@ -152,7 +152,7 @@ fn refused(symbols: &Symbols, name: &Name, value: &Expr, place: Place) -> Option
         );
         return Some(Diagnostic::new(place, message).help(
             "a `hold` constraint must contain a configuration, for example `hold λ: det(Q) = 1;`; write a condition on \
-                parameters with `assume`",
+             parameters with `assume`",
         ));
     }
     let shape = value.shape();
@@ -163,7 +163,7 @@ fn refused(symbols: &Symbols, name: &Name, value: &Expr, place: Place) -> Option
         );
         return Some(Diagnostic::new(place, message).help(
             "constrain independent entries, each with its own multiplier: `hold a: dot(Q*E1, Q*E1) = 1;`, `hold b: dot(Q*E1, \
-                Q*E2) = 0;`; write a column as `A*E1`",
+             Q*E2) = 0;`; write a column as `A*E1`",
         ));
     }
     None

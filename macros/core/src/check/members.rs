@@ -71,9 +71,7 @@ const MOMENTA: [&str; 5] = [
 pub(crate) fn name_of_function(name: &str, place: Place) -> Diagnostic {
     Diagnostic::new(
         place,
-        format!(
-            "`{name}` is already the name of a function of the stepper or of its state"
-        ),
+        format!("`{name}` is already the name of a function of the stepper or of its state"),
     )
     .help(format!(
         "choose another name, for example `{name}1`; a parameter may be called `{name}`"
@@ -112,9 +110,7 @@ fn is_column(ascii: &str) -> bool {
 fn name_of_column(name: &str, place: Place) -> Diagnostic {
     Diagnostic::new(
         place,
-        format!(
-            "the output files already have a column named `{name}`"
-        ),
+        format!("the output files already have a column named `{name}`"),
     )
     .help(format!("choose another name, for example `{name}1`"))
 }

@@ -115,7 +115,7 @@ pub fn not_carried_by_field(
     )
     .help(format!(
         "add a constraint, for example `{example}`; if `{name}` is a function of `{field}`, write it in terms of `{field}` in \
-            the Lagrangian instead"
+         the Lagrangian instead"
     ))
 }
 
@@ -250,8 +250,7 @@ pub fn reserved(name: &Name) -> Diagnostic {
 /// A constraint with values at both ends of a step; `end` if all values are taken at the end.
 pub fn held_over_the_step(place: Place, end: bool) -> Diagnostic {
     if end {
-        let message =
-            "a `hold` constraint applies at one node, and this one contains `next(...)`";
+        let message = "a `hold` constraint applies at one node, and this one contains `next(...)`";
         return Diagnostic::new(place, message)
             .help("remove `next`: the constraint applies at every node");
     }
@@ -259,6 +258,6 @@ pub fn held_over_the_step(place: Place, end: bool) -> Diagnostic {
         supported yet";
     Diagnostic::new(place, message).help(
         "if it is the increment of a function of the configuration, constrain that function: for `next(x) - x = r*(next(φ) - \
-            φ)`, write `hold λ: x - r*φ = c;`",
+         φ)`, write `hold λ: x - r*φ = c;`",
     )
 }

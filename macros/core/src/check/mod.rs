@@ -459,8 +459,9 @@ fn usage(spec: &Spec, extent: Extent) -> Result<(), Errors> {
     }
     if spec.configurations.is_empty() {
         errors.push(
-            Diagnostic::new(spec.name_place, "the model has no configuration")
-                .help("declare one, for example `group Λ: SO<3> velocity Ω;` or `field X: Vec<3>;`"),
+            Diagnostic::new(spec.name_place, "the model has no configuration").help(
+                "declare one, for example `group Λ: SO<3> velocity Ω;` or `field X: Vec<3>;`",
+            ),
         );
     }
     for l in &used {

@@ -21,11 +21,11 @@ fn instead_of_one(kind: &str) -> &'static str {
     match kind {
         "SO" => {
             "that group has one element, so nothing moves: remove it; rotations of the plane are `SO<2>`, rotations of space \
-                `SO<3>`"
+             `SO<3>`"
         }
         "GL" => {
             "write a positive factor as the exponential of a field: `field x: Real;` and `exp(x)`; linear maps of the plane \
-                are `GL<2>`"
+             are `GL<2>`"
         }
         _ => "a single number is `Real`",
     }

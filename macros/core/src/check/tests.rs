@@ -309,7 +309,10 @@ fn numbers_of_other_languages_are_refused() {
         ("0b11*m", "write `3`"),
         ("m^0x2", "write `2`"),
         ("0o1_7*m", "write `15`"),
-        ("0xffffffffffffffffffffffffffffffffff*m", "numbers are decimal"),
+        (
+            "0xffffffffffffffffffffffffffffffffff*m",
+            "numbers are decimal",
+        ),
         ("2f64*m", "write `2`"),
         ("1.5f32*m", "write `1.5`"),
         ("3u8*m", "have no type"),
@@ -414,7 +417,11 @@ fn unit_vectors_are_those_of_the_size() {
             "dot(Λ*v, E3)",
             "`E3` does not exist in 2 dimensions\n  help: the unit vectors here are `E1` and `E2`",
         ),
-        ("size 2", "dot(Λ*E3, v)", "`E3` does not exist in 2 dimensions"),
+        (
+            "size 2",
+            "dot(Λ*E3, v)",
+            "`E3` does not exist in 2 dimensions",
+        ),
         (
             "size 2",
             "tr(Λ*E1*E3^T)",
@@ -425,7 +432,7 @@ fn unit_vectors_are_those_of_the_size() {
             "dot(Λ*v, E4)",
             "`E4` does not exist in 3 dimensions\n  help: the unit vectors here are `E1` to `E3`",
         ),
-        ("size 3", "dot(Λ*v, E1 + E5)", "there is no `E5`"),
+        ("size 3", "dot(Λ*v, E1 + E5)", "`E5` does not exist"),
         (
             "size 3",
             "dot(Λ*v, E9)",
@@ -490,8 +497,12 @@ fn what_papers_write_otherwise_is_told_as_the_language_writes_it() {
         ),
         ("# a remark\n", "m", "write a comment after `//`"),
         ("L = m;", "m", "write `lagrangian = ...;`"),
-        ("E = m*g;", "m", "given a name by `let E = ...;`"),
-        ("q: Vec<3>;", "m", "`field q: ...;` moves"),
+        (
+            "E = m*g;",
+            "m",
+            "to name an expression, write `let E = ...;`",
+        ),
+        ("q: Vec<3>;", "m", "`field q: ...;` for a configuration"),
         ("", "m/dt^2", "the time step is named `h` here"),
         (
             "",

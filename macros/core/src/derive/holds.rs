@@ -225,19 +225,19 @@ pub(super) fn dependent(d: &Derivation, assumed: &[Expr]) -> Option<Diagnostic> 
         let name = &d.letters.symbols.get(hold.multiplier).name;
         let message = format!(
             "the constraint of `{name}` follows from the others, or some of its components follow from one another: {wanted} \
-                equations constrain only {rank} directions, so its multiplier is undetermined"
+             equations constrain only {rank} directions, so its multiplier is undetermined"
         );
         let is_turned = |e: &Expr| e.shape().is_vector() && rank + 1 == wanted;
         let help = match hold.left.shape() == hold.value.shape() {
             true if is_turned(&hold.left) => {
                 "remove what the other constraints state already; to make vectors of equal length, such as `R*a` and `S*b`, \
-                    parallel, use two numbers: `dot(R*c, S*b) = 0` and `dot(R*d, S*b) = 0` with `c` and `d` perpendicular to \
-                    `a`"
+                 parallel, use two numbers: `dot(R*c, S*b) = 0` and `dot(R*d, S*b) = 0` with `c` and `d` perpendicular to \
+                 `a`"
             }
             true => "remove what the other constraints state already",
             false => {
                 "an equation of matrices constrains all entries, of symmetric matrices the entries on and above the diagonal, \
-                    of skew matrices the axial vector: for rotations, write `vee(A^T*B) = 0` instead of `A = B`"
+                 of skew matrices the axial vector: for rotations, write `vee(A^T*B) = 0` instead of `A = B`"
             }
         };
         return Some(Diagnostic::new(hold.place, message).help(help));

@@ -251,7 +251,7 @@ impl Derivation {
             None => reason.clone(),
             Some((rank, n)) => format!(
                 "{reason}, but the kinetic energy has rank {rank} of {n}: every choice of the parameters is rejected at the \
-                    start"
+                 start"
             ),
         }
     }

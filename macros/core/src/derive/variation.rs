@@ -309,7 +309,7 @@ fn wrong_side(
             a.place,
             format!(
                 "`{name}` is not advected by the group: increments of the field `{x}` add up, but two steps of this constraint \
-                    are not one step by their sum; its variation leaves {rest}"
+                 are not one step by their sum; its variation leaves {rest}"
             ),
         )
         .help(of_field(s, a, &x));
@@ -378,11 +378,11 @@ fn of_field(s: &Symbols, a: &Advected, field: &str) -> String {
     match same {
         true => format!(
             "to advect a quantity with the field, write `constraint next({name}) = {name} + (next({field}) - {field});`; if it \
-                is a function of `{field}`, write it in terms of `{field}` in the Lagrangian, without a constraint"
+             is a function of `{field}`, write it in terms of `{field}` in the Lagrangian, without a constraint"
         ),
         false => format!(
             "if `{name}` is a function of `{field}`, write it in terms of `{field}` in the Lagrangian, without a constraint; \
-                if it is constant, write `constraint next({name}) = {name};`"
+             if it is constant, write `constraint next({name}) = {name};`"
         ),
     }
 }

@@ -177,7 +177,7 @@ fn too_many_together(d: &Derivation, most: &Most) -> Option<Diagnostic> {
     let names: Vec<String> = refused.iter().map(name).collect();
     let message = format!(
         "{} depend on one another, so their equations must be solved together: this version {made} steppers for at most \
-            {different} such bodies of different groups, and for at most {admitted} coordinates",
+         {different} such bodies of different groups, and for at most {admitted} coordinates",
         names.join(", ")
     );
     Some(

@@ -145,10 +145,12 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
     let functions = d.letters.symbols.functionals();
     if let Some(open) = functions.iter().find(|f| f.path == BY_CASE) {
         let name = &open.name;
-        let message = format!("the case gives the function `{name}`, but a compiled stepper needs it in the model");
+        let message = format!(
+            "the case gives the function `{name}`, but a compiled stepper needs it in the model"
+        );
         return Some(Diagnostic::new(spec.name_place, message).help(format!(
             "run the model from its file, with [functions] in its case, or write `given {name}(...): ... = \"EXPRESSION\";` or \
-                the path of a Rust function"
+             the path of a Rust function"
         )));
     }
     let taken: Vec<&String> = d.invariants.iter().map(|v| &v.name).collect();

@@ -325,7 +325,8 @@ impl Lattice {
                 }
                 let known = at.as_ref().is_none_or(|at| self.knows(at));
                 if !on_line && known {
-                    let d = Diagnostic::new(offset.place, "only a field on a chain can have an offset");
+                    let d =
+                        Diagnostic::new(offset.place, "only a field on a chain can have an offset");
                     errors.push(d.help("write for example `field X: Real at nodes offset L;`"));
                 }
             }
@@ -348,7 +349,8 @@ impl Lattice {
             }
             Statement::Periodic(place) => {
                 if self.line.is_none() {
-                    let d = Diagnostic::new(*place, "the model has no chain that could be periodic");
+                    let d =
+                        Diagnostic::new(*place, "the model has no chain that could be periodic");
                     errors.push(d.help("declare a chain: `label i in 0..N;`"));
                 }
                 if let Some(first) = self.periodic {
@@ -432,7 +434,10 @@ impl Lattice {
             return;
         };
         if line.index.text != label.text {
-            let message = format!("the label of the chain is `{}`, not `{}`", line.index.text, label.text);
+            let message = format!(
+                "the label of the chain is `{}`, not `{}`",
+                line.index.text, label.text
+            );
             errors.push(Diagnostic::new(label.place, message));
             return;
         }
@@ -467,9 +472,7 @@ impl Lattice {
         }
         if alternatives.is_empty() {
             let d = Diagnostic::new(at.place, "this end has no condition");
-            errors.push(
-                d.help("write `free;` for the natural end condition, or remove the block"),
-            );
+            errors.push(d.help("write `free;` for the natural end condition, or remove the block"));
         }
         *list = alternatives.to_vec();
     }
@@ -524,7 +527,10 @@ impl Lattice {
                         name.text
                     ),
                     Some((Kind::Advected, _)) => {
-                        format!("`{}` follows from its configuration: prescribe the configuration", name.text)
+                        format!(
+                            "`{}` follows from its configuration: prescribe the configuration",
+                            name.text
+                        )
                     }
                     Some(_) => format!("`{}` is not a configuration", name.text),
                     None => format!("`{}` is not a quantity of the chain", name.text),

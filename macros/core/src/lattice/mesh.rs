@@ -105,7 +105,10 @@ impl Lattice {
                 continue;
             };
             let Some(at) = at else {
-                let d = Diagnostic::new(name.place, "this functional does not say at which sites it has values");
+                let d = Diagnostic::new(
+                    name.place,
+                    "this functional does not say at which sites it has values",
+                );
                 errors.push(d.help(format!(
                     "write for example `mesh {}: Real at a = {}(X);`",
                     name.text, path.text
@@ -126,7 +129,7 @@ impl Lattice {
                 );
                 errors.push(d.also(line.index.place, "the chain is declared here").help(
                     "along a chain write the neighbours out, `2*m/(next(X, i) - prev(X, i))`; for a set of sites, declare the \
-                        quantities `at a`",
+                     quantities `at a`",
                 ));
                 continue;
             }
@@ -192,10 +195,7 @@ impl Lattice {
                     .iter()
                     .any(|m| m.of == Source::Field(q.name.text.clone()))
             {
-                let message = format!(
-                    "`{}` has a domain, but no functional uses it",
-                    q.name.text
-                );
+                let message = format!("`{}` has a domain, but no functional uses it", q.name.text);
                 errors.push(Diagnostic::new(q.name.place, message).help(
                     "declare a functional, `mesh A: Real at a = voronoi_area(X);`, or remove `on ...`",
                 ));
@@ -265,7 +265,11 @@ impl Lattice {
                     "only the first argument may be a field or a functional, and `{}` is one",
                     data.text
                 );
-                return refused(data.place, message, "the other arguments must be parameters");
+                return refused(
+                    data.place,
+                    message,
+                    "the other arguments must be parameters",
+                );
             }
             if !parameters.iter().any(|p| p.name.text == data.text) {
                 let message = format!("`{}` is not a parameter", data.text);
@@ -315,7 +319,10 @@ impl Lattice {
                 return Ok(Source::Field(first.text.clone()));
             }
             Some((Kind::Configuration, _)) => {
-                format!("`{}` is not a position: a position is a number or a vector", first.text)
+                format!(
+                    "`{}` is not a position: a position is a number or a vector",
+                    first.text
+                )
             }
             Some((Kind::Functional, _)) => {
                 let known = self.meshes.iter().position(|m| m.name.text == first.text);
@@ -331,7 +338,7 @@ impl Lattice {
         };
         Err(Box::new(Diagnostic::new(first.place, message).help(
             "the first argument must be the field, `field X: Vec<2> at a on torus(L);`, as in `mesh A: Real at a = \
-                voronoi_area(X);`",
+             voronoi_area(X);`",
         )))
     }
 
@@ -413,8 +420,7 @@ impl Lattice {
                     return refused(name.place, message, write());
                 }
                 if !of_cells && !is_grid(own) {
-                    let message =
-                        format!("`{}` has its values at the nodes of a grid", path.text);
+                    let message = format!("`{}` has its values at the nodes of a grid", path.text);
                     return refused(
                         name.place,
                         message,
@@ -427,7 +433,8 @@ impl Lattice {
             let plane = |q: &Quantity| q.shape.components() == Some(2);
             if self.places().is_some_and(|q| !plane(q)) {
                 let message =
-                    "`smooth_isotropic` works in the plane only: on a line write `smooth`".to_owned();
+                    "`smooth_isotropic` works in the plane only: on a line write `smooth`"
+                        .to_owned();
                 return refused(path.place, message, write());
             }
         }

@@ -71,7 +71,7 @@ pub fn not_emitted(model: &Model, why: &str) -> Diagnostic {
     if let Some(place) = functional {
         return Diagnostic::new(place, message).help(
             "a model with functionals of all sites has no other stepper, so state the model without this; `clebsch derive \
-                FILE` prints its equations",
+             FILE` prints its equations",
         );
     }
     Diagnostic::new(label.unwrap_or(model.name.place), message).help(

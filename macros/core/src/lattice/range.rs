@@ -128,7 +128,7 @@ pub(super) fn beside_sum(lattice: &Lattice, e: &Expression) -> Option<Diagnostic
     let refused = |at: &Expression, what: &str| {
         let message = format!(
             "{what} couples every site to all others, which a Lagrangian cannot do yet: `sum(expr, nodes)` only gives the \
-                sites of a term"
+             sites of a term"
         );
         let d = Diagnostic::new(at.place, message);
         Some(d.help("move everything into the sum, as in `sum(x^2, nodes)`; only a `hold` constraint may contain a function of \
@@ -178,7 +178,7 @@ fn named(lattice: &Lattice, name: &str, place: Place) -> Result<(), Diagnostic> 
         )
         .help(format!(
             "for a quantity that differs between sites, declare a parameter, `param a: Real at nodes;`, and in the case write \
-                `a = \"1 + {}/{}\"`",
+             `a = \"1 + {}/{}\"`",
             l.index.text, l.count.text
         ))),
     }
@@ -205,7 +205,10 @@ fn neighbour(
     let line = lattice.line_label();
     let line_name = line.map_or("", |l| l.index.text.as_str());
     let Kind::Name(name) = &label.kind else {
-        let d = Diagnostic::new(label.place, "the second argument must be the label of a chain");
+        let d = Diagnostic::new(
+            label.place,
+            "the second argument must be the label of a chain",
+        );
         return Err(d.help(format!("write `next(x, {line_name})`")));
     };
     if name != line_name || line.is_none() {
@@ -224,7 +227,10 @@ fn neighbour(
     }
     let held = reach(lattice, inner)?;
     if held.letters.is_empty() {
-        let d = Diagnostic::new(place, "this is the same at every site, so it has no neighbour");
+        let d = Diagnostic::new(
+            place,
+            "this is the same at every site, so it has no neighbour",
+        );
         return Err(d.help(format!(
             "declare quantities that differ between sites `at nodes` or `at segments`, or remove `, {line_name}`"
         )));

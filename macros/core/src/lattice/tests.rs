@@ -196,7 +196,10 @@ fn mistakes_are_told_in_the_words_of_the_statement() {
             format!("{kinetic}; label l in 0..K; field X: Real at nodes;"),
             "at most one chain",
         ),
-        (format!("{kinetic}; field X: Real offset L;"), "field on a chain"),
+        (
+            format!("{kinetic}; field X: Real offset L;"),
+            "field on a chain",
+        ),
         (format!("{kinetic}; scale q;"), "is not repeated at sites"),
         (
             format!("{kinetic}; end i = 0 {{ q = given; }}"),
@@ -396,7 +399,10 @@ fn a_constraint_with_the_site_before_is_counted_from_that_one() {
 fn sums_are_refused_where_they_mean_nothing() {
     for (hold, wanted) in [
         ("hold c: sum(φ) = φ;", "differs between sites"),
-        ("hold c: sum(sum(φ)) = X;", "contains another sum over sites"),
+        (
+            "hold c: sum(sum(φ)) = X;",
+            "contains another sum over sites",
+        ),
         ("hold c: sum(X) = X;", "it cannot be summed over sites"),
         ("hold c: sum(φ) = R;", "a vector of length 3 is needed here"),
         ("hold c: sum(m) = R;", "contains no configuration"),

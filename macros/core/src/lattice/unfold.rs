@@ -102,8 +102,7 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Expan
     let copies = sites.fold(0, usize::saturating_add);
     if copies > MOST_COPIES {
         let message = format!(
-            "this model is too large to be expanded: with {} it has {copies} quantities at sites, and the limit is \
-                {MOST_COPIES}",
+            "this model is too large to be expanded: with {} it has {copies} quantities at sites, at most {MOST_COPIES}",
             choice.words(lattice)
         );
         return Err(Diagnostic::new(model.name.place, message)

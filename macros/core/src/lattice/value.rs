@@ -116,7 +116,7 @@ fn slope_of(arguments: &[Expression]) -> Result<(&str, u64), String> {
     let Kind::Name(name) = &name.kind else {
         return Err(
             "`slope` takes the name of a mesh, as in slope(S, 1): apply the product and chain rules yourself, as in \
-                2*S*slope(S, 1) for S^2"
+             2*S*slope(S, 1) for S^2"
                 .to_owned(),
         );
     };
@@ -169,7 +169,7 @@ fn value(e: &Expression, of: &Given<'_>) -> Result<f64, String> {
             (of.slope)(name, along).ok_or_else(|| {
                 format!(
                     "slope({name}, {along}) has no value here: use it for meshes on the grid of a fluid, in [initial] values \
-                        at its particles"
+                     at its particles"
                 )
             })?
         }

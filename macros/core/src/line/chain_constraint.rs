@@ -148,7 +148,7 @@ pub(super) fn held(
     if let (Some(m), false) = (turning.next(), part.unfolded.holds.is_empty()) {
         return refused(format!(
             "the model has a `hold` constraint, and the velocity of `{}` is found by Newton's method: in constrained chains, \
-                loops over sites support rotations with the kinetic energy `-tr(J*Ω)`, `J` a function of parameters",
+             loops over sites support rotations with the kinetic energy `-tr(J*Ω)`, `J` a function of parameters",
             m.name
         ));
     }
@@ -282,7 +282,9 @@ fn total(
 ) -> Result<ChainConstraint, Refused> {
     let (d, name) = (&part.d, &stated.name);
     let Some(summed) = &stated.summed else {
-        return refused(format!("`{name}` is not linear in the sums that it contains"));
+        return refused(format!(
+            "`{name}` is not linear in the sums that it contains"
+        ));
     };
     let Some(first) = summed.first() else {
         return refused(format!("`{name}` contains no sum"));
@@ -290,7 +292,9 @@ fn total(
     let mut largest = 0;
     for term in summed {
         if term.range != first.range || term.site != first.site {
-            return refused(format!("`{name}` contains sums over different ranges of sites"));
+            return refused(format!(
+                "`{name}` contains sums over different ranges of sites"
+            ));
         }
         largest = largest.max(width(name, term.range.from, &term.letters)?);
     }
@@ -313,7 +317,9 @@ fn total(
     };
     let is_constant = |l: &Letter| d.letters.symbols.get(l.symbol).role == Role::Parameter;
     if !expr::letters(&beside).iter().all(is_constant) {
-        return refused(format!("`{name}` contains a sum and a quantity that is not at sites"));
+        return refused(format!(
+            "`{name}` contains a sum and a quantity that is not at sites"
+        ));
     }
     let mut symbols = d.letters.symbols.clone();
     let (index, count) = match lattice.labels.get(first.range.label) {

@@ -182,7 +182,10 @@ impl Line {
         };
         let mut acted = self.ends.iter().flat_map(|e| &e.forces);
         if let Some(alone) = acted.find(|f| !pulled(&f.on)) {
-            let words = format!("a term of an end acts on `{}`, but no term between neighbours does", alone.on);
+            let words = format!(
+                "a term of an end acts on `{}`, but no term between neighbours does",
+                alone.on
+            );
             return Err(Refused::Form(words));
         }
         for alternative in self.lattice.ends.iter().flatten() {
@@ -199,7 +202,7 @@ impl Line {
                 {
                     let words = format!(
                         "an end condition prescribes `{}`, whose velocity is solved together with the velocity of `{}`, which \
-                            it does not prescribe",
+                         it does not prescribe",
                         mover.name, other.name
                     );
                     return Err(Refused::Form(words));

@@ -222,7 +222,9 @@ fn read(part: &RepresentativeChain, summand: &Summand) -> Result<Expr, Refused> 
     let found = check::numbers(&part.unfolded.model, &[&summand.shown]);
     match found.into_iter().next() {
         Some(Some(term)) => Ok(term),
-        _ => Err(Refused::Form("clebsch cannot read a term of neighbours".to_owned())),
+        _ => Err(Refused::Form(
+            "clebsch cannot read a term of neighbours".to_owned(),
+        )),
     }
 }
 

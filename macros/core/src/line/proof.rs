@@ -25,8 +25,8 @@ impl Line {
         let refused = || {
             Refused::Form(format!(
                 "clebsch cannot prove that the parts of a site and of its neighbours add up to the equation of `{name}`: it \
-                    recognises only some terms that contain both ends of a step, such as terms in the velocity at the middle \
-                    of the step",
+                 recognises only some terms that contain both ends of a step, such as terms in the velocity at the middle \
+                 of the step",
                 name = mover.name
             ))
         };

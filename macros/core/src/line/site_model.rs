@@ -352,11 +352,11 @@ fn how(
             ),
             (Kept::Quaternion, Side::Body) => format!(
                 "the velocity of `{name}` is found by Newton's method: loops over sites support unit quaternions whose kinetic \
-                    energy is a quadratic form of im and a multiple of re, with parameters as coefficients"
+                 energy is a quadratic form of im and a multiple of re, with parameters as coefficients"
             ),
             _ => format!(
                 "`{name}` is in {group}: loops over sites support fields, rotations of SO<3> and unit quaternions of SU<2> on \
-                    the body side, and SO<2>, {} in coordinates of these",
+                 the body side, and SO<2>, {} in coordinates of these",
                 groups::listed("and", |_, g| g.chart().is_some())
             ),
         }))
@@ -473,13 +473,13 @@ pub(super) fn momentum(
             if c.group.is_additive() {
                 return Err(Refused::Form(format!(
                     "the momentum of the matrix `{}` is not a product `L*(next(X) - X)*R` with known factors: loops over sites \
-                        support matrices with the kinetic energy `tr(A*(next(X) - X)*B*(next(X) - X)^T)/(2*h)`",
+                     support matrices with the kinetic energy `tr(A*(next(X) - X)*B*(next(X) - X)^T)/(2*h)`",
                     s.get(c.element).name
                 )));
             }
             return Err(Refused::Form(format!(
                 "the velocities of `{}` and `{}` are solved together: loops over sites support this for fields and rotations \
-                    of SO<3> on the body side",
+                 of SO<3> on the body side",
                 s.get(d.spec.configurations[i].element).name,
                 s.get(c.element).name
             )));

@@ -151,7 +151,7 @@ pub(super) fn finish(
             if !velocity::is_free(c) {
                 return Err(Refused::Form(format!(
                     "a term contains the velocity of `{}` and that of a neighbour: loops over sites support this for fields \
-                        and rotations of SO<3> on the body side",
+                     and rotations of SO<3> on the body side",
                     at.of
                 )));
             }

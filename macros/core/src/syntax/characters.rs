@@ -28,7 +28,9 @@ fn written(c: char) -> Option<&'static str> {
         '≤' | '≥' | '≠' => "write `<=` or `>=`, in an `assume` statement",
         '½' | '¼' | '¾' | '⅓' | '⅔' => "write `1/2`",
         '∇' | '∂' => "state the Lagrangian; clebsch takes the derivatives",
-        '∫' | '∑' | '∏' => "terms `at nodes` and `at segments` are summed over the label automatically",
+        '∫' | '∑' | '∏' => {
+            "terms `at nodes` and `at segments` are summed over the label automatically"
+        }
         '“' | '”' | '„' => "write straight quotes, `\"`",
         '\\' => {
             "write names in Unicode or spelt out, `Λ` or `Lambda`; put LaTeX in quotes after `as`"

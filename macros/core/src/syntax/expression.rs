@@ -165,11 +165,9 @@ fn postfix(c: &mut Cursor) -> Parsed {
     let remedy = match c.peek() {
         Some(Token::Open('{')) => {
             "indices are not written out: write `next(q)` for the next node in time, `next(q, i)` for the next site along a \
-                label `i`"
+             label `i`"
         }
-        Some(Token::Punct('%', _)) => {
-            "write a comment after `//`; the language has no remainder"
-        }
+        Some(Token::Punct('%', _)) => "write a comment after `//`; the language has no remainder",
         _ => return Ok(e),
     };
     Err(c.unexpected("an operator").help(remedy))
@@ -189,8 +187,10 @@ fn indices(c: &mut Cursor) -> Result<Vec<u64>, Diagnostic> {
                 let message = "sums over pairs of sites are not supported yet";
                 Diagnostic::new(e.place, message).help(unknown::PAIRS)
             }
-            Some(_) => e.help(remedy).help("write `q` at the site itself, `next(q, i)` or `prev(q, i)` at a neighbour along a \
-                label `i`, and `next(q)` at the next node in time"),
+            Some(_) => e.help(remedy).help(
+                "write `q` at the site itself, `next(q, i)` or `prev(q, i)` at a neighbour along a \
+                label `i`, and `next(q)` at the next node in time",
+            ),
             None => e.help(remedy),
         })?);
         if !c.take_punct(',') {
@@ -231,7 +231,7 @@ fn signed_exponent(c: &mut Cursor) -> Result<Rational, Diagnostic> {
         _ => {
             return Err(c.unexpected("`T`, `-1` or a number after `^`").help(
                 "write `x^T` for the transpose, `x^-1` for the inverse, `x^2` and `x^(1/2)` for powers, `exp(a*log(x))` for \
-                    other powers, and `exp(x)`",
+                 other powers, and `exp(x)`",
             ));
         }
     };
@@ -302,7 +302,8 @@ fn operand(c: &mut Cursor) -> Parsed {
     match c.peek().cloned() {
         Some(Token::Number(text)) => {
             let kind = number(&text).ok_or_else(|| {
-                let message = "a number must be between 5e-324 and 1.8e308, the range of double precision";
+                let message =
+                    "a number must be between 5e-324 and 1.8e308, the range of double precision";
                 Diagnostic::new(c.place(), message).help("change the units")
             })?;
             c.advance();

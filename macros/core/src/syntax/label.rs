@@ -15,8 +15,7 @@ pub(super) fn label(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     let zero = c.whole_number().map_err(|e| e.help(remedy))?;
     if zero != 0 {
         return Err(
-            Diagnostic::new(place, format!("a label starts at 0, not at {zero}"))
-                .help(remedy),
+            Diagnostic::new(place, format!("a label starts at 0, not at {zero}")).help(remedy),
         );
     }
     for _ in 0..2 {
@@ -24,7 +23,9 @@ pub(super) fn label(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     }
     if c.take_punct('=') || matches!(c.peek(), Some(Token::Number(_))) {
         let d = c.unexpected("the name of the number of segments");
-        return Err(d.help("the case gives the number: write `0..N`, and in the case `[labels]` with `i = 50`"));
+        return Err(d.help(
+            "the case gives the number: write `0..N`, and in the case `[labels]` with `i = 50`",
+        ));
     }
     let count = c
         .name("the name of the number of segments")
@@ -135,8 +136,8 @@ fn alternative(c: &mut Cursor) -> Result<Alternative, Diagnostic> {
                 c.word("given").map_err(|e| {
                     e.help(
                         "write `φ = given;`: the case gives the value, which is constant in time. To drive an end, use a term, \
-                            `term -h*(K/2)*(φ - A*sin(w*τ))^2;`, and a clock at the nodes: `advected τ: Real at nodes; \
-                            constraint next(τ) = τ + h;`",
+                         `term -h*(K/2)*(φ - A*sin(w*τ))^2;`, and a clock at the nodes: `advected τ: Real at nodes; \
+                         constraint next(τ) = τ + h;`",
                     )
                 })?;
                 out.given.push(word);

@@ -50,11 +50,9 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
         }
     }
     if !c.is_at_end() {
-        errors.push(
-            c.unexpected("the end of the model").help(
-                "a file or a `model! { ... }` contains one model: put the other model into its own",
-            ),
-        );
+        errors.push(c.unexpected("the end of the model").help(
+            "a file or a `model! { ... }` contains one model: put the other model into its own",
+        ));
     }
     errors.propagate()?;
     let stated = Model {
@@ -172,7 +170,7 @@ fn statement(c: &mut Cursor) -> Result<Statement, Diagnostic> {
                 keyword.place,
                 format!(
                     "`{}` is not a statement: write kinetic terms with `next(X) - X`, and linear functionals as `mesh` \
-                        statements",
+                     statements",
                     keyword.text
                 ),
             )
@@ -380,7 +378,8 @@ fn advected(c: &mut Cursor) -> Result<Statement, Diagnostic> {
 }
 
 fn constraint(c: &mut Cursor, keyword: &Name) -> Result<Statement, Diagnostic> {
-    let remedy = "write `constraint next(Γ) = Ω^T * Γ;`: a constraint gives the quantity at the next node";
+    let remedy =
+        "write `constraint next(Γ) = Ω^T * Γ;`: a constraint gives the quantity at the next node";
     c.word("next").map_err(|e| {
         e.help(remedy)
             .help("to constrain configurations, write `hold λ: dot(x, x) = L^2;`")
@@ -390,7 +389,7 @@ fn constraint(c: &mut Cursor, keyword: &Name) -> Result<Statement, Diagnostic> {
     if c.is_punct(',') {
         return Err(c.unexpected("`)`").help(
             "a constraint advances a quantity in time; for a neighbour along a label, write for example `Λ^T*next(Λ, i)` in \
-                the Lagrangian",
+             the Lagrangian",
         ));
     }
     c.delimiter(')')?;
@@ -459,7 +458,7 @@ fn given(c: &mut Cursor) -> Result<Statement, Diagnostic> {
             let mut path = c.name("the path of the function").map_err(|e| {
                 e.help(remedy).help(
                     "or give an expression in quotes, `\"A*cos(2*pi*x)\"`, where x, y, z are the components of the argument; \
-                        or write `case`, and the case gives the expression",
+                     or write `case`, and the case gives the expression",
                 )
             })?;
             path_goes_on(c, &mut path)?;
@@ -493,7 +492,7 @@ fn binding(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     c.punct('=').map_err(|e| match c.peek() {
         Some(Token::Open('(')) => e.help(format!(
             "`let` takes no arguments: write `let {n} = k*q^2/2;`, or declare a function, `given {n}(Real): Real = \
-                \"k*x^2/2\";`",
+             \"k*x^2/2\";`",
             n = name.text
         )),
         _ => e,

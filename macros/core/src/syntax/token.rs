@@ -143,8 +143,7 @@ impl Cursor {
             match tree {
                 TokenTree::Group(group) => {
                     if stack.len() > DEEPEST {
-                        let message =
-                            format!("parentheses are nested deeper than {DEEPEST}");
+                        let message = format!("parentheses are nested deeper than {DEEPEST}");
                         return Err(Diagnostic::new(Place::token(span), message)
                             .help("name parts of the expression with `let`")
                             .into());
@@ -202,8 +201,7 @@ impl Cursor {
                 _ => {}
             }
             if divisions > MOST_DIVISIONS {
-                let message =
-                    format!("this statement has more than {MOST_DIVISIONS} divisions");
+                let message = format!("this statement has more than {MOST_DIVISIONS} divisions");
                 return Err(Diagnostic::new(Place::token(*span), message)
                     .help("divide by products, or name parts of the expression with `let`")
                     .into());

@@ -15,7 +15,9 @@ pub(super) fn typeset(c: &mut Cursor, names: &mut [Name]) -> Result<(), Diagnost
         if i > 0 && !c.take_punct(',') {
             return Err(c
                 .unexpected(&format!("`,` and the LaTeX of `{}`", name.text))
-                .help("write one text for each name: `param a, b: Real as \"\\alpha\", \"\\beta\";`"));
+                .help(
+                    "write one text for each name: `param a, b: Real as \"\\alpha\", \"\\beta\";`",
+                ));
         }
         let Some(Token::Literal(literal)) = c.peek() else {
             return Err(c
@@ -26,8 +28,10 @@ pub(super) fn typeset(c: &mut Cursor, names: &mut [Name]) -> Result<(), Diagnost
             Ok(text) => name.typeset = Some((text, c.place())),
             Err(why) => {
                 let d = Diagnostic::new(c.place(), format!("this is not a symbol in LaTeX: {why}"));
-                return Err(d.help("write what you would put between two dollar signs, such as `m g \\chi` or \
-                    `J_{\\mathrm{eff}}`"));
+                return Err(d.help(
+                    "write what you would put between two dollar signs, such as `m g \\chi` or \
+                    `J_{\\mathrm{eff}}`",
+                ));
             }
         }
         c.advance();

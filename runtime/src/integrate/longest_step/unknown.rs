@@ -30,14 +30,10 @@ impl fmt::Display for Unknown {
             Self::Kind => "a configuration has no momentum in the initial values",
             Self::Start => "no short step from the initial configuration at rest succeeds",
             Self::Refused => "a step from a state near the initial configuration fails",
-            Self::Kinetic => {
-                "the kinetic energy is not positive for all admissible velocities"
-            }
+            Self::Kinetic => "the kinetic energy is not positive for all admissible velocities",
             Self::Still => "the stiffness at the initial configuration is zero",
             Self::Far => "no step of about 2/ω from the initial configuration at rest succeeds",
-            Self::OtherSteps => {
-                "the scheme does not treat the fastest mode like Störmer-Verlet"
-            }
+            Self::OtherSteps => "the scheme does not treat the fastest mode like Störmer-Verlet",
             Self::Unfinished => "the search was stopped early",
         })
     }

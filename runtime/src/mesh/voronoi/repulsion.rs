@@ -67,8 +67,7 @@ impl<T: Real> Functional<T, 2> for pair_core<T> {
         let value = radius.value();
         let shortest = setting.domain.lengths[0].min(setting.domain.lengths[1]);
         if !(radius.is_finite() && value > 0.0) {
-            let remedy =
-                "give the distance at which particles begin to repel, about 0.7 of their distance in equilibrium";
+            let remedy = "give the distance at which particles begin to repel, about 0.7 of their distance in equilibrium";
             return Err(refused("rc", Problem::NotPositive { value }, remedy));
         }
         if value > 0.5 * shortest {

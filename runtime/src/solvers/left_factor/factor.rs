@@ -102,7 +102,7 @@ impl LeftFactorError {
         let remedy = match self {
             Self::NotPositive { .. } => {
                 "give second moments that are positive in all directions but one: a rotation in a plane without second moments \
-                    has no inertia"
+                 has no inertia"
             }
             Self::NotFinite | Self::Reflected { .. } => {
                 "give the second moments of a real mass distribution, rotated if necessary"

@@ -209,7 +209,7 @@ impl fmt::Display for MoserVeselovError {
             return write!(
                 f,
                 "solver {} found no solution although the momentum is only {:.6} of its bound, or does not support this \
-                    scalar; use kappa",
+                 scalar; use kappa",
                 self.solver, self.ratio
             );
         }

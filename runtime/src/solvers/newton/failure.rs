@@ -214,7 +214,7 @@ impl fmt::Display for NewtonError {
             NewtonFailure::Fold { share } => write!(
                 f,
                 "the equation of the step has no solution connected to h = 0: its tangent becomes singular at {share:.6} of \
-                    the momentum"
+                 the momentum"
             )?,
         }
         match self.configuration() {

@@ -90,7 +90,7 @@ impl Elaborator<'_> {
             let (w, h) = (&velocity.name, &symbols.get(self.names.step).name);
             format!(
                 "the velocity `{w}` is the rotation of one step, a matrix: for a body with second moments J, write the kinetic \
-                    energy as `-tr(J*{w})/{h}`"
+                 energy as `-tr(J*{w})/{h}`"
             )
         })
     }

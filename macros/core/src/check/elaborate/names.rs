@@ -102,7 +102,10 @@ impl Elaborator<'_> {
             2 => "`E1` and `E2`".to_owned(),
             n => format!("`E1` to `E{n}`"),
         };
-        let message = format!("`{}` does not exist {bound}", UNITS.get(axis).unwrap_or(&"En"));
+        let message = format!(
+            "`{}` does not exist {bound}",
+            UNITS.get(axis).unwrap_or(&"En")
+        );
         fail(Diagnostic::new(place, message).help(format!("the unit vectors here are {there}")))
     }
 
@@ -170,7 +173,9 @@ impl Elaborator<'_> {
                 "write a rate of change as a difference over the step: `(next({moving}) - {moving})/{h}`"
             ));
         } else if let Some(moving) = next_of(n, &self.names.symbols) {
-            d = d.help(format!("write the value at the next node as `next({moving})`"));
+            d = d.help(format!(
+                "write the value at the next node as `next({moving})`"
+            ));
         } else if let Some((moving, end)) = end_of(n, &self.names.symbols) {
             d = d.help(match end {
                 true => format!("write the value at the end of the step as `next({moving})`"),
@@ -194,7 +199,7 @@ impl Elaborator<'_> {
             )
             .help(format!(
                 "declare a clock, `advected {clock}: Real; constraint next({clock}) = {clock} + {h};`, and write `{clock}`; \
-                    the case gives its initial value"
+                 the case gives its initial value"
             ));
         } else if let Some(near) = closest(n, declared.into_iter().chain(bound).map(String::as_str))
         {
@@ -216,7 +221,7 @@ impl Elaborator<'_> {
         } else if n.strip_prefix('E').is_some_and(|i| i.parse::<u8>().is_ok()) {
             d = d.help(format!(
                 "the named unit vectors are `E1` to `E{}`, up to the size of the vector; write components as `v[2]` and `A[1, \
-                    2]`",
+                 2]`",
                 UNITS.len()
             ));
         } else {

@@ -114,7 +114,7 @@ impl Elaborator<'_> {
             let message = "this matrix has no inverse: its determinant is identically zero";
             return fail(Diagnostic::new(place, message).help(
                 "a skew matrix of odd size, such as `hat(v)`, is singular, and so is `a*b^T`; add a regular matrix, for \
-                    example `Id`",
+                 example `Id`",
             ));
         }
         Ok(expr::inverse(&self.names.symbols, a))

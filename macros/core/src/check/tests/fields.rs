@@ -121,7 +121,10 @@ fn a_field_has_no_constraint() {
              lagrangian = -tr(R*W)/h + m*dot(d, d)/(2*h) - h*dot(X, X);"
         );
         let message = refused(&body);
-        assert!(message.contains("a field cannot have a constraint"), "{message}");
+        assert!(
+            message.contains("a field cannot have a constraint"),
+            "{message}"
+        );
         assert!(
             message.contains("by its increment `next(X) - X`"),
             "{message}"
@@ -223,7 +226,7 @@ fn names_of_columns_are_refused() {
         ),
         (
             "field q: Mat<2>; field q_12: Real;",
-            "call component 12 of `q` `q_12`",
+            "name component 12 of `q` `q_12`",
             "`q12`",
         ),
     ] {

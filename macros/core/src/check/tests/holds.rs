@@ -57,18 +57,27 @@ fn constraints_that_cannot_be_held_are_told_on_their_tokens() {
         ("hold λ: dot(next(x), next(x)) = L^2;", "remove `next`"),
         (
             "hold λ: dot(x, x) = dot(x, x);",
-            "both sides of the constraint of `λ` are the same",
+            "both sides of the constraint of `λ` are equal",
         ),
         ("hold m: dot(x, x) = L^2;", "`m` is declared twice"),
-        ("hold λ: x*x^T = Id;", "6 equations constrain only 3 directions"),
+        (
+            "hold λ: x*x^T = Id;",
+            "6 equations constrain only 3 directions",
+        ),
         ("hold λ: dot(x, x) = x;", "this is"),
-        ("hold λ dot(x, x) = L^2;", "the name of the multiplier, then the equation"),
-        ("hold λ: dot(x, x);", "the name of the multiplier, then the equation"),
+        (
+            "hold λ dot(x, x) = L^2;",
+            "the name of the multiplier, then the equation",
+        ),
+        (
+            "hold λ: dot(x, x);",
+            "the name of the multiplier, then the equation",
+        ),
         (
             "hold λ: dot(x, x) = L^2; hold ν: 2*dot(x, x) = m;",
             "the constraint of `ν` follows from the others",
         ),
-        ("hold λ: cross(E3, x) = 0;", "hold 2 directions"),
+        ("hold λ: cross(E3, x) = 0;", "constrain only 2 directions"),
     ] {
         let told = held(hold);
         assert!(told.contains(wanted), "{hold}\n{told}");
@@ -82,7 +91,10 @@ fn constraints_that_cannot_be_held_are_told_on_their_tokens() {
     );
     let two = two.replace("-tr(J*W)/h", "-tr(J*W)/h - tr(J*V)/h");
     let told = refused(&format!("{two} hold l: R*a = S*b;"));
-    assert!(told.contains("3 equations constrain only 2 directions"), "{told}");
+    assert!(
+        told.contains("3 equations constrain only 2 directions"),
+        "{told}"
+    );
     assert!(told.contains("`dot(R*c, S*b) = 0`"), "{told}");
     let told = refused(&format!("{two} hold l: dot(R*a, S*b) = 0;"));
     assert!(told.starts_with("derives"), "{told}");

@@ -23,7 +23,11 @@ fn notation_of_papers_is_told_with_what_to_write() {
         ("param A: Mat<3>;", "dot(x, Aᵀ*x)", "`A^T` for a transpose"),
         ("", "q[k+1]", "`next(q)` at the next node in time"),
         ("", "q_{k+1}", "write `next(q)` for the next node in time"),
-        ("", "q_next", "write the value at the next node as `next(q)`"),
+        (
+            "",
+            "q_next",
+            "write the value at the next node as `next(q)`",
+        ),
         ("", "x_3", "write a component as `x[3]`"),
         ("", "q/h", "the time step is named `dt` here"),
         ("", "q % 2", "the language has no remainder"),

@@ -24,7 +24,10 @@ fn sizes_that_the_table_has_not_are_told_with_those_it_has() {
         assert!(said.contains(&own), "{said}");
     }
     let said = refused("SU<3>", "tr(V)");
-    assert!(said.contains("of this family it supports `SU<2>`;"), "{said}");
+    assert!(
+        said.contains("of this family it supports `SU<2>`;"),
+        "{said}"
+    );
     let said = refused("SE<2, 2>", "tr(V)");
     assert!(said.contains("`SE` takes one size, 2 given"), "{said}");
     let said = refused("Group<2>", "tr(V)");

@@ -167,6 +167,7 @@ fn too_large(spec: &Spec, algebra: &Algebra) -> Diagnostic {
         Some(excess) => format!("the reduction of this Lagrangian is too large: {excess}"),
         None => "clebsch cannot prove the reduction of this Lagrangian".to_owned(),
     };
-    Diagnostic::new(crate::derive::place_of_most(spec), message)
-        .help("write the reduced model, with velocities and advected quantities instead of `next(...)`")
+    Diagnostic::new(crate::derive::place_of_most(spec), message).help(
+        "write the reduced model, with velocities and advected quantities instead of `next(...)`",
+    )
 }

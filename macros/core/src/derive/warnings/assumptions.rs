@@ -52,7 +52,7 @@ pub(super) fn assumptions(x: &Inputs) -> Vec<Warning> {
                 last.place,
                 format!(
                     "the assumption {} never holds together with the assumptions before it: every choice of the parameters \
-                        will be rejected",
+                     will be rejected",
                     shown(x, last)
                 ),
             )

@@ -81,7 +81,7 @@ pub(super) fn kinks(x: &Inputs) -> Vec<Warning> {
             let place = at.map_or(x.spec.lagrangian_place, |(_, place)| *place);
             let message = format!(
                 "{} is not smooth where its argument vanishes: a step across that point loses its order, and the energy may \
-                    jump",
+                 jump",
                 x.text(e)
             );
             let help = "if the motion gets there, use a smooth function, such as `sqrt(x^2 + eps^2)` for `abs(x)`";

@@ -30,7 +30,7 @@ pub(super) fn limit(x: &Inputs) -> Option<Warning> {
         )
         .help(
             "take the step out of it, for example write `c*h*sqrt(1 - x/(c*h)^2)` for `sqrt(c^2*h^2 - x)`: apart from \
-                velocities `(next(X) - X)/h`, the rest must not contain `h`",
+             velocities `(next(X) - X)/h`, the rest must not contain `h`",
         );
         return Some(Warning::new(Topic::NoLimit, d));
     }
@@ -43,7 +43,7 @@ pub(super) fn limit(x: &Inputs) -> Option<Warning> {
     )
     .help(format!(
         "the Lagrangian is (kinetic - potential energy) times the step: divide kinetic terms by `h` and multiply potentials by \
-            `h`, as in `{kinetic} - {potential}`"
+         `h`, as in `{kinetic} - {potential}`"
     ));
     Some(Warning::new(Topic::NoLimit, d))
 }

@@ -93,12 +93,12 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
         place(x, blamed.first().map(|(term, _)| term)),
         format!(
             "the scheme is of first order only: its discrete Lagrangian L is not self-adjoint, since L(q0, q1, h) and -L(q1, \
-                q0, -h) differ by more than a total difference{because}"
+             q0, -h) differ by more than a total difference{because}"
         ),
     )
     .help(
         "write both ends of the step alike, as in `(X + next(X))/2*(next(Y) - Y)`, with odd powers of `h` only; `node \
-            incoming;` and `node outgoing;` affect only terms at one node. If you want a scheme of first order, keep it",
+         incoming;` and `node outgoing;` affect only terms at one node. If you want a scheme of first order, keep it",
     );
     let clocks = x.spec.clocks();
     let of_clock = |term: &&Expr| {

@@ -31,7 +31,7 @@ pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
     let refused = match is_alone && x.solve.needs_second_moments() {
         true => {
             ". The Moser-Veselov equation then does not determine the velocity, and every choice of the parameters is rejected \
-                at the start"
+             at the start"
         }
         false => "",
     };
@@ -41,7 +41,7 @@ pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
             .to_owned(),
         _ => format!(
             "the kinetic energy is degenerate: its Hessian in all velocities has rank {rank} of {n} for all parameters, so \
-                momenta do not determine velocities and the energy is undefined{refused}"
+             momenta do not determine velocities and the energy is undefined{refused}"
         ),
     };
     let [kinetic, _] = x.examples();
@@ -49,7 +49,7 @@ pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
     let help = match rank {
         0 => format!(
             "divide kinetic terms by the step once, as in `{kinetic}`; did you forget `/h`, or the factor `h` before the \
-                square of a velocity that is already divided by the step?"
+             square of a velocity that is already divided by the step?"
         ),
         _ if fields => "give every velocity a kinetic energy; did you forget `/h` in one of the terms, or write `/2*h` for `/(2*h)`?".to_owned(),
         _ if !is_alone => {
@@ -59,9 +59,9 @@ pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
         }
         _ => {
             "give every velocity a kinetic energy; did you forget `/h` in one of the terms? A body needs I = tr(J) Id - J > 0, \
-                and a point mass with J = m a a^T has no inertia about the line of a: declare `param S: Sym<3>`, its second \
-                moments about its own centre, and write `m*a*a^T + S` for `m*a*a^T`, so that J has rank two or three; a \
-                hundredth of m |a|^2 is enough"
+             and a point mass with J = m a a^T has no inertia about the line of a: declare `param S: Sym<3>`, its second \
+             moments about its own centre, and write `m*a*a^T + S` for `m*a*a^T`, so that J has rank two or three; a \
+             hundredth of m |a|^2 is enough"
                 .to_owned()
         }
     };
@@ -116,7 +116,7 @@ pub(super) fn sign(x: &Inputs) -> Option<Warning> {
         x.spec.lagrangian_place,
         format!(
             "the kinetic energy, {}, is {how} definite for all of {tried} random choices of positive numbers and positive \
-                definite matrices as parameters",
+             definite matrices as parameters",
             x.text(&kinetic.energy)
         ),
     )

@@ -23,7 +23,7 @@ fn constant(x: &Inputs) -> &'static str {
         true => "let it depend on the configuration, or remove it",
         false => {
             "the group leaves such terms unchanged, like the length of an advected vector: let the potential depend on the \
-                configuration, or remove it"
+             configuration, or remove it"
         }
     }
 }
@@ -68,8 +68,10 @@ pub(super) fn without_effect(x: &Inputs) -> Vec<Warning> {
     if !nodal.is_zero() && is_kept(x, nodal) {
         let term = all.iter().find(|t| moves(x, t) && split(s, t).0.is_zero());
         let message = match x.vanishes(nodal) {
-            true => "the terms at nodes add up to a total difference, which has no effect on the motion"
-                .to_owned(),
+            true => {
+                "the terms at nodes add up to a total difference, which has no effect on the motion"
+                    .to_owned()
+            }
             false => format!(
                 "the potential is constant along every motion: {} exerts no force",
                 x.text(nodal)
@@ -94,7 +96,7 @@ pub(super) fn without_effect(x: &Inputs) -> Vec<Warning> {
     for (last, first) in pairs(x, &addends) {
         let message = format!(
             "the terms {} and {} add up to a total difference, F(end of the step) - F(start): together they have no effect on \
-                the motion",
+             the motion",
             x.text(last),
             x.text(first)
         );
@@ -254,7 +256,7 @@ pub(super) fn vanishing(x: &Inputs) -> Option<Warning> {
         place(x, Some(term)),
         format!(
             "the term {} vanishes in the limit of small steps: the action of a step is proportional to `h`, and this term to \
-                `h^{n}`",
+             `h^{n}`",
             x.text(term)
         ),
     )

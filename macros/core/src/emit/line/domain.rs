@@ -53,7 +53,8 @@ pub(in crate::emit) fn refusal(line: &Line) -> Option<String> {
         asked.is_none_or(|list| list.iter().any(|t| !t.constant))
     };
     let refused = line.ends.iter().any(at_end);
-    refused.then(|| "a term of an end contains a function that is not defined everywhere".to_owned())
+    refused
+        .then(|| "a term of an end contains a function that is not defined everywhere".to_owned())
 }
 
 fn lone_terms(lone: &SiteModel) -> Vec<Expr> {

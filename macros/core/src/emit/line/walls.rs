@@ -51,12 +51,15 @@ pub(super) fn refusal(line: &Line) -> Option<String> {
         );
     }
     if at_rest(&m).is_none() {
-        return Some("walls reflect a kinetic momentum, which is unknown without a limit of small steps".to_owned());
+        return Some(
+            "walls reflect a kinetic momentum, which is unknown without a limit of small steps"
+                .to_owned(),
+        );
     }
     (!is_turned_by_itself(&m)).then(|| {
         format!(
             "the kinetic energy couples the components of `{}` with one another or with other velocities, and a wall reflects \
-                one component",
+             one component",
             m.mover.name
         )
     })

@@ -197,7 +197,7 @@ fn mistakes_in_functionals_are_told() {
         (
             "mesh A: Real at a = voronoi_area(2*X);",
             "- h*k/A",
-            "a field, another functional or a parameter",
+            "the name of a field, a functional or a parameter",
         ),
         (
             "mesh B: Real at a = crate::f(A); mesh A: Real at a = voronoi_area(X);",
@@ -267,7 +267,7 @@ fn mistakes_in_functionals_are_told() {
         (
             "mesh A: Real at a = voronoi_area(X); hold u: A = m;",
             "- h*k/A",
-            "stands where a `hold` constraint",
+            "a `hold` constraint cannot contain a functional",
         ),
         (
             "param L: Vec<2>; mesh A: Real at a = voronoi_area(X);",
@@ -283,7 +283,7 @@ fn mistakes_in_functionals_are_told() {
         (
             "mesh A: Real at a = voronoi_area(X); mesh B: Real at a = second_moment(X);",
             "- h*k/A",
-            "`B` stands in no term",
+            "no term of the Lagrangian contains `B`",
         ),
         (
             "label i in 0..K; field q: Real at nodes; mesh A: Real at a = voronoi_area(X);",

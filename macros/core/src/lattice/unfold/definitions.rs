@@ -24,9 +24,7 @@ pub(crate) fn definitions(model: &Model) -> Result<BTreeMap<String, Expression>,
             if put.size() > LARGEST {
                 let message = format!("the expression of `{}` is too large", name.text);
                 let d = Diagnostic::new(name.place, message);
-                return Err(d
-                    .help("a `let` counts in full wherever it is used")
-                    .into());
+                return Err(d.help("a `let` counts in full wherever it is used").into());
             }
             out.insert(name.text.clone(), put);
         }

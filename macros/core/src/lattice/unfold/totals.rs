@@ -179,11 +179,12 @@ impl Writer<'_> {
         if let Kind::Name(n) = &e.kind
             && self.lattice.find(n).is_some()
         {
-            let message =
-                format!("`{n}` differs between sites, and a term with a sum over sites cannot contain it");
+            let message = format!(
+                "`{n}` differs between sites, and a term with a sum over sites cannot contain it"
+            );
             return refused(Diagnostic::new(e.place, message).help(
                 "a constraint on a sum applies to all sites together: move the quantity into the sum, `sum(m*x)`, or write a \
-                    constraint at each site, without a sum",
+                 constraint at each site, without a sum",
             ));
         }
         let Some(inner) = summand(e) else {

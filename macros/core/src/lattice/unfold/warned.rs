@@ -10,7 +10,8 @@ use std::collections::BTreeSet;
 
 /// The sum of such a term starts or ends one site later than the sum of the same term at the site itself.
 pub(super) fn one_neighbour(stated: &Expression) -> Warning {
-    let message = "this term contains a neighbour but not the site itself: its sum omits the site at one end";
+    let message =
+        "this term contains a neighbour but not the site itself: its sum omits the site at one end";
     let d = Diagnostic::new(stated.place, message).help(
         "write the term at the site itself, or together with the value there, as in `a*(next(q, i) - q)`",
     );

@@ -89,7 +89,7 @@ fn without_carried(model: &Model, all: &[Stated]) -> Result<Model, Refused> {
         {
             return Err(Refused::Form(format!(
                 "the constraint of `{of}` contains `{by}`: for loops over sites, define a quantity that a linear map, a \
-                    rotation of the plane or a rigid motion advects, `advected {of}: ... = ...;`",
+                 rotation of the plane or a rigid motion advects, `advected {of}: ... = ...;`",
                 of = name.text
             )));
         }
@@ -194,7 +194,7 @@ fn in_coordinates(
     if let Some(left) = out.name_that(&|n| motions.moves(n)) {
         return Err(Refused::Form(format!(
             "a term contains the homogeneous matrix of `{left}` outside of `rot`, `pos` and products with vectors: a chain \
-                represents a rigid motion by its rotation and position, so write the term with `rot` and `pos`"
+             represents a rigid motion by its rotation and position, so write the term with `rot` and `pos`"
         )));
     }
     let mut by: BTreeMap<String, Expression> = BTreeMap::new();

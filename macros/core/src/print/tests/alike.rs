@@ -163,9 +163,18 @@ fn names_that_are_typeset_as_another_are_refused() {
         )
     };
     for (names, said) in [
-        (r#"a, b: Real as "x", "x""#, "`b` and `a` look the same in LaTeX"),
-        (r#"a, b: Real as "x_{1}", "{x}_1""#, "look the same in LaTeX"),
-        (r#"a, b: Real as "\hat x", "\hat{x}""#, "look the same in LaTeX"),
+        (
+            r#"a, b: Real as "x", "x""#,
+            "`b` and `a` look the same in LaTeX",
+        ),
+        (
+            r#"a, b: Real as "x_{1}", "{x}_1""#,
+            "look the same in LaTeX",
+        ),
+        (
+            r#"a, b: Real as "\hat x", "\hat{x}""#,
+            "look the same in LaTeX",
+        ),
         (r#"a: Real as "J""#, "`a` and `J` look the same in LaTeX"),
         (r#"a: Real as "W""#, "`W` and `a` look the same in LaTeX"),
         (r#"a: Real as "W_k""#, "look the same in LaTeX"),

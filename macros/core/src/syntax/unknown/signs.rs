@@ -6,7 +6,8 @@ use crate::diagnostic::{Diagnostic, closest};
 use crate::syntax::FUNCTIONS;
 
 /// How a vector is written.
-pub(in crate::syntax) const VECTOR: &str = "write a vector in unit vectors, `a*E1 + b*E2`, or declare it, `param v: Vec<3>;`";
+pub(in crate::syntax) const VECTOR: &str =
+    "write a vector in unit vectors, `a*E1 + b*E2`, or declare it, `param v: Vec<3>;`";
 
 /// A sign in an expression that ends there.
 pub(in crate::syntax) fn ends_expression(c: &Cursor) -> Option<Diagnostic> {

@@ -65,11 +65,11 @@ fn declaration(word: &str) -> Option<&'static str> {
         "var" | "variable" | "variables" | "state" | "coordinate" | "coordinates" | "coord"
         | "coords" | "dof" | "config" | "configuration" | "unknown" | "particle" | "mass" => {
             "declare a configuration as `field q: Real;` or `field x: Vec<3>;`, the attitude of a body as `group Λ: SO<3> \
-                velocity Ω;`"
+             velocity Ω;`"
         }
         "body" | "rigid" | "rotation" => {
             "declare a body with a fixed point as `group Λ: SO<3> velocity Ω;`, a free body as `group G: SE<3> velocity V;`, \
-                each with its constraint, `constraint next(Λ) = Λ*Ω;`"
+             each with its constraint, `constraint next(Λ) = Λ*Ω;`"
         }
         "const" | "constant" | "parameter" | "parameters" | "params" | "real" | "float"
         | "double" | "int" => {
@@ -117,7 +117,7 @@ fn meant(c: &Cursor, word: &str) -> String {
         }
         Some(Token::Punct(':' | ',', _)) => format!(
             "say what it is: `param {word}: ...;` for a constant, `field {word}: ...;` for a configuration in a vector space, \
-                `group {word}: ... velocity ...;` for one in a Lie group"
+             `group {word}: ... velocity ...;` for one in a Lie group"
         ),
         _ => STARTS.to_owned(),
     }
@@ -135,7 +135,7 @@ fn assignment(c: &Cursor, word: &str) -> Option<String> {
     if let Some(n) = number {
         return Some(format!(
             "declare a parameter, `param {word}: Real;`, and give its value in the case; or name the number, `let {word} = \
-                {n};`"
+             {n};`"
         ));
     }
     match word {

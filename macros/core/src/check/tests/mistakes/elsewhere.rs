@@ -46,7 +46,7 @@ fn forces_are_said_not_to_be_supported_and_damping_to_be_stated_by_a_clock() {
     for statement in ["force", "friction", "dissipation", "damping", "torque"] {
         let (marked, d) = first(&source(&format!("{statement} = -c*q;"), "k*q^2"));
         assert_eq!(marked, statement);
-        let wanted = format!("`{statement}` cannot be stated: forces without a potential");
+        let wanted = format!("`{statement}` is not a statement: forces without a potential");
         assert!(d.message.starts_with(&wanted), "{}", d.message);
         let help = d.help.join(" ");
         assert!(help.contains("`exp(γ*(t + next(t))/2)`"), "{help}");
@@ -103,7 +103,7 @@ fn functions_of_other_languages_are_told_with_what_does_them() {
         ("", "k*x.T*x", ".", "write the transpose as `x^T`"),
         ("", "k*x.norm()", ".", "`sqrt(dot(x, x))`"),
         ("", "k*q.dot^2", ".", "`(next(q) - q)/h`"),
-        ("", "k*x.y", ".", "written `x[2]`"),
+        ("", "k*x.y", ".", "write a component of a vector as `x[2]`"),
     ]);
 }
 
@@ -116,8 +116,8 @@ fn signs_of_other_languages_are_told() {
             ">",
             "piecewise potentials are not supported yet",
         ),
-        ("", "k*q*(q >= 0)", ">", "`>=` compares"),
-        ("", "k*q*(q == 0)", "=", "`==` compares"),
+        ("", "k*q*(q >= 0)", ">", "the comparison `>=`"),
+        ("", "k*q*(q == 0)", "=", "the comparison `==`"),
         (
             "",
             "k*where(q < 0, q, 0)",
@@ -135,7 +135,12 @@ fn signs_of_other_languages_are_told() {
             "i",
             "sums over pairs of sites are not supported yet",
         ),
-        ("", "k*sum(q for i in range(3))", "in", "the language has no loops"),
+        (
+            "",
+            "k*sum(q for i in range(3))",
+            "in",
+            "the language has no loops",
+        ),
         ("", "k*q**2", "*", "write a power as `a^2`"),
         ("let u == q;", "u", "=", "one `=`"),
         (
@@ -164,12 +169,7 @@ fn signs_of_other_languages_are_told() {
 fn words_of_other_languages_are_told_at_the_start_of_a_statement() {
     told(&[
         ("g2 = 9.81;", "q", "g2", "`param g2: Real;`"),
-        (
-            "h = 0.01;",
-            "q",
-            "h",
-            "give the step size in the case file",
-        ),
+        ("h = 0.01;", "q", "h", "give the step size in the case file"),
         ("const g2 = 9.81;", "q", "const", "`param m: Real;`"),
         ("var y: Real;", "q", "var", "`field q: Real;`"),
         ("def V(q): return q;", "q", "def", "`given V(Real): Real"),
@@ -177,7 +177,12 @@ fn words_of_other_languages_are_told_at_the_start_of_a_statement() {
         ("let V(q) = q^2;", "q", "(", "`let V = k*q^2/2;`"),
         ("import numpy as np;", "q", "import", "need no import"),
         ("for i in 0..3 { }", "q", "for", "the language has no loops"),
-        ("if q > 0 { }", "q", "if", "the language has no conditionals"),
+        (
+            "if q > 0 { }",
+            "q",
+            "if",
+            "the language has no conditionals",
+        ),
         ("initial q = 1;", "q", "initial", "`clebsch case FILE`"),
         ("T = m*q^2;", "q", "T", "`let K = ...;`"),
         ("param g2;", "q", ";", "`param m: Real;`"),
