@@ -74,7 +74,10 @@ fn what_is_emitted_says_so_too() {
     let emitted = |body: &str| crate::emit::emit(&derived(body), false).to_string();
     for body in STATED {
         let code = emitted(body);
-        assert!(code.contains("every choice of the parameters is rejected at the start"), "{code}");
+        assert!(
+            code.contains("every choice of the parameters is rejected at the start"),
+            "{code}"
+        );
         assert!(!code.contains(": bounded, since"), "{code}");
     }
 }
