@@ -174,7 +174,7 @@ fn mistakes_are_told_in_the_words_of_the_statement() {
         ),
         (
             format!("{kinetic}; end i = 1 {{ free; }}"),
-            "ends at 0 and at N",
+            "ends of the chain are 0 and N",
         ),
         (
             format!("{kinetic}; end j = 0 {{ free; }}"),

@@ -21,7 +21,7 @@ pub(super) fn typeset(c: &mut Cursor, names: &mut [Name]) -> Result<(), Diagnost
         }
         let Some(Token::Literal(literal)) = c.peek() else {
             return Err(c
-                .unexpected("a name in LaTeX between quotes")
+                .unexpected("a symbol of LaTeX in quotes")
                 .help("write for example `param gU: Vec<3> as \"m g \\chi\";`, in Rust `as r\"m g \\chi\"`"));
         };
         match latex(literal) {
@@ -134,7 +134,7 @@ fn piece(c: char, rest: &mut Rest, depth: usize) -> Result<(), String> {
         '{' => row(rest, depth + 1),
         '\\' => command(rest, depth),
         c if c.is_control() || "$%#&~\"".contains(c) => {
-            Err(format!("it holds `{}`", c.escape_default()))
+            Err(format!("it contains `{}`", c.escape_default()))
         }
         c if !c.is_ascii() => Err(match GREEK.iter().find(|(letter, _)| *letter == c) {
             Some((_, name)) => format!("it contains `{c}`; write `{}`", greek_command(name)),

@@ -205,7 +205,7 @@ fn longer_texts_are_refused_with_the_limit() {
     assert!(message.contains("more than 10000 bytes"), "{message}");
     // A megabyte of it is not even taken apart into tokens.
     let message = refusal(&terms(300_000));
-    assert!(message.contains("more than 250000"), "{message}");
+    assert!(message.contains("at most 250000"), "{message}");
     // What is no part of the model does not count.
     let remark = format!("// {}\n", "x".repeat(20_000));
     let documentation = "/// a line\n".repeat(2_000);

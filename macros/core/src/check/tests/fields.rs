@@ -213,15 +213,15 @@ fn names_of_functions_are_refused_where_they_are_declared() {
 #[test]
 fn names_of_columns_are_refused() {
     for (declared, message, help) in [
-        ("field time: Vec<3>;", "a column `time` already", "`time1`"),
+        ("field time: Vec<3>;", "a column named `time`", "`time1`"),
         (
             "field invariant_q: Vec<3>;",
-            "a column `invariant_q` already",
+            "a column named `invariant_q`",
             "`invariant_q1`",
         ),
         (
             "field q: Vec<3>; field q_1: Real;",
-            "call component 1 of `q` `q_1`",
+            "name component 1 of `q` `q_1`",
             "`q1`",
         ),
         (

@@ -52,7 +52,7 @@ fn parts_are_taken_of_motions_alone() {
         ),
         (
             "tr(rot(V - Id))",
-            format!("`rot` needs an element of {both}:"),
+            format!("`rot` needs an element of {both}, or products"),
         ),
         (
             "re(V)",

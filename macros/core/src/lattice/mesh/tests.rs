@@ -162,7 +162,7 @@ fn mistakes_in_functionals_are_told() {
         (
             "mesh A: Real at a = voronoi_area(X, m);",
             "- h*k/A",
-            "takes a field alone",
+            "takes only a field",
         ),
         (
             "mesh A: Real at a = helmholtz_depth(X, m);",

@@ -98,9 +98,9 @@ fn names_that_print_as_another_are_refused() {
     for (names, said) in [
         ("x1, x_1", "look the same in print"),
         ("M, Mu", "look the same in print"),
-        ("E_1", "prints as `E1`"),
-        ("E4", "prints as `E4`"),
-        ("ℓ", "prints as `ℓ`"),
+        ("E_1", "prints like `E1`"),
+        ("E4", "prints like `E4`"),
+        ("ℓ", "prints like `ℓ`"),
         ("µ, μ", "U+00B5"),
         ("μ, µ", "U+00B5"),
         ("mu, µ", "look the same in print"),
@@ -109,10 +109,10 @@ fn names_that_print_as_another_are_refused() {
         ("\u{2126}, Ω", "U+2126"),
         ("x, 𝑥", "look the same in print"),
         ("é, e\u{301}", "look the same in print"),
-        ("һ", "prints as the time step `h`"),
+        ("һ", "prints like the time step `h`"),
         ("W_k", "look the same in print"),
         ("a, a_k", "is the time index"),
-        ("Е1", "prints as `E1`"),
+        ("Е1", "prints like `E1`"),
     ] {
         let model = format!(
             "model M {{ param J: Sym<3>; param {names}: Real; group G: SO<3> velocity W; \
@@ -184,9 +184,9 @@ fn names_that_are_typeset_as_another_are_refused() {
             "look the same in LaTeX",
         ),
         (r#"a: Real as "h""#, "the time step `h`"),
-        (r#"a: Real as "\ell""#, "prints as `ℓ`"),
-        (r#"a: Real as "E_1""#, "prints as `E1`"),
-        (r#"a: Real as "\mathrm{Id}""#, "prints as `Id`"),
+        (r#"a: Real as "\ell""#, "prints like `ℓ`"),
+        (r#"a: Real as "E_1""#, "prints like `E1`"),
+        (r#"a: Real as "\mathrm{Id}""#, "prints like `Id`"),
     ] {
         let message = derive_source(&with(names)).map_or_else(|e| e.to_string(), |_| String::new());
         assert!(message.contains(said), "{names}: {message}");

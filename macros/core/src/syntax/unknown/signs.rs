@@ -28,7 +28,7 @@ pub(in crate::syntax) fn ends_statement(c: &Cursor) -> &'static str {
         Some(Token::Punct('^', _)) => {
             "put the expression of a function in quotes, `= \"x^2\"`; the shape of a vector with three components is `Vec<3>`"
         }
-        Some(Token::Punct('=', _)) => "give values in the case, not in the model",
+        Some(Token::Punct('=', _)) => "values belong in the case, not in the model",
         Some(Token::Punct('#', _)) => "write a comment after `//`",
         Some(Token::Punct(':', _)) => {
             "end every statement with `;`; to declare a function of the position, write `given V(Real): Real = \"k*x^2/2\";`"

@@ -243,7 +243,7 @@ fn names_and_shapes_are_told_with_what_is_meant() {
             "",
             "k*q*prev(q)",
             "prev(q)",
-            "`q` for `prev(q)`, `next(q)` for `q`",
+            "`q` for `prev(q)` and `next(q)` for `q`",
         ),
         ("", "k*dot(q, q)", "q", "`a^2`"),
         ("", "cross(x, x)", "x", "`dot(perp(a), b)`"),
