@@ -27,10 +27,10 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
     let mut text = format!(
         "# A case of the model {}; run it with\n#   clebsch run {named} --case THIS-FILE.toml\n\
          # Units: any consistent system. The model fixes none.\n\
-         # Site data: a number for all sites, a text with an expression in the label, in its number and in the\n\
-         # numbers below, a list with an element for each site, or an array [site, component] of a file beside this\n\
-         # one, {{ npz = \"n.npz\", key = \"q\" }}, where that of a run's end is {{ npz = \"out/trajectory.npz\" }}.\n{held}\
-         model = \"{}\"\nname = \"sample\"\ndoc = \"sample values, to start a case of your own from\"\n\
+         # Site data: one number for all sites, a string with an expression in the label, the number of sites and the\n\
+         # numbers below, a list with one element for each site, or an array [site, component] of a file next to this\n\
+         # one, {{ npz = \"n.npz\", key = \"q\" }}; the final state of a run is {{ npz = \"out/trajectory.npz\" }}.\n{held}\
+         model = \"{}\"\nname = \"sample\"\ndoc = \"placeholder values\"\n\
          h = 0.01     # time step, positive\nsteps = 1000     # number of steps, at least 1\n\n[labels]\n",
         card.kebab, card.kebab
     );

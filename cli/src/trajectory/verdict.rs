@@ -221,8 +221,8 @@ pub fn lost(outcomes: &[Outcome], h: f64) -> Vec<String> {
         #[allow(clippy::cast_precision_loss)]
         let time = plain(node as f64 * h);
         Some(format!(
-            "the {} is lost from node {node} (time {time}) on: it changed by more than the size of its initial terms. The step \
-             is too large for this motion; reduce h",
+            "the {} is not conserved from node {node} (time {time}) on: it changed by more than the size of its initial terms. \
+                The step is too large for this motion; reduce h",
             outcome.invariant.name
         ))
     });

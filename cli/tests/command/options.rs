@@ -278,7 +278,7 @@ fn an_energy_that_is_lost_is_told_with_its_node() {
     folder.write("fall.toml", case("[1, 0, 0]", "[0, 0, 0]"));
     folder
         .clebsch("run @two-body.clebsch --case @fall.toml")
-        .says("warning: the energy is lost from node 79 (time 0.79) on");
+        .says("warning: the energy is not conserved from node 79 (time 0.79) on");
     let json = folder.clebsch("run @two-body.clebsch --case @fall.toml --json");
     let json = json.json();
     assert_eq!(json["results"]["invariants"][0]["lost_at"], 79);

@@ -177,7 +177,7 @@ fn invocation(tokens: TokenStream) -> Result<TokenStream, Errors> {
         }
         if found.replace(group.stream()).is_some() {
             let second =
-                Diagnostic::new(Place::token(name.span()), "the file holds several models");
+                Diagnostic::new(Place::token(name.span()), "the file contains several models");
             return Err(second.help("put each model into a file of its own").into());
         }
     }
