@@ -161,7 +161,7 @@ mod tests {
         assert_eq!(scope.number("x"), None);
         assert_eq!(scope.number("q"), None);
         let why = scope.explained("\"x + 1\": `x` has no value here".to_owned());
-        assert!(why.contains("in a circle"), "{why}");
+        assert!(why.contains("are circular"), "{why}");
         let why = scope.explained("\"z\": `z` has no value here".to_owned());
         assert!(why.contains("T, a, b, c, h"), "{why}");
         let text = "[parameters]\na = \"b\"\nb = \"n\"\nc = \"1/0\"\n";
@@ -174,7 +174,7 @@ mod tests {
             "{why}"
         );
         let why = told("c");
-        assert!(why.contains("c = \"1/0\" is no finite number"), "{why}");
+        assert!(why.contains("c = \"1/0\" is not a finite number"), "{why}");
     }
 
     #[test]

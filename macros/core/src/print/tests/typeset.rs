@@ -127,11 +127,11 @@ fn wrong_names_are_refused() {
         (r#""\\frac{1}""#, "it is incomplete"),
         (r#""{\\hat}""#, "it is incomplete"),
         (r#""x_{}}""#, "do not match"),
-        (r#""\\{x""#, "is no letter"),
+        (r#""\\{x""#, "is neither a symbol nor a space"),
         (r#""\\lamda""#, "did you mean `\\lambda`?"),
         (r#""μ""#, "in LaTeX `\\mu`"),
         (r#""ж""#, "which LaTeX cannot print"),
-        (r#""x\\\\y""#, "is no letter"),
+        (r#""x\\\\y""#, "is neither a symbol nor a space"),
     ] {
         match with(name) {
             Ok(_) => panic!("{name}"),
