@@ -178,7 +178,7 @@ impl<T: Real> FreeBody<T> {
         let μ = state.body_momentum().0;
         μ.dot(&(J * (J * μ)))
     }
-    /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h²`: constant, since it contains the sum of the eigenvalues of the velocity times the left factor, which are half of the eigenvalues of the Lax matrix, chosen by the principal solution.
+    /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h²`: constant, since it contains the trace of the left factor times the velocity, whose eigenvalues are half of the eigenvalues of the Lax matrix, selected by the principal solution.
     pub fn discrete_energy(
         &self,
         h: T,

@@ -127,7 +127,7 @@ mod tests {
             assert!(read_values(wrong).is_err(), "{wrong}");
         }
         let why = read_values("1:2:0.25").expect_err("no count");
-        assert_eq!(why, "the third part is a count; write 1:2:5");
+        assert_eq!(why, "the third part is the number of values; write 1:2:5");
     }
 
     #[test]
