@@ -420,7 +420,7 @@ fn a_homogeneous_matrix_in_another_form_is_refused_with_what_to_write() {
     );
     match told {
         Err(NoLine::Form(why)) => {
-            assert!(why.contains("write the term by `rot` and `pos`"), "{why}")
+            assert!(why.contains("write the term with `rot` and `pos`"), "{why}")
         }
         other => panic!("{other:?}"),
     }

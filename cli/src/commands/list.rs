@@ -40,7 +40,7 @@ pub fn list(
         let families = Family::ALL.map(Family::name);
         if let Some(near) = slip(model, &families) {
             return Err(Failure::Usage(format!(
-                "family or model `{}` does not exist; did you mean `{near}`?",
+                "no family or model `{}`; did you mean `{near}`?",
                 shown(model)
             )));
         }

@@ -68,7 +68,7 @@ impl Gallery {
             Some(near) => format!("did you mean `{near}`?"),
             None => "`clebsch list` shows all models".to_owned(),
         };
-        Failure::Usage(format!("model `{}` does not exist; {near}", shown(name)))
+        Failure::Usage(format!("no model `{}`; {near}", shown(name)))
     }
 }
 

@@ -187,7 +187,7 @@ fn place(name: &str, card: &Card, motion: &Motion) -> Result<Place, String> {
         }
     }
     Err(format!(
-        "`{}` is not a parameter or initial value of the model; these are {} and the step h",
+        "`{}` has no such parameter or initial value; it has {} and the step h",
         card.kebab,
         names.join(", ")
     ))

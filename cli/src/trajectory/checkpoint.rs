@@ -387,7 +387,7 @@ mod tests {
         assert_eq!(
             why,
             Err(format!(
-                "its format has version 9, this program reads version {VERSION}"
+                "its format has version 9, but this program reads version {VERSION}"
             ))
         );
     }

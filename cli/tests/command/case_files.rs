@@ -97,7 +97,7 @@ fn every_mistake_is_named_with_file_and_line() {
         z      | [1.0, 2.0]                     | parameters.z: expected a vector of 3 numbers [a, ..], found a vector of 2 numbers
         z      | 1.0                            | parameters.z: expected a vector of 3 numbers [a, ..], found one number
         z      | [1.0, nan, 0.0]                | parameters.z: NaN is not a finite number
-        z      | [1.0, "a", 0.0]                | parameters.z: "a": `a` has no value here; an expression may hold
+        z      | [1.0, "a", 0.0]                | parameters.z: "a": `a` has no value here; an expression may contain
         J      | [1.0, 1.0, 1.0]                | parameters.J: expected a symmetric 3x3 matrix [[..], ..], written in full, found a vector of 3
         J      | [[1, 0], [0, 1]]               | parameters.J: expected a symmetric 3x3 matrix [[..], ..], written in full, found a 2x2 matrix
         J      | [[1, 0, 0], [0, 1], [0, 0, 1]] | parameters.J: expected a symmetric 3x3 matrix [[..], ..], written in full, found an array that

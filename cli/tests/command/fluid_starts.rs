@@ -142,7 +142,7 @@ fn a_lattice_that_cannot_fill_its_domain_evenly_is_refused_with_numbers_that_can
         };
         let done = of(257, "").exits(2);
         let said = format!(
-            "initial.X: 257 particles do not fill the domain evenly with lattice = \"{kind}\"; take "
+            "initial.X: 257 particles do not fill the domain evenly with lattice = \"{kind}\"; use "
         );
         let (_, rest) = done
             .err
@@ -209,9 +209,9 @@ fn what_has_no_value_is_told_with_what_to_write() {
         slope(S, x)   | the direction of a slope must be a whole number, as in slope(S, 1)
         slope(S)      | `slope` takes a mesh and a direction, as in slope(S, 1)
         slope(2, 1)   | `slope` takes the name of a mesh
-        slope(S^2, 1) | 2*S*slope(S, 1) of S^2
-        slope(m, 1)   | `m` is no mesh of the model; slopes are those of meshes on a grid, of which the model has `H`, `S`
-        slope(Q, 1)   | `Q` is no mesh of the model
+        slope(S^2, 1) | 2*S*slope(S, 1) for S^2
+        slope(m, 1)   | `m` is not a mesh of the model; slopes exist for meshes on a grid, of which the model has `H`, `S`
+        slope(Q, 1)   | `Q` is not a mesh of the model
         grad(S, 1)    | `grad` is not a function of site data; there are sin
         Q             | `Q` has no value here
         w             | `w` has no value here
@@ -235,7 +235,7 @@ fn what_has_no_value_is_told_with_what_to_write() {
         &of("f = 1.5", "f = \"slope(S, 1)\""),
         &[
             "parameters.f: ",
-            "slope(S, 1) has no value here: slopes are those of meshes on the grid of a fluid",
+            "slope(S, 1) has no value here: use it for meshes on the grid of a fluid",
         ],
     );
     check(
@@ -271,7 +271,7 @@ fn what_has_no_value_is_told_with_what_to_write() {
     for (momentum, said) in [
         (
             "S",
-            "`S` has values at the particles `a`, and those of Y stand at `b`",
+            "`S` has values at the particles `a`, but those of Y belong to `b`",
         ),
         ("x", "`x` has no value here"),
     ] {

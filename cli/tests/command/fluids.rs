@@ -220,7 +220,7 @@ fn a_wrong_case_is_told_by_key_and_site() {
             (
                 "jitter = 0.1",
                 "sweeps = 3",
-                "sweeps: lattice = \"brick\" has none",
+                "sweeps: lattice = \"brick\" has no such key",
             ),
             (
                 "X = { lattice = \"brick\", jitter = 0.1, seed = 1 }",

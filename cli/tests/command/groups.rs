@@ -103,7 +103,7 @@ fn a_body_is_not_turned_inside_out_by_a_step() {
     let case = folder.write("soft.toml", case);
     let done = folder.clebsch(&format!("run @soft.clebsch --case {case}"));
     assert_ne!(done.code, 0, "{}", done.out);
-    done.says("`Q` loses its inverse");
+    done.says("`Q` becomes singular");
 }
 
 /// The default solver works for every group of a model: besides a rotation of space with a factor known at each

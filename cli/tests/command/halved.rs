@@ -43,6 +43,6 @@ fn a_step_that_no_parts_make_says_that_they_were_tried() {
     let done = folder
         .clebsch("run @soft.clebsch --case @fall.toml --halve")
         .exits(1);
-    let tried = "--halve has tried it by 2, 4, ... to 65536 steps of a part of its length";
+    let tried = "--halve tried 2, 4, ... up to 65536 substeps";
     done.says(tried);
 }

@@ -405,7 +405,7 @@ fn where_nothing_is_known_of_a_held_line_the_reason_is_said() {
     let not = "stability limit of small motions: not computed, since ";
     said(
         of("loose", "1.0", ""),
-        &format!("{not}at rest nothing resists"),
+        &format!("{not}the stiffness at the initial configuration is zero"),
     );
     said(
         of("negative", "(-1.0)", "- dot(x, x)"),
@@ -413,7 +413,7 @@ fn where_nothing_is_known_of_a_held_line_the_reason_is_said() {
     );
     said(
         of("middle", "1.0", "- 2*dot(X, X)"),
-        &format!("{not}the step does not move the fastest one"),
+        &format!("{not}the scheme does not treat the fastest mode"),
     );
 }
 

@@ -37,7 +37,7 @@ fn quantities_are_set_by_name_and_component() {
         X=1   | `X` has 3 numbers; name one, such as X.1
         X=1,2 | `X` has 3 components, but 2 values are given
         k=1,2 | `k` takes one number
-        q=1   | `kepler` has is not a parameter or initial value or initial value; it has m, k, X, momentum
+        q=1   | `kepler` has no such parameter or initial value; it has m, k, X, momentum
         k=two | `two` is not a number: `two` has no value here
         k     | give NAME=VALUE
 ",
@@ -62,9 +62,9 @@ fn a_velocity_takes_the_place_of_a_momentum() {
     }
     for [arguments, words] in table(
         "
-        run kepler --set velocity.y=1       | give the velocity whole, by --set velocity=...
+        run kepler --set velocity.y=1       | give the whole velocity, with --set velocity=...
         run kepler --set velocity=1,2       | has 3 numbers
-        run kepler --set angular_velocity=1 | is not a parameter or initial value or initial value
+        run kepler --set angular_velocity=1 | no such parameter or initial value
 ",
     ) {
         clebsch(arguments).refuses(words);

@@ -112,7 +112,7 @@ fn what_is_zero_by_a_parameter_is_told_and_not_praised() {
     );
     let read = |name: &str| std::fs::read_to_string(format!("{out}/{name}")).expect("is written");
     assert!(read("invariants.svg").contains("zero with g = 0"));
-    assert!(read("run.html").contains("<p>Zero in every term with g = 0"));
+    assert!(read("run.html").contains("<p>Zero because g = 0"));
     let json: serde_json::Value = serde_json::from_str(&read("run.json")).expect("JSON");
     let all = json["results"]["invariants"].as_array().expect("a list");
     let own = all.iter().find(|own| own["name"] == "momentum_across_g");

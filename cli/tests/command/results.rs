@@ -160,7 +160,7 @@ fn plots_are_plain_svg() {
                 "bound 1e-3",
                 "10⁻³",
                 "I(t) − I(0)",
-                "the largest of about 67 samples",
+                "maxima over bins of about 67 samples",
             ],
         ),
         ("advected.svg", &["Γ₁", "vertical seen from the body"]),

@@ -224,7 +224,7 @@ fn a_killed_run_is_not_begun_anew_by_mistake() {
     let before = contents(&out);
     run(short, &out, "--resume").ended(0);
     run("heavy-top --steps 11", &out, "--resume").refuses([
-        "this run is complete, with steps = 10; to go on from its end, start a new run",
+        "this run is complete, with steps = 10; to continue it, start a new run",
         "trajectory.npz\", sample = -1 }",
     ]);
     let other = run("heavy-top --steps 11 --h 0.003", &out, "--resume");

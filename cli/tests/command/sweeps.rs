@@ -169,7 +169,7 @@ fn wrong_axes_are_named() {
     for (vary, says) in [
         ("gU", "NAME=FROM:TO:COUNT"),
         ("gU=1", "name one, such as gU.1"),
-        ("mass=1", "is not a parameter or initial value"),
+        ("mass=1", "no such parameter"),
         ("gU.w=1", "components gU.1 to gU.3"),
         ("h=a", "`a` is not a number"),
         ("h=1:2", "three parts"),

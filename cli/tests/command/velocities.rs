@@ -382,7 +382,7 @@ fn a_velocity_that_no_momentum_knows_is_refused() {
             "model = \"{name}\"\nh = 0.01\nsteps = 5\n[parameters]\nm = 2\n[initial]\n{start}\n"
         );
         let done = run(&folder, model, &case, "").exits(2);
-        let said = format!("{key}: no momentum depends on this velocity, so it would be lost");
+        let said = format!("{key}: no momentum depends on this velocity");
         let example = "as in `m*(next(x) - x)^2/(2*h)`";
         done.says(&said).says(example);
     }

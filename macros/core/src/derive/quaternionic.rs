@@ -34,7 +34,8 @@ pub(super) fn form(
     i: usize,
     algebra: &Algebra,
 ) -> Result<(Expr, Expr, Expr), String> {
-    let refused = "the momentum is not the momentum of a quadratic form plus a multiple of the real part";
+    let refused =
+        "the momentum is not the momentum of a quadratic form plus a multiple of the real part";
     let name = &letters.symbols.get(spec.configurations[i].velocity).name;
     // Read as the balance of a model of one.
     let own = Spec {

@@ -308,7 +308,10 @@ fn what_no_definition_gives_is_refused_where_a_site_sees_it() {
         let Err(Refused::Form(why)) = refused else {
             panic!("what is carried is taken");
         };
-        assert!(why.contains("`y` has a constraint but no definition"), "{why}");
+        assert!(
+            why.contains("`y` has a constraint but no definition"),
+            "{why}"
+        );
     }
 }
 
