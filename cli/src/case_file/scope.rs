@@ -92,10 +92,7 @@ impl Scope {
                 .iter()
                 .any(|link| link.starts_with(&format!("{next} = ")))
             {
-                return format!(
-                    "{why}: the definitions of {} are circular",
-                    chain.join(", ")
-                );
+                return format!("{why}: {} are circular definitions", chain.join(", "));
             }
             at = next;
         }

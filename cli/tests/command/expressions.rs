@@ -54,7 +54,7 @@ fn what_has_no_value_is_told_at_its_key() {
         r#"
         m1 = "1/k"           | m1 = "1/n"            | h: "m1/100": `m1` has no value here: m1 = "1/n", and `n` has no value; an expression may contain the step
         m2 = "k*m1"          | m2 = "1/n"            | parameters.m2: "1/n": `n` has no value here; an expression may contain the step
-        m1 = "1/k"           | m1 = "m2/2"           | in a circle
+        m1 = "1/k"           | m1 = "m2/2"           | are circular definitions
         m1 = "1/k"           | m1 = "1/0"            | m1 = "1/0" is not a finite number
         steps = "10*k"       | steps = "10.2*k"      | steps: must be a whole number, at least 1, found 20.4
         "k - 1"              | "k -"                 | initial.x: "k -":

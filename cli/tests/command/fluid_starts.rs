@@ -250,7 +250,7 @@ fn what_has_no_value_is_told_with_what_to_write() {
     );
     check(
         &velocity("S").replace("alpha = \"0.1*c0\"\n", ""),
-        &["`S` is made of alpha: missing key `parameters.alpha`"],
+        &["`S` needs alpha: missing key `parameters.alpha`"],
     );
     check(
         &velocity("S").replace("\"0.1*c0\"", "-1.0"),

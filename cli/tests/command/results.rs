@@ -126,7 +126,7 @@ fn force_never_removes_what_no_run_wrote() {
     let done = folder
         .rotor("run harmonic-rotor --out @out --force")
         .exits(2);
-    done.says("it holds `thesis.tex`");
+    done.says("it contains `thesis.tex`");
     assert_eq!(names(&out), ["thesis.tex"]);
     folder.write("file", "a file");
     folder
