@@ -274,7 +274,7 @@ fn a_folder_of_the_name_of_a_file_of_a_run_is_not_replaced() {
     fs::create_dir(format!("{out}/run.json")).expect("a folder");
     folder
         .rotor("run harmonic-rotor --out @out --force")
-        .refuses("it holds `run.json`");
+        .refuses("it contains `run.json`");
     assert!(Path::new(&out).join("run.json").is_dir());
 }
 

@@ -173,7 +173,7 @@ fn wrong_axes_are_named() {
         ("gU.w=1", "components gU.1 to gU.3"),
         ("h=a", "`a` is not a number"),
         ("h=1:2", "three parts"),
-        ("h=1:2:0", "from 1 to"),
+        ("h=1:2:0", "give 1 to"),
         ("Lambda.11=1", "no rotation any more"),
         ("h=0:1:1000000", ""),
     ] {

@@ -60,7 +60,7 @@ fn a_link_without_length_is_named() {
         );
         let err = refused(&format!("undefined-link-{count}"), model, &case);
         let said =
-            format!("at i = {site}, the length of `next(x, i) - x` is 0 and has no derivative");
+            format!("at i = {site}, the length of `next(x, i) - x` is 0, where it has no derivative");
         assert!(err.contains(&said), "{err}");
     }
 }

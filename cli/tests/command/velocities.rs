@@ -347,7 +347,7 @@ fn a_sweep_keeps_velocities_and_varies_them() {
         assert!((p - v).abs() < 1e-3, "{p}");
     }
     let done = vary("momentum.2=1,3").exits(2);
-    let said = "the case gives velocity_x instead; set velocity_x ";
+    let said = "the case gives velocity_x instead; set velocity_x";
     done.says(said);
 }
 
