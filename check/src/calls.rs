@@ -12,7 +12,7 @@ use crate::value::{Open, Sparse, Value};
 /// # Errors
 /// There is none, or sizes do not fit.
 pub fn called(name: &str, values: &[Value], is_quaternion: bool) -> Result<Value, String> {
-    let wrong = || format!("`{name}` of these values is not evaluated here");
+    let wrong = || format!("`{name}` of these values cannot be evaluated");
     let found = match values {
         [x] => of_one(name, x, is_quaternion),
         [x, y] => of_two(name, x, y),

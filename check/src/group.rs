@@ -48,7 +48,7 @@ impl Group {
             ("GL", n) => Ok(Self::Linear(n)),
             ("SU", 2) => Ok(Self::Quaternion),
             ("SE", 2 | 3) => Ok(Self::Motion(size)),
-            _ => Err(format!("the group {name}<{size}> is not known here")),
+            _ => Err(format!("the group {name}<{size}> is not supported")),
         }
     }
 

@@ -38,7 +38,9 @@ pub fn held(
         for (index, value) in values(scene, stated, setup, (hold, moving), node)? {
             let entries: Vec<Number> = match value {
                 Value::Known(m) => m.entries,
-                Value::Open(_) => return Err(format!("`{}` holds what has no size", hold.name)),
+                Value::Open(_) => {
+                    return Err(format!("the constraint `{}` has no size", hold.name));
+                }
             };
             for x in entries {
                 let slopes = x
@@ -97,7 +99,7 @@ pub fn gradients(
     for hold in &stated.holds {
         for (index, value) in values(scene, stated, setup, (hold, moving), 0)? {
             let Value::Known(m) = value else {
-                return Err(format!("`{}` holds what has no size", hold.name));
+                return Err(format!("the constraint `{}` has no size", hold.name));
             };
             let site = index.and_then(|i| usize::try_from(i).ok());
             for x in m.entries {

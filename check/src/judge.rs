@@ -143,7 +143,7 @@ impl Judge {
         let stated = Stated::read(model, sizes)?;
         match stated.functionals.is_empty() {
             true => Ok(Self { stated, setup }),
-            false => Err("functionals of all sites are not evaluated here".to_owned()),
+            false => Err("functionals of all sites are not supported here".to_owned()),
         }
     }
 
@@ -175,7 +175,7 @@ impl Judge {
         let mut numbers = before.iter().chain(after).map(|x| x.abs());
         let is_large = |x: f64| (LARGE..f64::INFINITY).contains(&x);
         if numbers.any(is_large) && parts.iter().any(|p| p.ratio().is_nan()) {
-            return Err("terms of the action are larger than any number".to_owned());
+            return Err("terms of the action exceed the largest double".to_owned());
         }
         // Where nothing moves, every step repeats the same zeros.
         let is_still = before == after;
@@ -207,7 +207,7 @@ impl Judge {
         let stated = &self.stated;
         let moving = moving(stated, setup, step);
         if moving.is_empty() {
-            return Err("nothing of what moves is observed".to_owned());
+            return Err("no moving quantity is observed".to_owned());
         }
         let varied = varied(&moving);
         let nodes = [before, after];

@@ -40,7 +40,7 @@ pub fn derivatives(
         Some(scale) => {
             let value = scene.value(scale, Here::at(0))?;
             let number = value.as_number().cloned();
-            Some(number.ok_or("the scale is no number")?)
+            Some(number.ok_or("the scale is not a number")?)
         }
     };
     for term in &stated.terms {
@@ -83,7 +83,7 @@ fn add(
         let value = scene.value(&term.value, here)?;
         let number = value
             .as_number()
-            .ok_or("a term of the Lagrangian is no number")?;
+            .ok_or("a term of the Lagrangian is not a number")?;
         let number = match by {
             Some(by) => number.over(by),
             None => number.clone(),

@@ -160,7 +160,7 @@ impl Legendre {
         #[allow(clippy::cast_precision_loss)]
         let some = |count: usize| (1..=count).map(|i| 1.0 / i as f64).collect::<Vec<f64>>();
         let Some(q) = self.stated.quantities.get(own.name) else {
-            return Err(format!("`{}` is not known", own.name).into());
+            return Err(format!("`{}` is unknown", own.name).into());
         };
         Ok(match &q.role {
             Role::Element(Group::Motion(n), _) => Velocity {

@@ -42,6 +42,6 @@ impl Lets {
                 _ => None,
             });
         }
-        Err("definitions stand in one another too deep".to_owned())
+        Err("definitions are nested too deeply".to_owned())
     }
 }

@@ -221,15 +221,16 @@ impl fmt::Display for Verdict {
             let end = if part.node == 0 { "start" } else { "end" };
             return write!(
                 f,
-                ". It does NOT hold: {}{site}, component {}, at the {end} of that step is off by {:.3e}, rounding explains {:.3e}",
+                ". It does NOT hold: {}{site}, component {}, at the {end} of that step is off by {:.3e}, and rounding explains \
+                 {:.3e}",
                 part.what, part.component, part.residual, part.bound
             );
         }
         if self.is_empty() {
             return write!(
                 f,
-                ". FAILURE OF THE CHECK: {} equations with rounded terms are left by at most {} of one rounding, far below \
-                 rounding: this check measures nothing",
+                ". FAILURE OF THE CHECK: {} equations with rounded terms have residuals of at most {} of one rounding, far \
+                 below rounding: this check measures nothing",
                 self.tested,
                 short(self.roundings)
             );

@@ -113,7 +113,7 @@ impl<'a> Scene<'a> {
         let velocity = self.stated.velocities.get_key_value(n);
         let element = velocity.map_or(n, |(_, element)| element.as_str());
         let Some((name, q)) = self.stated.quantities.get_key_value(element) else {
-            return plain(n).ok_or_else(|| format!("`{n}` is not known here"));
+            return plain(n).ok_or_else(|| format!("`{n}` is unknown"));
         };
         let (site, turns) = self.site(q, here)?;
         let key_name = velocity.map_or(name.as_str(), |(own, _)| own.as_str());
@@ -168,10 +168,7 @@ impl<'a> Scene<'a> {
             (None, 1) => 1,
             (Some(node), 0 | 1) => node,
             _ => {
-                return Err(format!(
-                    "`{}` at another node than those of the step",
-                    q.name
-                ));
+                return Err(format!("`{}` is taken at a node outside the step", q.name));
             }
         };
         let own = self.setup.observed(&q.name, site);
@@ -248,7 +245,10 @@ impl<'a> Scene<'a> {
         };
         let identity = Matrix::identity(group.rows());
         if here.time != 0 {
-            return Err(format!("the velocity of `{}` on another edge", q.name));
+            return Err(format!(
+                "the velocity of `{}` is taken at another edge",
+                q.name
+            ));
         }
         if self.setup.observed(&q.name, site).is_none() {
             return Ok(Value::Known(identity));
@@ -278,7 +278,7 @@ impl<'a> Scene<'a> {
     /// A parameter, as it was given.
     fn parameter(&self, name: &str, site: Option<usize>, is_quaternion: bool) -> Evaluated {
         let found = self.setup.parameter(name, site);
-        let (own, numbers) = found.ok_or_else(|| format!("`{name}` is not given"))?;
+        let (own, numbers) = found.ok_or_else(|| format!("`{name}` is missing"))?;
         if is_quaternion && numbers.len() == 4 {
             let unit = |i: usize, j: usize| {
                 let (which, sign) = LEFT[i][j];

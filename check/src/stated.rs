@@ -155,12 +155,13 @@ impl Stated {
         Ok(Some(match &at.site {
             Site::Set(name) => {
                 let found = self.labels.iter().position(|l| *l == name.text);
-                let label = found.ok_or_else(|| format!("`{}` is no label", name.text))?;
+                let label = found.ok_or_else(|| format!("`{}` is not a label", name.text))?;
                 (label, Sites::Nodes)
             }
             line => {
                 let label = self.line.or_else(|| (self.labels.len() == 1).then_some(0));
-                let label = label.ok_or("several labels beside a line are not read here")?;
+                let label =
+                    label.ok_or("several labels in addition to a chain are not supported here")?;
                 self.line = Some(label);
                 match line {
                     Site::Segments => (label, Sites::Segments),
@@ -176,7 +177,7 @@ impl Stated {
             Some(Size::Number(n, _)) => usize::try_from(*n).map_err(|e| e.to_string()),
             Some(Size::Name(name)) => {
                 let size = self.sizes.get(&name.text).copied();
-                size.ok_or_else(|| format!("the size `{}` is not known", name.text))
+                size.ok_or_else(|| format!("the size `{}` is unknown", name.text))
             }
             None => Ok(1),
         }
@@ -290,9 +291,9 @@ fn side_of(
             [a, b] if is_element(a) && is_velocity(b) => Ok(Side::Body),
             [a, b] if is_velocity(a) && is_element(b) => Ok(Side::Space),
             _ => Err(format!(
-                "the constraint of `{element}` is no product of it and its velocity"
+                "the constraint of `{element}` is not a product of the configuration and its velocity"
             )),
         },
-        _ => Err(format!("the constraint of `{element}` is no product")),
+        _ => Err(format!("the constraint of `{element}` is not a product")),
     }
 }

@@ -167,7 +167,7 @@ impl<'a> Terms<'a> {
             return Ok(());
         };
         if found.label.is_some_and(|l| l != label) {
-            return Err("a term joins two labels".to_owned());
+            return Err("a term combines two labels".to_owned());
         }
         found.label = Some(label);
         found.letters.push(Letter { sites, offset: by });

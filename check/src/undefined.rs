@@ -38,12 +38,12 @@ impl fmt::Display for Undefined {
             (Some(vector), None) => {
                 return write!(
                     f,
-                    "the length of `{vector}` is 0 and has no derivative there"
+                    "the length of `{vector}` is 0, where it has no derivative"
                 );
             }
             (_, None) => write!(f, "`{}` has no finite derivative", self.part)?,
             (_, Some(value)) if value.is_nan() => write!(f, "`{}` is not a number", self.part)?,
-            (_, Some(_)) => write!(f, "`{}` is larger than any number", self.part)?,
+            (_, Some(_)) => write!(f, "`{}` exceeds the largest double", self.part)?,
         }
         for (n, (argument, value)) in self.arguments.iter().enumerate() {
             let word = if n == 0 { ":" } else { "," };

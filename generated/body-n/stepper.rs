@@ -20,7 +20,7 @@ pub struct BodyN<const N: usize, T = f64> {
 impl<const N: usize, T: Real> BodyN<N, T> {
     /// Sizes the model does not admit do not build.
     const ADMITTED: () = {
-        ::core::assert!(3 <= N && N <= 8, "`n` is from 3 to 8 in this model");
+        ::core::assert!(3 <= N && N <= 8, "`n` ranges from 3 to 8 in this model");
     };
     /// The model as it was stated.
     pub const SOURCE: &'static str = "/// Free rigid body in n dimensions.\npub model BodyN {\n    dim n in 3..=8;\n    /// second moments of mass; any matrix with positive determinant\n    param C: Mat<n>;\n    /// attitude, body to space\n    group Λ: SO<n> velocity Ω;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    lagrangian = -tr(C^T*Ω)/h;\n}";

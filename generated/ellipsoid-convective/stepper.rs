@@ -30,7 +30,7 @@ pub struct EllipsoidConvective<const N: usize, T = f64> {
 impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
     /// Sizes the model does not admit do not build.
     const ADMITTED: () = {
-        ::core::assert!(2 <= N && N <= 4, "`n` is from 2 to 4 in this model");
+        ::core::assert!(2 <= N && N <= 4, "`n` ranges from 2 to 4 in this model");
     };
     /// The model as it was stated.
     pub const SOURCE: &'static str = "/// Elastic ellipsoid, convective representation.\npub model EllipsoidConvective {\n    dim n in 2..=4;\n    /// metric of space\n    param C0: Sym<n> as \"C_0\";\n    /// second moments of mass, reference configuration\n    param I0: Sym<n> as \"I_0\";\n    /// stiffness against changes of length, area and volume\n    param a: Real;\n    /// stiffness against changes of length, area and volume\n    param b: Real;\n    /// stiffness against changes of length, area and volume\n    param c: Real;\n    /// resistance to collapse; the identity is stress-free if d = 2 a + 2 (n - 1) b + 2 c\n    param d: Real;\n    /// placement, reference to space\n    group Q: GL<n> velocity G;\n    /// metric of space, pulled back to the reference configuration\n    advected C: Sym<n> = Q^T*C0*Q;\n    constraint next(Q) = Q*G;\n    constraint next(C) = G^T*C*G;\n    lagrangian = tr(C*(G - Id)*I0*(G^T - Id))/(2*h) - h*(a*tr(C) + (1/2)*b*(tr(C)^2 - tr(C*C)) + c*det(C) - (1/2)*d*log(det(C)));\n}";

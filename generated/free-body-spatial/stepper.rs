@@ -238,7 +238,7 @@ impl<T: Real> FreeBodySpatial<T> {
         let m = state.spatial_momentum().0;
         m.dot(&(J * (J * m)))
     }
-    /// The discrete energy of the edge between two consecutive states, `-tr(ω_k J_k)/h² + tr(J_k)/h²`: constant, since it holds the sum of the eigenvalues of the velocity times the left factor, the half of those of the Lax matrix that the principal solution takes.
+    /// The discrete energy of the edge between two consecutive states, `-tr(ω_k J_k)/h² + tr(J_k)/h²`: constant, since it contains the trace of the left factor times the velocity, whose eigenvalues are half of the eigenvalues of the Lax matrix, selected by the principal solution.
     pub fn discrete_energy(
         &self,
         h: T,

@@ -178,7 +178,7 @@ impl<T: Real> FreeBody<T> {
         let μ = state.body_momentum().0;
         μ.dot(&(J * (J * μ)))
     }
-    /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h²`: constant, since it holds the sum of the eigenvalues of the velocity times the left factor, the half of those of the Lax matrix that the principal solution takes.
+    /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h²`: constant, since it contains the trace of the left factor times the velocity, whose eigenvalues are half of the eigenvalues of the Lax matrix, selected by the principal solution.
     pub fn discrete_energy(
         &self,
         h: T,

@@ -54,11 +54,11 @@ pub enum Unvalued {
 impl fmt::Display for Unvalued {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Missing(name) => write!(f, "it is made of `{name}`, which is not given"),
-            Self::Path(path) => write!(f, "`{path}` is Rust code of its own, which needs a build"),
+            Self::Missing(name) => write!(f, "it needs `{name}`, which is missing"),
+            Self::Path(path) => write!(f, "`{path}` is your own Rust code, which must be compiled"),
             Self::Parameter(e) => write!(f, "{e}"),
             Self::Mesh(e) => write!(f, "{e}"),
-            Self::Unfit => write!(f, "it is not made of the places of these particles"),
+            Self::Unfit => write!(f, "it does not depend on the positions of these particles"),
         }
     }
 }

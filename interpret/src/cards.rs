@@ -128,7 +128,7 @@ fn on_lattice(source: &str, choice: &Choice, known: Option<Card>) -> Result<Told
             // If the interpreter does not support a construct of the program with loops, clebsch expands the chain body
             // by body.
             Err(NoLine::Refused(Refused::Construct(what))) => {
-                written_out = Some(format!("`{what}` is not executed in them"));
+                written_out = Some(format!("`{what}` is not supported there"));
             }
             Err(NoLine::Refused(refused)) => return Err(refused),
         }
@@ -194,7 +194,7 @@ fn body_by_body(
         summary: crate::text(&match written_out {
             None => words.summary,
             Some(why) => format!(
-                "{}\nprogram              written out body by body, not with loops over sites: {why}",
+                "{}\nprogram              expanded body by body, without loops over sites: {why}",
                 words.summary
             ),
         }),

@@ -222,7 +222,7 @@ pub enum Code<T: Real> {
 /// A value, or why there is none.
 pub type Evaluated<T> = Result<Value<T>, Exit<T>>;
 
-const WRONG: &str = "an operation on values whose shapes do not fit, or that it does not take";
+const WRONG: &str = "an operation does not support values of these shapes";
 
 /// Returns `Exit::Unfit` if a value is missing.
 #[inline]

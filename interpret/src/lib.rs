@@ -86,39 +86,40 @@ impl fmt::Display for Refused {
             Self::Model(errors) => write!(f, "{errors:?}"),
             Self::Method { model, method } => write!(
                 f,
-                "a model file with this method is not run yet: {model} is solved so: {method}; put the \
-                 model into a crate by `model! {{ ... }}`, which builds it"
+                "a model file cannot use this method yet: {model} is solved as follows: {method}; compile the model with \
+                 `model! {{ ... }}` in a crate"
             ),
-            Self::Form { why } => write!(f, "the model is not run with loops over sites: {why}"),
+            Self::Form { why } => write!(
+                f,
+                "clebsch cannot run the model with loops over sites: {why}"
+            ),
             Self::TooLong {
                 why,
                 asked: (label, asked),
                 most,
             } => write!(
                 f,
-                "`{label} = {asked}` is too many: loops over sites, which run any number of them, do not take this model, because {why}; \
-                 state the model without that, or take at most `{label} = {most}`, which is written out body by body"
+                "`{label} = {asked}` is too large: clebsch cannot run this model with loops over sites, because {why}; change \
+                 this, or use at most `{label} = {most}`, for which clebsch expands the model body by body"
             ),
             Self::TooManySites {
                 asked: (label, asked),
                 most,
             } => write!(
                 f,
-                "`{label} = {asked}` is more than a model file is run with: at most `{label} = {most}`, some hundred bytes \
-                 for each site"
+                "`{label} = {asked}` is too large for a model file: the limit is `{label} = {most}`, some hundred bytes for \
+                 each site"
             ),
             Self::Functional { path } => write!(
                 f,
-                "the functional `{path}` is Rust code of its own, which needs a build: put the model into a \
-                 crate by `model! {{ ... }}`"
+                "the functional `{path}` is your own Rust code: compile the model with `model! {{ ... }}` in a crate"
             ),
             Self::Size { model, admitted } => {
-                write!(f, "{model} has no such size; it has {admitted}")
+                write!(f, "{model} does not have this size; it has {admitted}")
             }
             Self::Construct(what) => write!(
                 f,
-                "a model file with this operation is not run yet: `{what}`; put the model into a \
-                 crate by `model! {{ ... }}`, which builds it"
+                "a model file cannot use this operation yet: `{what}`; compile the model with `model! {{ ... }}` in a crate"
             ),
         }
     }

@@ -420,7 +420,7 @@ fn a_homogeneous_matrix_in_another_form_is_refused_with_what_to_write() {
     );
     match told {
         Err(NoLine::Form(why)) => {
-            assert!(why.contains("write the term by `rot` and `pos`"), "{why}")
+            assert!(why.contains("write the term with `rot` and `pos`"), "{why}")
         }
         other => panic!("{other:?}"),
     }
@@ -431,7 +431,7 @@ fn a_homogeneous_matrix_in_another_form_is_refused_with_what_to_write() {
             - (h*c/2)*tr((next(Q, i) - Q)^T*(next(Q, i) - Q)); }",
     );
     match told {
-        Err(NoLine::Form(why)) => assert!(why.contains("by its definition"), "{why}"),
+        Err(NoLine::Form(why)) => assert!(why.contains("define a quantity"), "{why}"),
         other => panic!("{other:?}"),
     }
 }

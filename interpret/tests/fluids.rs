@@ -394,7 +394,7 @@ fn what_is_wrong_is_named() {
         started.map(|_| ()).expect_err("is refused").to_string()
     };
     let short = told(&|d| d.get_mut("m").expect("is given").truncate(n - 1));
-    assert!(short.contains("`m` is given at 35 sites"), "{short}");
+    assert!(short.contains("`m` has values at 35 sites"), "{short}");
     let twice = told(&|d| {
         let x = d.get_mut("X").expect("is given");
         (x[2], x[3]) = (x[0], x[1]);
@@ -409,7 +409,7 @@ fn what_is_wrong_is_named() {
     let flat = told(&|d| d.get_mut("L").expect("is given")[0] = -1.0);
     assert!(!flat.is_empty(), "{flat}");
     let none = told(&|d| drop(d.remove("L")));
-    assert_eq!(none, "`L` is not given");
+    assert_eq!(none, "`L` is missing");
 }
 
 #[test]
@@ -417,10 +417,10 @@ fn a_functional_of_ones_own_needs_a_build() {
     let own = source(2).replace("voronoi_area(X)", "crate::mine::area(X)");
     assert_ne!(own, source(2));
     let refused = LineModel::read(&own)
-        .expect_err("needs a build")
+        .expect_err("is your own Rust code")
         .to_string();
     assert!(
-        refused.contains("needs a build") && refused.contains("mine::area"),
+        refused.contains("is your own Rust code") && refused.contains("mine::area"),
         "{refused}"
     );
 }

@@ -182,7 +182,7 @@ fn data_off_a_constraint_are_refused_at_their_site() {
     let refused = |data: &compiled::Data| beside::refused(&model, held::CHAIN, &case, data);
     let off = refused(&data.with("a", |a| a[31] *= 1.001));
     assert!(
-        off.contains("site 31") && off.contains("off the constraint"),
+        off.contains("site 31") && off.contains("violates the constraint"),
         "{off}"
     );
     let across = refused(&data.with("momentum_x", |p| p[3 * 50 + 2] = -0.4));
@@ -243,7 +243,11 @@ fn data_off_a_sum_are_refused_with_the_equation() {
     let data = (own.data)(&case);
     let refused = |data: &compiled::Data| beside::refused(&model, own.source, &case, data);
     let off = refused(&data.with("X", |x| x[0] += 0.1));
-    for wanted in ["p", "off the constraint", "∑_{i=0}^{N-1} s Λ_{i,k} E₃ = X"] {
+    for wanted in [
+        "p",
+        "violates the constraint",
+        "∑_{i=0}^{N-1} s Λ_{i,k} E₃ = X",
+    ] {
         assert!(off.contains(wanted), "{off}");
     }
     assert!(!off.contains("site"), "{off}");

@@ -42,7 +42,7 @@ fn the_site_of_a_wrong_value_is_named() {
     // Not at the one before it, which a step spoils too.
     assert!(started(&far).contains("site 20:"), "{}", started(&far));
     let none = numbers.without("q");
-    assert_eq!(started(&none), "`q` is not given");
+    assert_eq!(started(&none), "`q` is missing");
 }
 
 #[test]

@@ -32,7 +32,9 @@ impl fmt::Display for Refusal {
                 f,
                 "a step of {instructions} operations is not compiled; the limit is {most}"
             ),
-            Refusal::Unsupported(why) => write!(f, "this machine compiles no steps: {why}"),
+            Refusal::Unsupported(why) => {
+                write!(f, "clebsch cannot compile steps on this machine: {why}")
+            }
         }
     }
 }

@@ -43,7 +43,7 @@ class Models(list):
         return rows
 
     def __repr__(self) -> str:
-        rows = [("model", "family", "cases", "what it is"), *self._rows()]
+        rows = [("model", "family", "cases", "description"), *self._rows()]
         wide = [max(len(row[at]) for row in rows) for at in range(2)]
         return "\n".join(f"{m:{wide[0]}}  {f:{wide[1]}}  {d}  [{c}]" for m, f, c, d in rows)
 
@@ -53,7 +53,7 @@ class Models(list):
         body = "".join(
             "<tr>" + "".join(f"<td style='text-align:left'>{escape(x)}</td>" for x in row) + "</tr>" for row in self._rows()
         )
-        head = "".join(f"<th style='text-align:left'>{x}</th>" for x in ("model", "family", "cases", "what it is"))
+        head = "".join(f"<th style='text-align:left'>{x}</th>" for x in ("model", "family", "cases", "description"))
         return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 

@@ -123,7 +123,7 @@ class Simulation:
         """
         state = self._running.save()
         if state is None:
-            raise StepError("the state of this model cannot be written down; run it without halve", *self._running.place())
+            raise StepError("the state of this model cannot be saved; run it without halve", *self._running.place())
         head = json.dumps(self._data).encode()
         path = os.fspath(path)
         beside = f"{path}.{os.getpid()}.unfinished"

@@ -63,8 +63,8 @@ class _Axis:
 
 
 def _entries(name: str, component: str, shape: tuple[int, ...], kind: str) -> list[_Entry]:
-    """The entries of a component with their signs; a symmetric or skew matrix also has the mirrored entry."""
-    wrong = DataError(f"vary: {name!r} names no component of an array of shape {shape}; components count from 1", "vary")
+    """The entries that a component names, with their signs: of a symmetric or skew matrix also the mirror image."""
+    wrong = DataError(f"vary: {name!r} does not name a component of an array of shape {shape}; components count from 1", "vary")
     if len(shape) == 1:
         at = "xyz".find(component) if len(component) == 1 and shape[0] == 3 else -1
         if at < 0 and component.isdigit():
@@ -80,7 +80,7 @@ def _entries(name: str, component: str, shape: tuple[int, ...], kind: str) -> li
         raise wrong
     if kind in ("Rotation", "RigidMotion", "UnitQuaternion"):
         raise DataError(
-            f"vary: {name!r} cannot be varied alone, since the matrix would be no rotation; give whole rotations", "vary"
+            f"vary: {name!r} cannot be varied alone, because the matrix would not be a rotation; give whole rotations", "vary"
         )
     mirror = {"Symmetric": 1.0, "SecondMoments": 1.0, "Skew": -1.0}.get(kind)
     entries: list[_Entry] = [((i, j), 1.0)]
@@ -110,7 +110,7 @@ def swept(
     if not vary:
         raise DataError("vary: give at least one name with its values, such as vary=dict(k=[1, 2])", "vary")
     if values.get("every") is not None:
-        raise DataError("every: a sweep keeps the end of each run; leave `every` out", "every")
+        raise DataError("every: a sweep keeps the end of each run; remove `every`", "every")
     values["every"] = 0
     for name, own in vary.items():
         if isinstance(own, (str, Mapping)) or not hasattr(own, "__len__") or len(own) == 0:

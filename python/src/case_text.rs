@@ -29,7 +29,7 @@ fn write(value: &Bound<'_, PyAny>, argument: &str, out: &mut String, depth: usiz
     };
     if depth > DEEPEST {
         return wrong(format!(
-            "nested deeper than {DEEPEST} times; give a number, an array, a text or a dictionary of them"
+            "nested deeper than {DEEPEST} levels; give a number, an array, a string or a dictionary of them"
         ));
     }
     if let Ok(own) = value.cast::<PyBool>() {
@@ -70,7 +70,8 @@ fn write(value: &Bound<'_, PyAny>, argument: &str, out: &mut String, depth: usiz
                 let found = value.get_type();
                 let found = found.name()?;
                 return wrong(format!(
-                    "expected a number, an array of numbers, a text or a dictionary, found {found}; convert it by numpy.asarray"
+                    "expected a number, an array of numbers, a string or a dictionary, found {found}; convert it with \
+                     numpy.asarray"
                 ));
             }
         }

@@ -103,8 +103,8 @@ pub(crate) fn run_many<'py>(
             };
             // A panic in one case must not end the others.
             let own = catch_unwind(AssertUnwindSafe(|| one(model, case, &request, &stop)));
-            let own = own
-                .unwrap_or_else(|_| Ended::Refused("clebsch met a defect of its own".to_owned()));
+            let own =
+                own.unwrap_or_else(|_| Ended::Refused("clebsch met an internal error".to_owned()));
             *place.lock().unwrap_or_else(PoisonError::into_inner) = own;
             done.fetch_add(1, Ordering::Relaxed);
         }

@@ -40,7 +40,7 @@ fn judged(options: &Bound<'_, PyDict>) -> PyResult<Which> {
 /// The request from a dictionary.
 pub(crate) fn request(options: &Bound<'_, PyDict>) -> PyResult<Request> {
     Ok(Request {
-        until: option(options, "until", "a number, the time to run to")?,
+        until: option(options, "until", "a number, the final time")?,
         every: option(options, "every", "a whole number of nodes, at least 0")?,
         order: option(options, "order", "a whole number, such as 2 or 4")?,
         solver: option(options, "solver", "the name of a solver")?,

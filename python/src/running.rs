@@ -59,7 +59,7 @@ impl Running {
                 "another thread is stepping this run; give each thread a run of its own",
             )),
             Err(TryLockError::Poisoned(_)) => Err(PyRuntimeError::new_err(
-                "this run met a defect earlier; start it again",
+                "this run met an internal error earlier; start it again",
             )),
         }
     }
@@ -172,7 +172,7 @@ impl Running {
                 Ok((*node, *time, row(py, numbers.to_vec()).into_any()))
             }
             _ => Err(PyValueError::new_err(format!(
-                "there is no sample {number}"
+                "sample {number} does not exist"
             ))),
         }
     }

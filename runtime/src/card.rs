@@ -500,7 +500,7 @@ impl fmt::Display for OpenError {
                 write!(f, "cannot take the first step: {refused}; {warning}")
             }
             Self::Solver { offered: [] } => {
-                write!(f, "this model has one solver only, nothing is to be chosen")
+                write!(f, "this model has only one solver; remove the option")
             }
             Self::Solver { offered } => {
                 write!(
@@ -520,29 +520,27 @@ impl fmt::Display for OpenError {
             } => {
                 write!(
                     f,
-                    "steps of order {order} of this model are not compensated: "
+                    "steps of order {order} of this model cannot be compensated: "
                 )?;
                 match (preprocessed, order) {
                     (false, _) => write!(
                         f,
-                        "they are made of its plain steps, and symplectic where those are; leave \
-                         the compensation out"
+                        "they compose plain steps, and are symplectic if these are; remove the compensation"
                     ),
                     (true, 2) => write!(
                         f,
-                        "they are symplectic as they are; leave the compensation out, or ask for \
-                         order 4, 6 or 8"
+                        "they are symplectic already; remove the compensation, or choose order 4, 6 or 8"
                     ),
                     (true, _) => write!(
                         f,
-                        "the series that is known ends there; leave the compensation out, or ask \
-                         for order 4, 6 or 8"
+                        "the known series ends there; remove the compensation, or choose order 4, 6 or 8"
                     ),
                 }
             }
             Self::Unseen { field } => write!(
                 f,
-                "steps are not made by parts: `{field}` is given at the start and not observed later; take a shorter step"
+                "the steps of this model cannot be subdivided: `{field}` is an initial value that is not observed later; use a \
+                 smaller step size"
             ),
             Self::Order { asked, offered } => {
                 let list: Vec<String> = offered.iter().map(u32::to_string).collect();
@@ -554,18 +552,14 @@ impl fmt::Display for OpenError {
                 match offered {
                     [1] => write!(
                         f,
-                        ": its step is not symmetric under time reversal, so a composition of it \
-                         would gain nothing; `clebsch derive` shows which terms stand in the way: \
-                         change them, by `node symmetric;` where they are taken at one end of the \
-                         step, or by an assumption on the parameters"
+                        ": its step is not symmetric under time reversal, so a composition gains nothing; `clebsch derive` \
+                         shows the terms that prevent it: write `node symmetric;` for terms at one end of the step, or add \
+                         an assumption on the parameters"
                     ),
                     _ if asked % 2 == 1 => {
-                        write!(
-                            f,
-                            ": the order of a symmetric step is even; ask for one of these"
-                        )
+                        write!(f, ": a symmetric step has even order; choose one of these")
                     }
-                    _ => write!(f, "; ask for one of these"),
+                    _ => write!(f, "; choose one of these"),
                 }
             }
         }

@@ -127,21 +127,20 @@ impl fmt::Display for Contact {
         match self.met {
             Met::Singular { configuration } => write!(
                 f,
-                "`{configuration}` loses its inverse: the motion meets det = 0"
+                "`{configuration}` becomes singular: its determinant reaches 0"
             )?,
             Met::NearlySingular {
                 configuration,
                 ratio,
             } => write!(
                 f,
-                "`{configuration}` loses its inverse: its smallest singular value is {ratio:.1e} of \
-                 its largest, needed {LEAST_RATIO:e}"
+                "`{configuration}` becomes singular: its smallest singular value is {ratio:.1e} of its largest, needed \
+                 {LEAST_RATIO:e}"
             )?,
             Met::Outside { call, before, .. } if self.share == Some(0.0) => {
                 return write!(
                     f,
-                    "`{}` is {before} at this node, outside the domain of {}: change the values of \
-                     the state or the parameters",
+                    "`{}` is {before} at this node, outside the domain of {}: change the state or the parameters",
                     call.argument, call.function
                 );
             }
@@ -151,27 +150,23 @@ impl fmt::Display for Contact {
                 after,
             } => write!(
                 f,
-                "`{}` leaves the domain of {}: it goes from {before} to {after}",
+                "`{}` leaves the domain of {}: it changes from {before} to {after}",
                 call.argument, call.function
             )?,
         }
         if let Some(after) = self.after_node() {
             write!(
                 f,
-                ", {} after the node of a step of {}",
+                ", at time {} after the start of a step of {}",
                 Plain(after),
                 Plain(self.h)
             )?;
         }
         match self.works() {
-            Some(works) => write!(
-                f,
-                "; a step of {} from this state was tried and can be made",
-                Plain(works)
-            ),
+            Some(works) => write!(f, "; a step of {} from this state succeeds", Plain(works)),
             None => write!(
                 f,
-                "; start where the motion stays inside, or state a potential that keeps it there"
+                "; start where the motion stays inside the domain, or add a potential that keeps it there"
             ),
         }
     }
@@ -371,7 +366,7 @@ impl Domain {
         match self {
             Self::Positive => "positive",
             Self::NotNegative => "zero or positive",
-            Self::NotZero => "other than zero",
+            Self::NotZero => "different from zero",
         }
     }
 

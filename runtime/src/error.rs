@@ -201,7 +201,7 @@ impl fmt::Display for Problem {
                 determinant,
             } => write!(
                 f,
-                "no rotation: A^T A differs from 1 by {deviation}, and the determinant is {determinant}"
+                "not a rotation: A^T A differs from 1 by {deviation}, and the determinant is {determinant}"
             ),
             Self::NotInGroup {
                 elements,
@@ -219,8 +219,8 @@ impl fmt::Display for Problem {
                 scale,
             } => write!(
                 f,
-                "the initial configuration is off the constraint `{equation}`: the left side less the right one is \
-                 {size:e}, of terms of size {scale:e}"
+                "the initial configuration violates the constraint `{equation}`: its sides differ by {size:e}, with terms of \
+                 size {scale:e}"
             ),
             Self::AcrossConstraint {
                 equation,
@@ -229,23 +229,22 @@ impl fmt::Display for Problem {
                 whole,
             } => write!(
                 f,
-                "the initial momentum is not tangent to the constraint `{equation}`: constraint forces take {taken:.3e} \
-                 of its size {whole:.3e}, with the multiplier {impulse} for this constraint"
+                "the initial momentum is not tangent to the constraint `{equation}`: projecting it onto the constraints \
+                 removes {taken:.3e} of its size {whole:.3e}, with the multiplier {impulse} for this constraint"
             ),
             Self::NoInertia => write!(
                 f,
-                "its mass is zero here, or its mass matrix singular, so that the reactions of the constraints on it are \
-                 not determined"
+                "its mass is zero or its mass matrix is singular, so the constraint forces on it are undetermined"
             ),
             Self::DependentConstraints { equation } => write!(
                 f,
-                "the reaction of `{equation}` is not determined: at the initial configuration its derivative vanishes \
-                 or is a combination of those of other constraints"
+                "the constraint force of `{equation}` is not determined: at the initial configuration its derivative vanishes \
+                 or is a combination of the derivatives of other constraints"
             ),
             Self::SignAroundRing => write!(
                 f,
-                "around the ring these attitudes make an odd number of turns: unit quaternions that agree from site to \
-                 site come back with the opposite sign, and a term of neighbours would store a whole turn between the \
+                "around the ring these attitudes make an odd number of turns, so unit quaternions that vary continuously from \
+                 site to site return with the opposite sign; a coupling of neighbours would see a whole turn between the \
                  last site and the first"
             ),
             Self::OutsideDomain {
@@ -278,13 +277,12 @@ impl PoinsotError {
     pub fn in_field(self, field: &'static str) -> ParameterError {
         let remedy = match self {
             Self::NoInertia { .. } => {
-                "give the mass an extent, so that J has rank two or three: add to it the second \
-                 moments of the mass about its own centre; a hundredth of J will do"
+                "add to J the second moments of the mass about its own centre, so that J has rank two or three; a hundredth of \
+                 J is enough"
             }
             Self::Triangle { .. } => {
-                "the Moser-Veselov equation is solved for second moments J = tr(I)/2 - I that are not \
-                 negative, as those of a real mass distribution; positive moments of inertia alone are \
-                 not enough"
+                "the Moser-Veselov equation needs second moments J = tr(I)/2 - I that are not negative, as for a real mass \
+                 distribution; positive moments of inertia are not enough"
             }
             Self::NotFinite { .. } | Self::NotSymmetric { .. } => {
                 "give the matrix of second moments J = tr(I)/2 - I of a real mass distribution"
@@ -305,7 +303,7 @@ impl NotARotation {
         ParameterError {
             field,
             problem: Problem::Rotation(self),
-            remedy: "give all numbers of a matrix with orthonormal columns and determinant +1",
+            remedy: "give a matrix with orthonormal columns and determinant +1, to all digits",
         }
     }
 }
@@ -335,7 +333,7 @@ impl NotInvertible {
         ParameterError {
             field,
             problem: Problem::NotInvertible,
-            remedy: "give a finite matrix with a determinant that is not zero",
+            remedy: "give a finite matrix with a non-zero determinant",
         }
     }
 }
@@ -513,7 +511,7 @@ impl fmt::Display for StepCause {
             Self::MoserVeselov(error) => write!(f, "{error}"),
             Self::Quaternions(error) => write!(f, "{error}"),
             Self::LeftFactor(error) => write!(f, "{error}"),
-            Self::Factor(error) => write!(f, "the left factor of this state: {error}"),
+            Self::Factor(error) => write!(f, "the left factor at this state: {error}"),
             Self::Singular(error) => write!(f, "{error}"),
             Self::Newton(error) => write!(f, "{error}"),
             Self::NoRoot(error) => write!(f, "{error}"),
@@ -537,8 +535,8 @@ impl fmt::Display for StepCause {
             }
             Self::Unread { what } => write!(
                 f,
-                "a model that is read from its text does not make this step ({what}); put it into a crate by \
-                 `model! {{ ... }}`, which builds it"
+                "a model read from its text cannot take this step ({what}); compile the model with `model! {{ ... }}` in a \
+                 crate"
             ),
         }
     }
@@ -581,7 +579,7 @@ impl fmt::Display for StepError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "no step from node {} (state unchanged): {}",
+            "step from node {} failed (state unchanged): {}",
             self.node, self.cause
         )
     }

@@ -115,7 +115,7 @@ impl fmt::Display for KineticWarning {
             smallest,
         } = self;
         if smallest.is_nan() {
-            return write!(f, "the kinetic energy at the start is no finite number");
+            return write!(f, "the kinetic energy at the start is not a finite number");
         }
         if *negative == 0 {
             write!(
@@ -137,9 +137,8 @@ impl fmt::Display for KineticWarning {
         }
         write!(
             f,
-            "The Lagrangian states kinetic minus potential energy, and the inertia must be positive \
-             definite, as every metric and second moment of mass in it; of a rigid body stated by its \
-             second moments J that is I = tr(J) Id - J, not J"
+            "The Lagrangian is kinetic minus potential energy, and inertias, metrics and second moments of mass must be \
+             positive definite; if a rigid body is stated by its second moments J, this applies to I = tr(J) Id - J"
         )
     }
 }
@@ -194,7 +193,7 @@ mod tests {
         let negative = KineticWarning::of(&(-Matrix3::<f64>::identity()), 3);
         let text = negative.map_or_else(String::new, |w| w.to_string());
         assert!(
-            text.contains("is negative") && text.contains("I = tr(J) Id - J, not J"),
+            text.contains("is negative") && text.contains("this applies to I = tr(J) Id - J"),
             "{text}"
         );
         let flat = KineticWarning::of(&Matrix3::<f64>::zeros(), 3);

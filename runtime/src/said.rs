@@ -82,8 +82,7 @@ pub(crate) fn instead(f: &mut fmt::Formatter<'_>, h: f64, largest: f64) -> fmt::
         let tried = h * SHORTEST_SHARE;
         return write!(
             f,
-            "; no step from {tried:.0e} to {} was solved from this state either: check the step, \
-             the values of the state, and the parameters",
+            "; steps from {tried:.0e} to {} from this state failed too: check the step, the state, and the parameters",
             Plain(h)
         );
     }
@@ -104,7 +103,7 @@ pub(crate) fn shorter(f: &mut fmt::Formatter<'_>, steps: Option<(f64, f64)>) -> 
 /// Which shorter step has been tried and works, if one was found.
 pub(crate) fn works(f: &mut fmt::Formatter<'_>, step: Option<f64>) -> fmt::Result {
     match step {
-        Some(h) => write!(f, "; a step of {h} can be made"),
+        Some(h) => write!(f, "; a step of {h} succeeds"),
         None => Ok(()),
     }
 }
@@ -133,7 +132,7 @@ pub(crate) fn not_finite(
     write!(f, "the momentum is NaN or infinite (component {component})")?;
     match steps {
         Some((h, largest)) if !largest.is_nan() => instead(f, h, largest),
-        _ => write!(f, "; check the values of the state and the parameters"),
+        _ => write!(f, "; check the state and the parameters"),
     }
 }
 

@@ -57,18 +57,18 @@ impl fmt::Display for SnapshotError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotSaved => f.write_str(
-                "this trajectory has parts that cannot be written down; implement `Trajectory::words` for it",
+                "this trajectory has parts that cannot be saved; implement `Trajectory::words` for it",
             ),
             Self::Unlike { words } => write!(
                 f,
-                "the snapshot, of {words} words, was taken from a value of another kind or size; start the model from \
-                 the data that the snapshot was taken with"
+                "the snapshot, of {words} words, belongs to a value of another kind or size; start the model from the same \
+                 data as the snapshot"
             ),
             Self::Foreign => f.write_str(
-                "no snapshot of this version: it must begin with `clebsch` and the version 1",
+                "this is not a snapshot of this version: it must begin with `clebsch` and the version 1",
             ),
             Self::Damaged => f.write_str(
-                "the snapshot was changed or cut after it was written: its checksum differs; take an earlier one",
+                "the snapshot was changed or truncated after it was written: its checksum differs; use an earlier one",
             ),
         }
     }
@@ -199,7 +199,8 @@ mod as_text {
                 (text.len() == 2).then(|| u8::from_str_radix(text, 16).ok())?
             };
             let bytes: Option<Vec<u8>> = pairs.map(byte).collect();
-            let bytes = bytes.ok_or_else(|| D::Error::custom("not pairs of hexadecimal digits"))?;
+            let bytes = bytes
+                .ok_or_else(|| D::Error::custom("these are not pairs of hexadecimal digits"))?;
             Self::from_bytes(&bytes).map_err(D::Error::custom)
         }
     }

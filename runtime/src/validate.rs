@@ -213,7 +213,7 @@ pub fn orthogonal_of<T: Real>(
             deviation,
             determinant: determinant.least(),
         },
-        remedy: "give a rotation matrix with all its digits",
+        remedy: "give a rotation matrix to all digits",
     })
 }
 
@@ -278,7 +278,7 @@ fn in_group<T: Real, const R: usize, const C: usize>(
             elements,
             deviation,
         },
-        remedy: "give an element with all its digits",
+        remedy: "give an element of the group to all digits",
     })
 }
 
@@ -306,7 +306,7 @@ pub fn invertible_of<T: Real>(
         None => Err(ParameterError {
             field,
             problem: Problem::NotInvertible,
-            remedy: "give a matrix with a determinant that is not zero",
+            remedy: "give a matrix with a non-zero determinant",
         }),
     }
 }
@@ -334,7 +334,7 @@ pub fn positive_step<T: Real>(h: T) -> Result<(), ParameterError> {
         field: "h",
         problem,
         remedy: if value < 0.0 {
-            "give a positive step size; to run backwards in time, reverse all initial momenta, and the field of a magnetic term"
+            "give a positive step size; to run backwards in time, reverse all initial momenta and the field of a magnetic term"
         } else {
             "give a positive, finite step size, at least 1e-307"
         },
@@ -348,7 +348,7 @@ pub fn positive_step<T: Real>(h: T) -> Result<(), ParameterError> {
 pub fn directed_step<T: Real>(h: T) -> Result<(), ParameterError> {
     let backwards = h.is_below(0.0);
     positive_step(if backwards { -h } else { h }).map_err(|e| ParameterError {
-        remedy: "give a finite step size, of either sign, that is 1e-307 at least",
+        remedy: "give a finite step size of either sign, with absolute value at least 1e-307",
         ..e
     })
 }

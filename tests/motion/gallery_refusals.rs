@@ -41,7 +41,7 @@ fn offered(said: &str) -> f64 {
 fn tried(said: &str) -> f64 {
     let words = said
         .split_once("; a step of ")
-        .and_then(|(_, rest)| rest.split_once(" from this state was tried"));
+        .and_then(|(_, rest)| rest.split_once(" from this state succeeds"));
     let (number, _) = words.unwrap_or_else(|| panic!("nothing was tried: {said}"));
     number
         .parse()

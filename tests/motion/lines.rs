@@ -139,7 +139,7 @@ fn errors_name_the_site() {
     let told = chain.start(initial, 0.1).expect_err("a list too short");
     assert!(
         told.to_string()
-            .contains("49 sites, and there are 50 nodes"),
+            .contains("49 sites, but there are 50 nodes"),
         "{told}"
     );
     let none = TodaChain::<f64>::new(

@@ -28,10 +28,10 @@ pub fn command(width: Option<usize>) -> Command {
             "Discrete Clebsch variational integrators: derived from a Lagrangian, run from a case",
         )
         .after_help(
-            "Examples:\n  clebsch list\n  clebsch run heavy-top\n  clebsch derive heavy-top\n  clebsch new my-model\n\n\
-             Exit codes: 0 done, 1 failed, 2 usage, 3 an invariant exceeded the bound of its case \
-             (results are written). A sweep ends with 1 if a point was refused or stopped before its end, else with 3 if an \
-             invariant of a point exceeded its bound; its table is written.",
+            "Examples:\n  clebsch list\n  clebsch run heavy-top\n  clebsch derive heavy-top\n  clebsch new my-model\n\nExit \
+             codes: 0 success, 1 failure, 2 wrong usage, 3 an invariant exceeded the bound of its case (results are \
+             written). A sweep writes its table and exits with 1 if a point was refused or stopped early, otherwise with 3 \
+             if an invariant exceeded its bound at a point.",
         )
         .subcommand_required(true)
         .arg_required_else_help(true)
@@ -48,14 +48,14 @@ pub fn command(width: Option<usize>) -> Command {
         )
         .subcommand(
             Command::new("show")
-                .about("Print the statement of a model and a case of it")
+                .about("Print the text of a model and one of its cases")
                 .after_help("Examples:\n  clebsch show toda-chain\n  clebsch show heavy-top:general")
                 .arg(model())
                 .arg(shown_case()),
         )
         .subcommand(
             Command::new("case")
-                .about("Print a complete case as TOML, to start your own from")
+                .about("Print a complete case as TOML, as a template for your own")
                 .after_help(
                     "Examples:\n  clebsch case heavy-top > my-top.toml\n  clebsch case heavy-top:general\n  \
                      clebsch case my-model.clebsch > my-model.toml",
@@ -65,13 +65,13 @@ pub fn command(width: Option<usize>) -> Command {
         )
         .subcommand(
             Command::new("new")
-                .about("Write a model and a case of your own, NAME.clebsch and NAME.toml, to start from")
+                .about("Create a model and a case of your own, NAME.clebsch and NAME.toml")
                 .after_help("Examples:\n  clebsch new my-model\n  clebsch new my-chain --from toda-chain:soliton")
                 .arg(
                     Arg::new("name")
                         .value_name("NAME")
                         .required(true)
-                        .help("Name of the model, such as my-top; files that exist are never replaced"),
+                        .help("Name of the model, such as my-top; existing files are never replaced"),
                 )
                 .arg(option(
                     "from",
@@ -81,7 +81,7 @@ pub fn command(width: Option<usize>) -> Command {
         )
         .subcommand(
             of_a_case(Command::new("check"))
-                .about("Derive a model, read its case and take one step, without a run")
+                .about("Derive a model, read its case and take one step")
                 .after_help("Examples:\n  clebsch check my-model.clebsch"),
         )
         .subcommand(runs::run())

@@ -8,7 +8,7 @@ pub(super) fn planned(command: Command, every: &'static str, out: &'static str) 
     of_a_case(command)
         .arg(option("every", "N", every).value_parser(positive_count))
         .arg(option("out", "DIR", out).value_parser(value_parser!(std::path::PathBuf)))
-        .arg(flag("force", "Replace DIR when it holds an earlier run").requires("out"))
+        .arg(flag("force", "Replace DIR if it contains an earlier run").requires("out"))
         .arg(json())
 }
 
@@ -17,7 +17,7 @@ pub(super) fn shown_case() -> Arg {
     option(
         "case",
         "NAME",
-        "Case to print; the first one by default, and placeholder values for a model file",
+        "Case to print; by default the first, and placeholder values for a model file",
     )
 }
 
@@ -28,14 +28,14 @@ pub(super) fn of_a_case(command: Command) -> Command {
         .arg(option(
             "case",
             "NAME|FILE.toml",
-            "Case of the model, or a file ending in .toml. The default is the model's first case, and M.toml for a model \
-             file M.clebsch; a NAME is then the case M/NAME.toml. MODEL:NAME does the same",
+            "Case of the model, or a .toml file. By default the first case of the model, or M.toml for a model file M.clebsch; \
+             for a model file, NAME is the case M/NAME.toml. MODEL:NAME selects the same",
         ))
         .arg(
             option(
                 "steps",
                 "N",
-                "Number of steps instead of the case's, such as 20000 or 2e4",
+                "Number of steps, such as 20000 or 2e4; overrides the case",
             )
             .value_parser(positive_count),
         )
@@ -43,7 +43,7 @@ pub(super) fn of_a_case(command: Command) -> Command {
             option(
                 "until",
                 "T",
-                "Time to run to, instead of a number of steps; the run ends at the node nearest to it",
+                "Final time, instead of a number of steps; the run ends at the nearest node",
             )
             .conflicts_with("steps")
             .value_parser(positive_number),
@@ -52,7 +52,8 @@ pub(super) fn of_a_case(command: Command) -> Command {
             option(
                 "set",
                 "NAME=VALUE",
-                "Parameter or initial value instead of the case's: a number, a component, or what a case file takes, such as gU.z=0.5, gU=[0,0,1], R.angle=1 or 'R={axis=[0,0,1], angle=1}'; may be repeated",
+                "Parameter or initial value, which overrides the case: a number, a component, or any value of a case file, \
+                 such as gU.z=0.5, gU=[0,0,1], R.angle=1 or 'R={axis=[0,0,1], angle=1}'; repeatable",
             )
             .action(ArgAction::Append),
         )
@@ -60,7 +61,7 @@ pub(super) fn of_a_case(command: Command) -> Command {
             option(
                 "h",
                 "H",
-                "Step size instead of the case's, in its unit of time",
+                "Step size in the case's unit of time; overrides the case",
             )
             .value_parser(step_size),
         )
@@ -68,32 +69,30 @@ pub(super) fn of_a_case(command: Command) -> Command {
             option(
                 "order",
                 "N",
-                "Order of accuracy of a step, where the model offers more than one: 2 to 10 for a \
-                 free body, 2 to 8 for other reversible steps",
+                "Order of accuracy, if the model offers several: 2 to 10 for a free body, 2 to 8 for other reversible steps",
             )
             .value_parser(order_number),
         )
         .arg(flag(
             "compensated",
-            "Make steps of order 4, 6 or 8 of a free body symplectic with the attitude, by a \
-             constant turn about the momentum",
+            "Make steps of order 4, 6 or 8 of a free body symplectic with the attitude, by a constant rotation about the \
+             momentum",
         ))
         .arg(option(
             "solver",
             "NAME",
-            "Solver of the implicit step instead of the model's own, where it offers several",
+            "Solver of the implicit step, if the model offers several",
         ))
         .arg(flag(
             "halve",
-            "Make a step that is refused by two, four, ... steps of a part of its length; the result says how many \
-             were, and is no longer symplectic",
+            "If a step fails, retry it as two, four, ... substeps; the result reports them and is no longer symplectic",
         ))
         .arg(
             option(
                 "dim",
                 "N",
-                "Size of the matrices, for a model of any size: its first case of that size, or the \
-                 size of the case file",
+                "Size of the matrices, for a model of any size: selects its first case of that size, or the size of the case \
+                 file",
             )
             .value_parser(positive_count),
         )
@@ -103,5 +102,5 @@ pub(super) fn model() -> Arg {
     Arg::new("model")
         .value_name("MODEL")
         .required(true)
-        .help("Model as `clebsch list` shows it, MODEL:CASE, or a model file")
+        .help("Model from `clebsch list`, MODEL:CASE, or a model file")
 }

@@ -8,7 +8,7 @@ use clebsch::validate::positive_step;
 pub(super) fn json() -> Arg {
     flag(
         "json",
-        "Print one JSON object and nothing else on standard output",
+        "Print one JSON object on standard output and nothing else",
     )
 }
 

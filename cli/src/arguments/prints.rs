@@ -6,7 +6,7 @@ use clap::{Arg, ArgAction, Command, value_parser};
 
 pub(super) fn plot() -> Command {
     Command::new("plot")
-        .about("Draw columns of a finished run, against time or against each other")
+        .about("Plot columns of a finished run, against time or each other")
         .after_help(
             "Examples:\n  clebsch plot out/kepler\n  clebsch plot out/kepler --x X.1 --y X.2\n  \
              clebsch plot out/kepler --y X --y invariant_energy --from 100 --to 120",
@@ -22,7 +22,8 @@ pub(super) fn plot() -> Command {
             option(
                 "x",
                 "NAME",
-                "Column along the horizontal axis; time by default. Give one for all, or one for each --y, as for the orbits of two bodies",
+                "Column along the horizontal axis, by default time. Give one for all, or one for each --y, such as for the \
+                 orbits of two bodies",
             )
             .action(ArgAction::Append),
         )
@@ -30,23 +31,23 @@ pub(super) fn plot() -> Command {
             option(
                 "y",
                 "NAME",
-                "Column to draw, such as X.1, X (all components) or q_3 (site 3 of a chain); a list with commas, or repeated. \
-                 Without it the columns are listed",
+                "Column to draw, such as X.1, X (all components) or q_3 (site 3 of a chain); comma-separated or repeated. \
+                 Without it, the columns are listed",
             )
             .action(ArgAction::Append),
         )
         .arg(option("from", "T", "First time to draw").value_parser(value_parser!(f64)))
         .arg(option("to", "T", "Last time to draw").value_parser(value_parser!(f64)))
         .arg(
-            option("out", "FILE", "SVG to write; by default into DIR, named by its columns")
+            option("out", "FILE", "SVG to write; by default a file in DIR named after the columns")
                 .value_parser(value_parser!(std::path::PathBuf)),
         )
-        .arg(flag("force", "Replace FILE even if it is not a picture of this command"))
+        .arg(flag("force", "Replace FILE even if this command did not write it"))
 }
 
 pub(super) fn figures() -> Command {
     Command::new("figures")
-        .about("Draw the figures of the thesis's second chapter, and of the body of its third, from named cases")
+        .about("Draw the figures of Dixon's thesis, chapter 2 and the body of chapter 3, from named cases")
         .after_help("Examples:\n  clebsch figures --out out/figures")
         .arg(
             option(
@@ -57,7 +58,7 @@ pub(super) fn figures() -> Command {
             .required(true)
             .value_parser(value_parser!(std::path::PathBuf)),
         )
-        .arg(flag("force", "Replace DIR when it holds earlier figures"))
+        .arg(flag("force", "Replace DIR if it contains earlier figures"))
         .arg(json())
 }
 
@@ -73,7 +74,7 @@ pub(super) fn derive() -> Command {
                 .value_name("MODEL|FILE")
                 .required_unless_present("write")
                 .help(
-                    "Model of the gallery, or a file that holds a model's text; - for standard input",
+                    "Model of the gallery, or a file with the text of a model; - for standard input",
                 ),
         )
         .arg(
@@ -89,7 +90,7 @@ pub(super) fn derive() -> Command {
         )
         .arg(flag(
             "explain",
-            "Show why each step of the derivation holds",
+            "Show the justification of each step of the derivation",
         ))
         .arg(flag(
             "second-proof",
@@ -97,11 +98,11 @@ pub(super) fn derive() -> Command {
         ))
         .arg(flag(
             "no-thesis",
-            "Leave out where the equations stand in Dixon's thesis",
+            "Omit references to the equations of Dixon's thesis",
         ))
         .arg(flag(
             "standalone",
-            "Print a LaTeX document that compiles by itself, with its bibliography",
+            "Print a complete LaTeX document, with its bibliography",
         ))
         .arg(flag(
             "write",

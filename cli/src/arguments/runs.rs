@@ -9,26 +9,25 @@ pub(super) fn run() -> Command {
     let checkpoint = option(
         "checkpoint",
         "SECONDS",
-        "Write a checkpoint every so many seconds of a run with --out, from which --resume goes on",
+        "Write a checkpoint every so many seconds in a run with --out; --resume continues from it",
     );
     planned(
         Command::new("run")
-            .about("Run a case and check what it conserves")
+            .about("Run a case and check its invariants")
             .after_help(
                 "Examples:\n  clebsch run heavy-top\n  clebsch run free-body --order 6 --steps 1e6\n  \
                  clebsch run heavy-top --case my-top.toml --out out/my-top\n  \
                  clebsch run my-model.clebsch",
             ),
-        "Look at every N-th node and the last: invariants are checked and samples are written there. The default looks at \
-         10000 nodes at most, so that looking takes less time than a long run",
-        "Write trajectory.csv, trajectory.npz, run.json and plots into this new folder; when a step \
-         fails, those of the run up to there, which run.json and the plots say",
+        "Record every N-th node and the last: check invariants and write samples there. By default at most 10000 nodes are \
+         recorded, so that a long run spends little time on this",
+        "Write trajectory.csv, trajectory.npz, run.json and plots into this new folder; if a step fails, they cover the run up \
+         to there",
     )
     .arg(
         flag(
             "resume",
-            "Go on with the run into DIR that was interrupted or killed, to the same results to the last \
-             bit; begin it where there is none",
+            "Resume the interrupted or killed run in DIR, with bitwise identical results; start it if there is none",
         )
         .requires("out")
         .conflicts_with("force"),
@@ -36,33 +35,34 @@ pub(super) fn run() -> Command {
     .arg(
         flag(
             "paper",
-            "Draw pictures for a column of a paper: 86 mm wide, without titles, legends below; as PDF beside SVG \
-             where the command is built with `--features pdf`",
+            "Draw figures for one column of a paper: 86 mm wide, without titles, legends below; also as PDF if the command was \
+             built with `--features pdf`",
         )
         .requires("out"),
     )
     .arg(
         flag(
             "csv",
-            "Write trajectory.csv even if it is long; without it, only of at most 500000 numbers (trajectory.npz has all)",
+            "Write trajectory.csv even if it is long; by default it is written up to 500000 numbers (trajectory.npz always has \
+             all)",
         )
         .requires("out"),
     )
     .arg(
         flag(
             "vtk",
-            "Write files for ParaView into DIR/vtk: lines, cells, particles, grids and bodies at every sample, at \
-             most about 1000 unless --every says how many",
+            "Write ParaView files into DIR/vtk: lines, cells, particles, grids and bodies at every sample, at most about 1000 \
+             unless you give --every",
         )
         .requires("out"),
     )
-    .arg(flag("quiet", "Print warnings and errors only; the exit code says how the run ended").conflicts_with_all(["json", "verbose"]))
-    .arg(flag("verbose", "Print what was derived, and how steps are solved, before the result").conflicts_with("json"))
+    .arg(flag("quiet", "Print only warnings and errors; the exit code tells how the run ended").conflicts_with_all(["json", "verbose"]))
+    .arg(flag("verbose", "Print the derived equations and how steps are solved, before the result").conflicts_with("json"))
     .arg(
         option(
             "stability-limit",
             "SECONDS",
-            "Search at most this long for the stability limit of the step size, which is only reported; 0 skips the search",
+            "Search at most this long for the stability limit of the step size, which is only reported; 0 disables the search",
         )
         .default_value("1")
         .value_parser(seconds),
@@ -71,7 +71,7 @@ pub(super) fn run() -> Command {
         option(
             "check",
             "STEPS",
-            "Which steps are judged by the action as stated, independently of derivation and program: a sample of a \
+            "Steps to check against the stated action, independently of the derivation and the compiled step: a sample of a \
              hundred and the last, all, or none",
         )
         .value_parser(["sample", "all", "none"])
@@ -89,13 +89,12 @@ pub(super) fn compare() -> Command {
     planned(
         Command::new("compare")
             .about(
-                "Run a case by the generated stepper, the hand-written one and other methods, side \
-                 by side",
+                "Compare the generated stepper with a hand-written one and other methods on a case",
             )
             .after_help(
                 "Examples:\n  clebsch compare free-body\n  clebsch compare heavy-top --steps 1000 --out out/compared",
             ),
-        "Compare at every N-th node; by default such that at most 10000 are compared",
+        "Compare at every N-th node; by default at most 10000 nodes are compared",
         "Write comparison.csv, comparison.json and comparison.svg into this new folder",
     )
 }
@@ -103,7 +102,7 @@ pub(super) fn compare() -> Command {
 pub(super) fn converge() -> Command {
     of_a_case(
         Command::new("converge")
-            .about("Measure the error at a fixed time against the step size, and the order")
+            .about("Measure the error at a fixed time for several step sizes, and the order")
             .after_help(
                 "Examples:\n  clebsch converge kepler --until 10\n  clebsch converge my-model.clebsch --h 0.1 --until 1 --out out/converged",
             ),
@@ -125,14 +124,14 @@ pub(super) fn converge() -> Command {
         )
         .value_parser(value_parser!(std::path::PathBuf)),
     )
-    .arg(flag("force", "Replace DIR when it holds earlier results").requires("out"))
+    .arg(flag("force", "Replace DIR if it contains earlier results").requires("out"))
     .arg(json())
 }
 
 pub(super) fn sweep() -> Command {
     of_a_case(
         Command::new("sweep")
-            .about("Run a case at every point of a grid, on all cores, into one table")
+            .about("Run a case at every point of a parameter grid, on all cores, and write one table")
             .after_help(
                 "Examples:\n  clebsch sweep heavy-top --vary gU.z=0:1:100 --out out/sweep\n  \
                  clebsch sweep heavy-top --vary gU.z=0:1:100 --vary h=0.1,0.05 --shard 3/16 --out out/part-3\n  \
@@ -143,8 +142,8 @@ pub(super) fn sweep() -> Command {
         option(
             "vary",
             "NAME=VALUES",
-            "Parameter, initial value or step h, with its component, and its values as FROM:TO:COUNT or \
-             A,B,...; of several the last varies fastest",
+            "Parameter, initial value or step h, with its component, and its values as FROM:TO:COUNT or A,B,...; with several, \
+             the last varies fastest",
         )
         .action(ArgAction::Append)
         .required(true),
@@ -169,17 +168,17 @@ pub(super) fn sweep() -> Command {
     .arg(
         flag(
             "resume",
-            "Go on with the sweep into DIR that was interrupted or killed; begin it where there is none",
+            "Resume the interrupted or killed sweep in DIR; start it if there is none",
         )
         .conflicts_with("force"),
     )
-    .arg(flag("force", "Replace DIR when it holds an earlier sweep"))
+    .arg(flag("force", "Replace DIR if it contains an earlier sweep"))
     .arg(json())
 }
 
 pub(super) fn collect() -> Command {
     Command::new("collect")
-        .about("Join the parts of a sweep to the table of the whole")
+        .about("Join the parts of a sweep into one table")
         .after_help("Examples:\n  clebsch collect out/part-* --out out/sweep")
         .arg(
             Arg::new("parts")
@@ -195,6 +194,6 @@ pub(super) fn collect() -> Command {
                 .required(true)
                 .value_parser(value_parser!(std::path::PathBuf)),
         )
-        .arg(flag("force", "Replace DIR when it holds an earlier sweep"))
+        .arg(flag("force", "Replace DIR if it contains an earlier sweep"))
         .arg(json())
 }

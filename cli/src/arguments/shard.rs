@@ -14,7 +14,7 @@ impl Shard {
         let numbers = numbers.and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
         match numbers {
             Some((part, of)) if 1 <= part && part <= of => Ok(Self { part, of }),
-            _ => Err("give PART/OF, such as 3/16, the parts counted from 1".to_owned()),
+            _ => Err("give PART/OF, such as 3/16; parts count from 1".to_owned()),
         }
     }
 

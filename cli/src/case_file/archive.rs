@@ -69,15 +69,15 @@ impl Archive {
             let first = bytes(&mut file, 0, length.min(6)).map_err(unread)?;
             return Err(match first.starts_with(b"\x93NUMPY") {
                 true => format!(
-                    "{name} is a single array, as numpy.save writes it: write an npz by numpy.savez, each array with its name"
+                    "{name} is a single array, written by numpy.save: write an npz with numpy.savez, with a name for each array"
                 ),
-                false => format!("{name} is no npz file"),
+                false => format!("{name} is not an npz file"),
             });
         };
         let [size, start] = [12, 16].map(|at| end.get(at..).map_or(0, |b| number(b, 4)));
         if start + size > length {
             return Err(format!(
-                "{name} is cut short, or has more than 4 GiB, which is not read"
+                "{name} is truncated, or larger than 4 GiB, which clebsch does not read"
             ));
         }
         let directory = bytes(&mut file, start, size).map_err(unread)?;
@@ -140,10 +140,10 @@ impl Archive {
         })?;
         if member.method != 0 {
             return Err(format!(
-                "{name} is compressed, as numpy.savez_compressed writes it: write it by numpy.savez"
+                "{name} is compressed, by numpy.savez_compressed: write it with numpy.savez"
             ));
         }
-        let damaged = || format!("{name} is damaged: `{}` does not read", shown(array));
+        let damaged = || format!("{name} is damaged: `{}` cannot be read", shown(array));
         let unread = |error: std::io::Error| format!("cannot read {name}: {error}");
         let mut file = &self.file;
         let length = file.seek(SeekFrom::End(0)).map_err(unread)?;
@@ -165,8 +165,8 @@ impl Archive {
         }
         Array::read(data).map_err(|why| match why {
             Some(kind) => format!(
-                "the array `{}` of {name} has entries of type `{}`: save floating point or whole numbers of one to eight bytes, \
-                 lowest byte first, such as numpy's float64",
+                "the array `{}` of {name} has entries of type `{}`: save floating-point or whole numbers of one to eight \
+                 bytes, little-endian, such as numpy's float64",
                 shown(array),
                 shown(&kind)
             ),

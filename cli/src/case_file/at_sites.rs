@@ -39,7 +39,7 @@ impl<'a> AtSites<'a> {
         let copies = choice
             .as_ref()
             .and_then(|choice| Copies::of(stated, choice));
-        let wrong = || file.wrong(None, "the model's lattice cannot be written out");
+        let wrong = || file.wrong(None, "the model cannot be expanded");
         let (choice, copies) = (choice.ok_or_else(wrong)?, copies.ok_or_else(wrong)?);
         Ok(Self {
             stated,

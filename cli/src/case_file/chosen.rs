@@ -62,7 +62,7 @@ pub(super) fn of_case(
             .map(|l| format!("{} = {SITES}", l.index.text))
             .collect();
         let message = format!(
-            "missing table [labels], how many sites there are: for example {}",
+            "missing table [labels] with the numbers of sites: for example {}",
             keys.join(", ")
         );
         return Err(file.wrong(None, &message));
@@ -95,7 +95,7 @@ pub(super) fn of_case(
         !labels.contains_key(l.index.text.as_str()) && !labels.contains_key(l.count.text.as_str())
     }) {
         let index = &missing.index.text;
-        let message = format!("missing key `labels.{index}`: how many sites there are");
+        let message = format!("missing key `labels.{index}`: the number of sites");
         return Err(file.wrong(None, &message));
     }
     let ends = file.table(top, "ends")?;
@@ -151,9 +151,9 @@ fn ends_unchosen(
             Some((end, which)) => {
                 names[*end] = *which;
                 let own = [&first, &last][*end].get(*which);
-                format!("of the end condition `{}`", own.map_or("", String::as_str))
+                format!("the end condition `{}`", own.map_or("", String::as_str))
             }
-            None => "of the ring".to_owned(),
+            None => "the ring".to_owned(),
         };
         let index = &line.index.text;
         let [a, b] = [(&first, names[0]), (&last, names[1])]
@@ -167,8 +167,8 @@ fn ends_unchosen(
             false => "",
         };
         let message = format!(
-            "parameters.{}: is {owner}, and the case does not say how the line ends: add [ends] with {example} (the first end: \
-             {}; the last one: {}{ring})",
+            "parameters.{}: belongs to {owner}, but the case does not choose the ends: add [ends] with {example} (first end: \
+             {}; last end: {}{ring})",
             shown(asked),
             first.join(", "),
             last.join(", "),
@@ -195,8 +195,8 @@ fn ended(
     let line = lattice.line_label().map(|l| l.index.text.as_str());
     if line != Some(key) {
         return Err(wrong(&match line {
-            Some(line) => format!("the line is `{line}`"),
-            None => "the model has no line that could have ends".to_owned(),
+            Some(line) => format!("the label of the chain is `{line}`"),
+            None => "the model has no chain that could have ends".to_owned(),
         }));
     }
     let names: Option<Vec<&str>> = match value.get_ref() {

@@ -132,7 +132,7 @@ impl Fields<'_> {
         let key = &found.key;
         let inertia = table.inertia(field, &key.name).filter(|_| !key.inertia);
         if let Some((_, value)) = inertia.and_then(|inertia| table.get(&inertia, false)) {
-            let why = "is given twice, by itself and by its inertia";
+            let why = "is given twice, directly and by its inertia";
             let message = format!("{}.{}: {why}", table.name, key.name);
             return Some(self.file.wrong(Some(&value.span()), &message));
         }
@@ -146,7 +146,7 @@ impl Fields<'_> {
         });
         let other = velocities.last()?;
         let message = format!(
-            "{}.{}: is given beside {}: give one of them",
+            "{}.{}: conflicts with {}: give one of them",
             table.name, other.key.name, key.name
         );
         Some(self.file.wrong(Some(&other.value.span()), &message))
@@ -186,7 +186,7 @@ impl Fields<'_> {
                     };
                     if let Some(other) = turns.as_ref().filter(|_| way != Way::Rate) {
                         let message = format!(
-                            "{}.{key}: is given beside {other}: give one of them",
+                            "{}.{key}: conflicts with {other}: give one of them",
                             table.name
                         );
                         return Err(self.file.wrong(Some(&found.value.span()), &message));

@@ -212,8 +212,8 @@ impl Reader<'_> {
         let key = ascii(&q.name.text);
         let named = format!("initial.{key}");
         let Some(given) = value else {
-            let message = "missing: where particles are, such as { lattice = \"brick\", jitter = 0.1 }, or \
-                           expressions in the index of a particle";
+            let message = "missing: give the particles, such as { lattice = \"brick\", jitter = 0.1 }, or expressions in the \
+                index of a particle";
             return Err(self.wrong(&named, value, message));
         };
         let read = match given.get_ref() {
@@ -285,8 +285,8 @@ impl Reader<'_> {
         let read = match value {
             None if self.is_grid(q) && size(q) == 1 => Ok(self.nodes.1.clone()),
             None => {
-                let message = "missing: a number, an expression of the place x, y, a list with a value for each \
-                               site, or { depth = \"...\" }";
+                let message = "missing: give a number, an expression in the position x, y, a list with a value for each site, \
+                    or { depth = \"...\" }";
                 return Err(self.wrong(&named, value, message));
             }
             Some(own) if from_npz::is_meant(own.get_ref()) => self.read(q, &key, own),
@@ -304,8 +304,8 @@ impl Reader<'_> {
                     })
                 }
                 _ => Err(
-                    "expected { depth = \"an expression of x, y\" }, for a particle's share of it, \
-                     and share = \"cells\" beside it for that of its Voronoi cell"
+                    "expected { depth = \"an expression of x, y\" }, and optionally share = \"cells\" for the depth times the \
+                     Voronoi cell"
                         .to_owned()
                         .into(),
                 ),
@@ -324,8 +324,7 @@ impl Reader<'_> {
         match given.map(DeValue::as_str) {
             None | Some(Some("equal")) => Ok(vec![self.space.measure() / count as f64; count]),
             Some(Some("cells")) => {
-                let none =
-                    "share: Voronoi cells are those of particles on a torus of two dimensions";
+                let none = "share: Voronoi cells need particles on a torus of two dimensions";
                 let own = self.stated.lattice.places().map(|p| ascii(&p.name.text));
                 let own = own.and_then(|key| self.fluid.columns.get(&key));
                 match (own, &self.space.lengths[..], Space::torus(self.stated)) {
@@ -361,7 +360,7 @@ fn positive(depths: Vec<f64>) -> Result<Vec<f64>, String> {
     match depths.iter().position(|depth| *depth <= 0.0) {
         None => Ok(depths),
         Some(site) => Err(format!(
-            "the depth at particle {site} is {}, and a particle carries a positive share of it: place particles where the depth is positive",
+            "the depth at particle {site} is {}, and masses must be positive: place particles where the depth is positive",
             depths[site]
         )),
     }

@@ -213,7 +213,8 @@ impl Taken {
         let own = own.and_then(|at| self.numbers.get(at * size..(at + 1) * size));
         own.ok_or_else(|| {
             format!(
-                "{} has no value at site {site}, as its sites_of array tells: give the value there under a name with the site",
+                "{} has no value at site {site}, according to its sites_of array: give the value in the case, under a name \
+                 with the site",
                 self.name
             )
         })
@@ -337,7 +338,7 @@ fn text<'a>(table: &'a DeTable<'_>, key: &str) -> Result<Option<&'a str>, Fault>
     let own = value.get_ref().as_str();
     own.map(Some).ok_or_else(|| Fault {
         why: format!(
-            "{key}: expected a text in quotes, found a value of type {}",
+            "{key}: expected a string in quotes, found a value of type {}",
             value.get_ref().type_str()
         ),
         at: value.span(),
@@ -351,7 +352,7 @@ fn whole_number(value: &Spanned<DeValue<'_>>) -> Result<i64, Fault> {
         _ => None,
     };
     own.ok_or_else(|| Fault {
-        why: "sample: expected a whole number, negative ones counted from the end".to_owned(),
+        why: "sample: expected a whole number; negative numbers count from the end".to_owned(),
         at: value.span(),
     })
 }

@@ -105,7 +105,7 @@ fn of_case(
             .iter()
             .map(|f| format!("{} = {}", f.name.text, example(f)));
         let message = format!(
-            "missing table [{TABLE}], what the functions of the model are: for example {}",
+            "missing table [{TABLE}] with the functions of the model: for example {}",
             each.collect::<Vec<_>>().join(", ")
         );
         return Err(file.wrong(None, &message));

@@ -52,7 +52,7 @@ fn impossible(entries: &[f64], n: usize) -> Option<String> {
         let (first, second) = (j.min(k) + 1, j.max(k) + 1);
         (own > sum * (1.0 + 4.0 * f64::EPSILON)).then(|| {
             format!(
-                "moments of inertia obey I{} <= I{first} + I{second}; {own} > {}",
+                "moments of inertia must satisfy I{} <= I{first} + I{second}; {own} > {}",
                 i + 1,
                 number::short(sum)
             )

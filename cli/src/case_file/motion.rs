@@ -176,26 +176,30 @@ impl Motion {
         let momentum = momentum.map_or("the momentum", |f| f.ascii);
         let why = match why {
             NoMomentum::Unread(why) => {
-                format!("the action of this model is not evaluated ({why}); give `{momentum}`")
+                format!(
+                    "clebsch cannot evaluate the action of this model ({why}); give `{momentum}`"
+                )
             }
             NoMomentum::NoLimit => format!(
-                "the action of a step has no limit of small steps that could give its momentum; give `{momentum}`"
+                "the action of this model has no limit of small steps, so a velocity gives no momentum; give `{momentum}`"
             ),
             NoMomentum::Across(hold, site, rate) => {
                 let site = site.map_or_else(String::new, |s| format!(" at site {s}"));
                 format!(
-                    "the velocities leave the constraint `{hold}`{site}: its left side less its right side changes at the rate {rate:.6}. \
-                     Give velocities for which it stays zero"
+                    "the velocities violate the constraint `{hold}`{site}: its left side minus its right side changes at the \
+                     rate {rate:.6}. Give velocities for which this rate is zero"
                 )
             }
             NoMomentum::Lost(name) => match zero {
                 Some(zero) => format!(
-                    "no momentum depends on this velocity, since the parameter `{zero}` of the kinetic energy is 0; give `{zero}` another value"
+                    "the momentum does not depend on this velocity, because the parameter `{zero}` of the kinetic energy is 0; \
+                     give `{zero}` another value"
                 ),
                 None => lost(card, &name, momentum),
             },
             NoMomentum::Coupled(_, other) => format!(
-                "the momentum depends on the velocity of `{other}` too, of which the momentum is given; give both by velocities or both by momenta"
+                "the momentum also depends on the velocity of `{other}`, but the case gives its momentum; give both velocities \
+                 or both momenta"
             ),
         };
         Wrong {
@@ -312,7 +316,7 @@ impl Motion {
             .collect();
         zero.dedup();
         let zero = zero.into_iter().map(|name| {
-            format!("initial {name} is zero: the case gives neither it nor a velocity")
+            format!("initial {name} is zero: the case gives neither this nor a velocity")
         });
         let zero: Vec<String> = zero.collect();
         let lines = out.into_iter().map(|told| {
@@ -362,8 +366,8 @@ fn lost(card: &Card, name: &str, momentum: &str) -> String {
             format!(", as in `m*{square}/(2*h)`")
         });
     format!(
-        "no momentum depends on this velocity, so it would be lost: for these parameters the Lagrangian has no kinetic energy of \
-         `{quantity}`. Divide its kinetic energy by the step once{}, or give `{momentum}`",
+        "no momentum depends on this velocity: for these parameters the Lagrangian has no kinetic energy of `{quantity}`. \
+         Divide its kinetic energy by the step once{}, or give `{momentum}`",
         example.unwrap_or_default()
     )
 }
@@ -496,7 +500,7 @@ fn parsed(source: &'static str) -> Option<Model> {
 /// The Legendre transform of a case, which evaluates its action.
 fn legendre(card: &Card, choice: Option<&Choice>, case: &Case) -> Result<Legendre, String> {
     let found = statement(card, choice, case, card.initial);
-    let (model, sizes, setup) = found.ok_or_else(|| "its text is not at hand".to_owned())?;
+    let (model, sizes, setup) = found.ok_or_else(|| "its text is not available".to_owned())?;
     Legendre::new(&model, &sizes, setup)
 }
 
@@ -517,7 +521,7 @@ fn onto(card: &Card, choice: Option<&Choice>, case: &mut Case) -> Option<String>
         }
     }
     Some(format!(
-        "initial configuration moved onto its constraints, by {:.1e} at most: `{}` was off by {:.1e}",
+        "the initial configuration was moved onto its constraints, by at most {:.1e}: `{}` was violated by {:.1e}",
         moved.by, moved.name, moved.off
     ))
 }

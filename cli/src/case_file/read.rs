@@ -45,7 +45,7 @@ pub fn read(name: &str, text: &str, card: &Card) -> Result<Located, Failure> {
 
 /// The message for a case without a number of steps.
 pub(crate) fn no_steps(name: &str) -> Failure {
-    let message = "missing key `steps`: the number of steps; or give --until T or --steps N";
+    let message = "missing key `steps`: give the number of steps, or --until T or --steps N";
     Failure::Usage(format!("{}: {message}", shown(name)))
 }
 
@@ -88,7 +88,7 @@ pub(crate) fn read_of(
         return Err(file.wrong(
             Some(&model.span()),
             &format!(
-                "model: this case is for `{}`, but `{}` is to run",
+                "model: this case is for `{}`, not for `{}`",
                 shown(&asked),
                 card.kebab
             ),
@@ -249,7 +249,9 @@ fn bounds(
             .read(value.get_ref())
             .map_err(|message| wrong(&message))?;
         if bound < 0.0 {
-            return Err(wrong(&format!("a bound is never negative, found {bound}")));
+            return Err(wrong(&format!(
+                "a bound must not be negative, found {bound}"
+            )));
         }
         bounds.push((name.to_owned(), bound));
     }

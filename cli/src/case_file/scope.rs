@@ -86,16 +86,13 @@ impl Scope {
                 .flatten()
                 .find(|n| self.number(n).is_none());
             let Some(next) = next else {
-                return format!("{why}: {} is no finite number", chain.join(", "));
+                return format!("{why}: {} is not a finite number", chain.join(", "));
             };
             if chain
                 .iter()
                 .any(|link| link.starts_with(&format!("{next} = ")))
             {
-                return format!(
-                    "{why}: {} refer to one another in a circle",
-                    chain.join(", ")
-                );
+                return format!("{why}: {} are circular definitions", chain.join(", "));
             }
             at = next;
         }
@@ -107,9 +104,9 @@ impl Scope {
         names.sort_unstable();
         names.truncate(LISTED);
         match names.is_empty() {
-            true => format!("{why}; an expression may hold numbers, functions and `pi`"),
+            true => format!("{why}; an expression may contain numbers, functions and `pi`"),
             false => format!(
-                "{why}; an expression may hold the step and the parameters that are one number: {}",
+                "{why}; an expression may contain the step and parameters that are single numbers: {}",
                 names.join(", ")
             ),
         }
@@ -161,7 +158,7 @@ mod tests {
         assert_eq!(scope.number("x"), None);
         assert_eq!(scope.number("q"), None);
         let why = scope.explained("\"x + 1\": `x` has no value here".to_owned());
-        assert!(why.contains("in a circle"), "{why}");
+        assert!(why.contains("are circular"), "{why}");
         let why = scope.explained("\"z\": `z` has no value here".to_owned());
         assert!(why.contains("T, a, b, c, h"), "{why}");
         let text = "[parameters]\na = \"b\"\nb = \"n\"\nc = \"1/0\"\n";
@@ -174,7 +171,7 @@ mod tests {
             "{why}"
         );
         let why = told("c");
-        assert!(why.contains("c = \"1/0\" is no finite number"), "{why}");
+        assert!(why.contains("c = \"1/0\" is not a finite number"), "{why}");
     }
 
     #[test]

@@ -45,7 +45,7 @@ pub(super) fn at<'v, 'i>(
         _ if list.len() == site.count => site.place,
         _ => {
             return Err(format!(
-                "a list has a value for each of the {} sites, and this one has {}",
+                "a list needs one value for each of the {} sites; this list has {}",
                 site.count,
                 list.len()
             ));

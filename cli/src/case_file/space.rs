@@ -65,8 +65,7 @@ impl Space {
                 .to_owned(),
         };
         let Some(table) = file.table(top, "domain")? else {
-            let message =
-                format!("missing table [domain], where particles live: for example {example}");
+            let message = format!("missing table [domain] of the particles: for example {example}");
             return Err(file.wrong(None, &message));
         };
         let keys = ["lengths", torus.unwrap_or("lengths"), "walls", "kind"];
@@ -211,8 +210,8 @@ fn walls(
                 Some("basin") => vec![true; d],
                 Some("channel") if d == 2 => vec![true, false],
                 _ => {
-                    let message = "expected \"torus\", \"basin\", or in the plane \"channel\", with walls across \
-                                   the first direction";
+                    let message = "expected \"torus\", \"basin\", or in two dimensions \"channel\", with walls across the \
+                        first direction";
                     return Err(wrong(value, "kind", message));
                 }
             };
@@ -224,7 +223,7 @@ fn walls(
         Some((value, key, walls)) if is_torus && walls.contains(&true) => Err(wrong(
             value,
             key,
-            "the model is stated on a torus, which has no walls",
+            "the model is declared on a torus, which has no walls",
         )),
         Some((.., walls)) => Ok(walls),
         None if is_torus => Ok(vec![false; d]),

@@ -40,7 +40,7 @@ pub(super) fn places(
     ] {
         if table.contains_key(key) && !of.contains(&kind) && kinds.contains(kind) {
             return Err(format!(
-                "{key}: lattice = \"{kind}\" has none; leave the key out"
+                "{key}: lattice = \"{kind}\" has no such key; remove it"
             ));
         }
     }
@@ -64,7 +64,8 @@ pub(super) fn places(
         }
         [_] => {
             return Err(
-                "on a line particles start on { lattice = \"square\" }, with jitter".to_owned(),
+                "in one dimension, particles start on { lattice = \"square\" }, with jitter"
+                    .to_owned(),
             );
         }
         [width, height] => {
@@ -96,11 +97,15 @@ pub(super) fn places(
                     let found = placement::scattered(&domain, count, sweeps, seed);
                     found.map_err(|e| e.to_string())?
                 }
-                other => return Err(format!("no lattice is called \"{other}\": write {kinds}")),
+                other => {
+                    return Err(format!(
+                        "the lattice \"{other}\" does not exist: write {kinds}"
+                    ));
+                }
             };
             places.iter().flat_map(|x| [x.x, x.y]).collect()
         }
-        _ => return Err("places on lattices are those of one or two dimensions".to_owned()),
+        _ => return Err("lattices exist in one and two dimensions only".to_owned()),
     };
     // Walls end the room that jitter has.
     let lengths = space.lengths.iter().zip(&space.walls).cycle();
@@ -185,11 +190,12 @@ fn uneven(count: usize, kind: &str, mut filling: Vec<usize>) -> String {
     let known: Vec<String> = filling.iter().map(usize::to_string).collect();
     let take = match known.split_last() {
         None => String::new(),
-        Some((last, [])) => format!("take {last} particles, or "),
-        Some((last, others)) => format!("take {} or {last} particles, or ", others.join(", ")),
+        Some((last, [])) => format!("use {last} particles, or "),
+        Some((last, others)) => format!("use {} or {last} particles, or ", others.join(", ")),
     };
     format!(
-        "{count} particles do not fill the domain evenly with lattice = \"{kind}\"; {take}lattice = \"random\", which takes any number"
+        "{count} particles do not fill the domain evenly with lattice = \"{kind}\"; {take}lattice = \"random\", which accepts \
+         any number"
     )
 }
 

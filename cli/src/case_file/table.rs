@@ -199,7 +199,7 @@ impl<'t, 'i> Table<'t, 'i> {
                 let said = match way {
                     Way::Rate => format!("`{}`", key.name),
                     Way::Body => format!("`{}` (in the axes of the body)", key.name),
-                    Way::Space => format!("`{}` (in those of space)", key.name),
+                    Way::Space => format!("`{}` (in space axes)", key.name),
                 };
                 if !keys.contains(&said) {
                     keys.push(said);

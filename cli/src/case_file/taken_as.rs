@@ -61,7 +61,7 @@ fn checked(field: &Field, all: Vec<f64>) -> Result<Vec<f64>, String> {
     let off =
         |k: usize| (at(k / n, k % n) + at(k % n, k / n)).abs() > 1e-9 * at(k / n, k % n).abs();
     match field.kind == Kind::Skew && (0..n * n).any(off) {
-        true => Err("not skew: an angular velocity W of n dimensions is a skew matrix, the rate of change of R being R*W".to_owned()),
+        true => Err("not skew: an angular velocity W in n dimensions is a skew matrix, with rate of change R*W of R".to_owned()),
         false => Ok(all),
     }
 }

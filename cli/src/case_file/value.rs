@@ -126,8 +126,7 @@ pub(super) enum Shape {
 }
 
 /// The form of an array of a file, for messages.
-pub(super) const OF_FILES: &str =
-    "an array of a file is { npz = \"out/trajectory.npz\", key = \"q\" }, as numpy.savez writes it";
+pub(super) const OF_FILES: &str = "write an array of a file as { npz = \"out/trajectory.npz\", key = \"q\" }; numpy.savez writes such files";
 
 /// Whether a table names a file.
 pub(super) fn names_a_file(value: &DeValue<'_>) -> bool {

@@ -17,8 +17,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// The names that the expression of a site may read, for messages.
-const READS: &str = ": an expression of a site reads its label, the number of sites, and numbers of the case that are the same at \
-                     all sites";
+const READS: &str = ": an expression at a site may contain its label, the number of sites, and numbers of the case that are \
+    the same at all sites";
 
 impl<'a> Fields<'a> {
     /// Numbers that were computed for all particles of a fluid, and the line of their key.

@@ -71,7 +71,7 @@ fn count(card: &Card) -> String {
     let numbers =
         |fields: &[clebsch::card::Field]| -> usize { fields.iter().map(|f| f.count()).sum() };
     format!(
-        "{} numbers of parameters and {} of initial values accepted",
+        "{} parameter values and {} initial values accepted",
         numbers(card.parameters),
         numbers(card.initial)
     )

@@ -59,7 +59,7 @@ pub fn list(
         writeln!(streams.out, "{}", json!({ "models": models }))?;
         return Ok(());
     }
-    let head = ["model", "family", "cases", "what it is"];
+    let head = ["model", "family", "cases", "description"];
     let mut table = vec![head.map(str::to_owned).to_vec()];
     table.extend(rows.into_iter().map(|row| {
         let family = row.family.name().to_owned();
@@ -99,7 +99,7 @@ fn cases(
 ) -> Result<(), Failure> {
     let named = named(gallery, model, "`list` takes a model").map_err(|failure| match failure {
         Failure::Usage(message) => Failure::Usage(format!(
-            "{message}; or name a family: {}",
+            "{message}; or give a family: {}",
             Family::ALL.map(Family::name).join(", ")
         )),
         other => other,
@@ -148,7 +148,7 @@ fn cases(
     out.write_all(aligned(&table, &[], streams.width).as_bytes())?;
     writeln!(
         out,
-        "\nclebsch show {name}      its statement and first case\nclebsch run {name}:CASE  one of its cases"
+        "\nclebsch show {name}      its text and first case\nclebsch run {name}:CASE  one of its cases"
     )?;
     Ok(())
 }

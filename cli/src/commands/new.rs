@@ -39,7 +39,7 @@ pub(crate) fn new(
         None => (TEMPLATE[0].to_owned(), TEMPLATE[1].to_owned()),
         Some(from) => {
             let (from, case) = parts(from, None)?;
-            let named = named(gallery, from, "`--from` takes a model")?;
+            let named = named(gallery, from, "`--from` needs a model")?;
             let case = case_text(&named, case, streams)?;
             (statement(&named).trim_end().to_owned() + "\n", case)
         }
@@ -54,7 +54,7 @@ pub(crate) fn new(
     ];
     if let Some((taken, _)) = files.iter().find(|(path, _)| path.exists()) {
         return Err(Failure::Usage(format!(
-            "{} exists; give another name, or remove the file",
+            "{} exists; choose another name, or remove the file",
             shown(taken)
         )));
     }
@@ -73,10 +73,9 @@ pub(crate) fn new(
     let name = shown(name);
     writeln!(
         streams.out,
-        "wrote {name}.clebsch, the model, and {name}.toml, its numbers; edit both, then\n\
-         \x20 clebsch check {name}.clebsch    what is wrong with them, if anything\n\
-         \x20 clebsch derive {name}.clebsch   the equations of motion\n\
-         \x20 clebsch run {name}.clebsch --out out/{name}"
+        "wrote {name}.clebsch, the model, and {name}.toml, its numbers; edit both, then\n\x20 clebsch check {name}.clebsch    \
+         finds errors in them\n\x20 clebsch derive {name}.clebsch   prints the equations of motion\n\x20 clebsch run \
+         {name}.clebsch --out out/{name}"
     )?;
     Ok(())
 }
@@ -100,7 +99,7 @@ fn camel(name: &str) -> Result<String, Failure> {
         && out.starts_with(|c: char| c.is_ascii_alphabetic());
     if !fits {
         return Err(Failure::Usage(format!(
-            "`{}` cannot name a model; use letters, digits and `-`, beginning with a letter, such as my-top",
+            "`{}` cannot be the name of a model; use letters, digits and `-`, starting with a letter, such as my-top",
             shown(name)
         )));
     }
@@ -115,8 +114,8 @@ fn admitted(declared: &str) -> Result<(), Failure> {
     };
     let why = errors.iter().next().map(|d| d.message.clone());
     Err(Failure::Usage(format!(
-        "{}; give the model another name, such as my-{}",
-        why.unwrap_or_else(|| format!("`{declared}` cannot name a model")),
+        "{}; choose another name for the model, such as my-{}",
+        why.unwrap_or_else(|| format!("`{declared}` cannot be the name of a model")),
         declared.to_lowercase()
     )))
 }

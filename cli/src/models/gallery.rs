@@ -113,7 +113,7 @@ pub(crate) fn no_case<'a>(
 ) -> Failure {
     let model = shown(model);
     Failure::Usage(match name {
-        None => format!("model `{model}` has no case of its own; give one: --case FILE.toml"),
+        None => format!("model `{model}` has no cases; give one with --case FILE.toml"),
         Some(name) => format!(
             "model `{model}` has no case `{}`{} (a case file ends in .toml)",
             shown(name),

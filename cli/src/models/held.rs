@@ -10,7 +10,8 @@ pub(crate) fn is_held(card: &Card) -> bool {
 }
 
 /// The remark at the head of a case if the model has constraints.
-pub(crate) const OF_HELD: &str = "The initial configuration must satisfy the constraints, and the initial velocities must be tangent to them.";
+pub(crate) const OF_HELD: &str = "Initial positions must satisfy the constraints, and initial velocities must be tangent to \
+    them.";
 
 /// Whether a model has constraints. A momentum must be tangent to them, so sample cases start at rest.
 pub(crate) fn has_holds(model: &Model) -> bool {

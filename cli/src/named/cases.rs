@@ -165,7 +165,7 @@ pub(crate) fn none_beside(model: &str) -> Failure {
     let (model, own) = (shown(model), own.to_string_lossy().into_owned());
     let own = shown(&own);
     Failure::Usage(format!(
-        "`{model}` has no case beside it; write one, `clebsch case {model} > {own}`, and edit its numbers. `--case sample` runs \
+        "`{model}` has no case file; create one with `clebsch case {model} > {own}` and edit its numbers. `--case sample` runs \
          placeholder values"
     ))
 }

@@ -87,7 +87,7 @@ fn sample(card: &Card, file: &str) -> Case {
     let mut case = Case {
         name: "sample".to_owned(),
         doc: format!(
-            "placeholder values; for a case of your own, edit the output of: clebsch case {file} > my.toml"
+            "placeholder values; for a case of your own, run `clebsch case {file} > my.toml` and edit it"
         ),
         h: 0.01,
         steps: 1000,

@@ -114,7 +114,7 @@ pub(crate) fn asked<'a, 'm>(
 ) -> Result<(Named<'a>, Option<&'m str>), Failure> {
     let argument = |key: &str| matches.get_one::<String>(key).map(String::as_str);
     let (name, case) = parts(argument("model").unwrap_or_default(), argument("case"))?;
-    Ok((named(gallery, name, "here a model is named")?, case))
+    Ok((named(gallery, name, "expected a model")?, case))
 }
 
 /// The model of a text, derived, with the placeholder case if that is the one to run.
@@ -148,7 +148,7 @@ pub(crate) fn parts<'n>(
         Some((model, own)) if is_name(own) && !Path::new(name).exists() => match case {
             None => Ok((model, Some(own))),
             Some(_) => Err(Failure::Usage(format!(
-                "`{}` names a case, and --case names another one; give one of them",
+                "`{}` names a case, and --case names another; give one of them",
                 shown(name)
             ))),
         },
@@ -200,7 +200,7 @@ pub(crate) fn named<'a>(gallery: &'a Gallery, name: &str, but: &str) -> Result<N
     }
     if !path.exists() {
         return Err(Failure::Usage(format!(
-            "there is no model file `{}`; `clebsch new NAME` writes one to start from",
+            "model file `{}` does not exist; `clebsch new NAME` creates a model to start from",
             shown(name)
         )));
     }
@@ -245,8 +245,7 @@ fn is_a_case(gallery: &Gallery, name: &str, but: &str) -> Failure {
     };
     let name = shown(name);
     Failure::Usage(format!(
-        "`{name}` is a case file, with the numbers of a case, and {but}\n\
-         \x20 to run it:              clebsch run {model} --case {name}\n\
-         \x20 the model's equations: clebsch derive {model}"
+        "`{name}` is a case file and contains only numbers, and {but}\n\x20 to run it:              clebsch run {model} --case \
+         {name}\n\x20 the model's equations: clebsch derive {model}"
     ))
 }

@@ -57,7 +57,7 @@ impl Staging {
     pub fn new(target: &Path, force: bool, known: &[&'static str]) -> Result<Self, Failure> {
         if target.file_name().is_none() {
             return Err(Failure::Usage(format!(
-                "--out {}: this names no new folder",
+                "--out {}: this does not name a folder",
                 shown(target)
             )));
         }
@@ -204,7 +204,7 @@ impl Staging {
         if let Err(error) = place(&self.hidden, &self.target) {
             let mut why = match taken(&error) {
                 true => {
-                    "this was made by someone else during the run, and is left as it is".to_owned()
+                    "another program created it during the run, so it is left unchanged".to_owned()
                 }
                 false => format!("cannot put the results there: {error}"),
             };
@@ -218,8 +218,8 @@ impl Staging {
         };
         standing.remove(&aside).map_err(|error| {
             Failure::Failed(format!(
-                "--out {target}: the results are there; what stood there before cannot be removed \
-                 whole ({error}), the rest is in {}",
+                "--out {target}: the results are written; the earlier contents cannot be removed completely ({error}), the \
+                 rest is in {}",
                 shown(&aside)
             ))
         })
@@ -251,7 +251,7 @@ impl Staging {
         let Some(standing) = &self.standing else {
             return Ok(None);
         };
-        let why = |error: io::Error| format!("cannot move what stands there aside: {error}");
+        let why = |error: io::Error| format!("cannot move the earlier contents: {error}");
         let aside = self.fresh("replaced").map_err(why)?;
         if let Err(error) = rename(&self.target, &aside) {
             // The folder is empty and was made here, so it does not matter if it cannot be removed.
@@ -267,7 +267,7 @@ impl Staging {
             // An empty folder contains no results: another run has just made it to take the name.
             _ if fs::remove_dir(&aside).is_ok() => Ok(None),
             _ => Err(format!(
-                "what stands there changed during the run, and is not replaced{}",
+                "its contents changed during the run, so it is not replaced{}",
                 self.give_back(&aside)
             )),
         }
@@ -282,7 +282,7 @@ impl Staging {
         }
         match place(aside, &self.target) {
             Ok(()) => String::new(),
-            Err(_) => format!("; what stood there before is in {}", self.beside(aside)),
+            Err(_) => format!("; the earlier contents are in {}", self.beside(aside)),
         }
     }
 

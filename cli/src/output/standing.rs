@@ -43,15 +43,15 @@ pub(super) fn at(target: &Path, force: bool, known: &[&str]) -> Result<Option<St
         }
     };
     if !found.is_dir() {
-        return Err(wrong("this exists and is no folder".to_owned()));
+        return Err(wrong("this exists and is not a folder".to_owned()));
     }
     if !force {
-        return Err(wrong("this exists; give --force to replace it".to_owned()));
+        return Err(wrong("this exists; replace it with --force".to_owned()));
     }
     match look(target, known) {
         Ok(Ok(standing)) => Ok(Some(standing)),
         Ok(Err(foreign)) => Err(wrong(format!(
-            "not replaced, as it holds `{}`, which no run wrote; remove it or name another folder",
+            "not replaced, because it contains `{}`, which no run wrote; remove that or choose another folder",
             shown(foreign)
         ))),
         Err(error) => Err(Failure::io(

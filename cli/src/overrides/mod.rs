@@ -62,7 +62,7 @@ pub(crate) fn apply(
     if let Some(time) = until(matches) {
         case.steps = steps_to(time, case.h).ok_or_else(|| {
             Failure::Usage(format!(
-                "--until {time}: steps of {} would be too many to count; give a larger --h",
+                "--until {time}: steps of {} would be too many; give a larger --h",
                 case.h
             ))
         })?;
@@ -154,7 +154,7 @@ fn read(
             Ok(each.into_iter().zip(numbers.iter().copied()).collect())
         }
         Some(each) => Err(format!(
-            "`{}` has {} components, and {} values are given",
+            "`{}` has {} components, but {} values are given",
             shown(name),
             each.len(),
             numbers.len()

@@ -157,18 +157,18 @@ fn place(name: &str, card: &Card, motion: &Motion) -> Result<Place, String> {
     }
     if let Some((at, own)) = found(field, card.initial, card) {
         if let Some(key) = at.iter().find_map(|at| motion.key_of(*at)) {
-            return Err(format!("the case gives {key} instead; set that"));
+            return Err(format!("the case gives {key} instead; set {key}"));
         }
         return Ok(Place::Initial(at, entries(&own, field, component)?));
     }
     if is_velocity(field, card) {
         return Err(format!(
-            "the case gives the momentum instead of `{field}`; give the velocity whole, by --set {field}=..., or in the case"
+            "the case gives the momentum instead of `{field}`; give the whole velocity, with --set {field}=..., or in the case"
         ));
     }
     if let Some(label) = label(name, card) {
         return Err(format!(
-            "`{name}` is the number of sites of `{label}` and is read from the case: write `{name} = ...` under [labels] there"
+            "`{name}` is the number of sites of `{label}`: set it in the case, as `{name} = ...` under [labels]"
         ));
     }
     let mut names: Vec<&str> = Vec::new();
@@ -252,12 +252,14 @@ fn entries(
     if matches!(field.kind, Kind::Rotation | Kind::UnitQuaternion) && is_key_of_rotation(component)
     {
         return Err(format!(
-            "the case does not give `{name}` by a table with `{component}`; write \
-             `--set '{name}={{axis=[0,1,0], angle=1}}'`, or this table in the case"
+            "in the case, `{name}` is not a table with `{component}`; write `--set '{name}={{axis=[0,1,0], angle=1}}'`, or \
+             this table in the case"
         ));
     }
     let outside = || match cols {
-        1 => format!("`{name}` has the components {name}.1 to {name}.{rows}, or x, y, z of three"),
+        1 => format!(
+            "`{name}` has the components {name}.1 to {name}.{rows}, or x, y, z if there are three"
+        ),
         _ => {
             format!("`{name}` has the entries {name}.11 to {name}.{rows}{cols}, row before column")
         }
@@ -287,7 +289,7 @@ fn entries(
     Ok(match field.kind {
         Kind::Rotation | Kind::RigidMotion => {
             return Err(format!(
-                "single entries of `{name}` cannot be varied: it would be no {} any more",
+                "you cannot vary single entries of `{name}`: it would no longer be {}",
                 if field.kind == Kind::Rotation {
                     "rotation"
                 } else {
@@ -300,7 +302,7 @@ fn entries(
         Kind::Skew if i != j => vec![(here, 1.0), (mirror, -1.0)],
         Kind::Skew | Kind::Diagonal => {
             return Err(format!(
-                "the entry {} of `{name}` is zero by its kind",
+                "the entry {} of `{name}` is zero for every such matrix",
                 component
             ));
         }

@@ -206,7 +206,7 @@ pub(super) fn said(bodies: &[Body], ties: &Ties) -> String {
             at => format!("; {}", at.join(", ")),
         };
         out.push(format!(
-            "Bodies are drawn by their axes, the first red, the second green, the third blue{at}."
+            "The axes of each body are drawn: the first red, the second green, the third blue{at}."
         ));
     }
     if !rows.is_empty() && rows.len() < bodies.len() {
@@ -216,7 +216,7 @@ pub(super) fn said(bodies: &[Body], ties: &Ties) -> String {
         };
         let names = listed(&rows);
         out.push(format!(
-            "{names} {have} no place in the model and {are} drawn beside the others."
+            "{names} {have} no position in the model and {are} drawn next to the others."
         ));
     }
     out.join(" ")

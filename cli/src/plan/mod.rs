@@ -256,7 +256,7 @@ impl Plan {
                     .then(|| undefined(card, self.choice.as_ref(), &self.case));
                 Failure::Failed(match undefined.flatten() {
                     Some(found) => format!(
-                        "cannot take the first step: {found}; change the initial values or parameters there"
+                        "cannot take the first step: {found}; change the initial values or parameters at that point"
                     ),
                     None => format!("cannot take the first step: {cause}"),
                 })
@@ -279,8 +279,8 @@ impl Plan {
         is_sample.then(|| {
             let model = shown(model);
             format!(
-                "; these are sample values: print them by `clebsch case {model} > my.toml`, change them there, and run \
-                 with `--case my.toml`"
+                "; these are sample values: save them with `clebsch case {model} > my.toml`, edit them, and run with `--case \
+                 my.toml`"
             )
         })
     }
@@ -387,7 +387,7 @@ fn case_of_size<'a>(
     match (asked, size) {
         (None, Some(n)) => entry.cases.iter().find(has).ok_or_else(|| {
             Failure::Usage(format!(
-                "--dim {n}: no case of that size; give one: --case FILE.toml"
+                "--dim {n}: the model has no case of that size; give one with --case FILE.toml"
             ))
         }),
         (Some(name), Some(n)) => match gallery::case(entry, asked)? {

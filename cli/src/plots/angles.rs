@@ -161,7 +161,7 @@ fn curves((field, columns): &Placed, shown: Window<'_>, meaning: Meaning) -> Vec
     let first = match meaning {
         Meaning::Nothing => return Vec::new(),
         Meaning::Sum => panel(
-            format!("{turning}; upright φ and ψ alone are not determined"),
+            format!("{turning}; at upright attitudes φ and ψ are undetermined"),
             vec![curve("φ + ψ", 0, sum)],
         ),
         Meaning::All => {

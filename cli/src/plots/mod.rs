@@ -142,7 +142,7 @@ pub(crate) fn invariants(run: &Finished<'_>, record: &Record) -> Plot {
     let group = reduce::group(record.times.len().saturating_sub(1));
     let caption = match group {
         1 => format!("{relative}drift at each sample"),
-        group => format!("{relative}drift, each point the largest of about {group} samples"),
+        group => format!("{relative}drift, maxima over bins of about {group} samples"),
     };
     let panel = Panel {
         caption,

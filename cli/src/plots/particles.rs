@@ -92,7 +92,7 @@ pub(crate) fn vorticity(run: &Finished<'_>, record: &Record) -> Plot {
             let (low, high) = most_of(all.collect());
             let each = shots.iter_mut().flat_map(|s| &mut s.cells);
             each.for_each(|(_, v)| *v = v.clamp(low, high));
-            let what = "vorticity (colours of 99 cells in 100)";
+            let what = "vorticity (colour scale clipped at the 99th percentile)";
             let places = stated.lattice.places().map(|q| q.name.text.as_str());
             let names = [what, "vorticity", places.unwrap_or_default()];
             titled(run, record, names, (&space, &shots, side))

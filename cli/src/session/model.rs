@@ -58,7 +58,7 @@ impl Model {
     /// # Errors
     /// Usage: the model is unknown, a file cannot be read, or the text does not derive.
     pub fn named(gallery: &Gallery, name: &str) -> Result<Self, Failure> {
-        match named(gallery, name, "here a model is named")? {
+        match named(gallery, name, "expected a model")? {
             Named::Text(text) if text.is_path => Self::read(text),
             // Shipped texts derive, and each run derives them for its case.
             Named::Text(text) => Ok(Self {

@@ -59,13 +59,14 @@ impl Request {
             plan.case.steps = steps_to(time, plan.case.h).ok_or_else(|| {
                 let h = plan.case.h;
                 Failure::Usage(format!(
-                    "until: steps of {h} to time {time} would be too many to count; give a larger h"
+                    "until: steps of {h} to time {time} would be too many; give a larger h"
                 ))
             })?;
         }
         if plan.case.steps == 0 {
             return Err(Failure::Usage(
-                "steps: the case has no number of steps; give steps=N or until=T".to_owned(),
+                "steps: the case does not give a number of steps; give steps=N or until=T"
+                    .to_owned(),
             ));
         }
         plan.every = self

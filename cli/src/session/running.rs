@@ -111,7 +111,8 @@ impl Running {
                 let width = card.observable_count() + card.invariant_count();
                 Rows::with_room(samples, width).map_err(|error| {
                     Failure::Failed(format!(
-                        "{samples} samples of {width} numbers do not fit into memory ({error}); sample fewer nodes by a larger `every`"
+                        "{samples} samples of {width} numbers do not fit into memory ({error}); record fewer nodes with a \
+                         larger `every`"
                     ))
                 })?
             }
@@ -287,7 +288,10 @@ impl Running {
         self.trajectory.words(&mut words);
         match words.all_put() {
             true => Ok(()),
-            false => Err("it does not fit the state of this model; it was written by another build of clebsch".to_owned()),
+            false => Err(
+                "it does not fit the state of this model: another build of clebsch wrote it"
+                    .to_owned(),
+            ),
         }
     }
 

@@ -32,8 +32,8 @@ pub(crate) fn stream(input: impl Read, name: &str) -> Result<String, Failure> {
     match u64::try_from(read) {
         Ok(read) if read <= MOST => Ok(text),
         _ => Err(Failure::Usage(format!(
-            "{name} is longer than 10 MB, the most that clebsch reads; models and cases take a few kilobytes, and arrays belong \
-             into a .npz file that the case names"
+            "{name} is larger than 10 MB, the limit of clebsch; models and cases take a few kilobytes, and arrays belong in a \
+             .npz file that the case names"
         ))),
     }
 }

@@ -89,8 +89,8 @@ impl Identity {
         }
         let mut pairs = own.lines().zip(found.lines());
         Some(match pairs.find(|(a, b)| a != b) {
-            Some((here, there)) => format!("it is of another run: {there} there, {here} here"),
-            None => "it is of another run, with other values".to_owned(),
+            Some((here, there)) => format!("it belongs to another run: {there} there, {here} here"),
+            None => "it belongs to another run, with other values".to_owned(),
         })
     }
 }
@@ -191,18 +191,18 @@ impl Checkpoint {
     /// Reads a checkpoint from bytes.
     pub(crate) fn of_bytes(bytes: &[u8], identity: &Identity) -> Result<Self, String> {
         let Some(rest) = bytes.strip_prefix(MAGIC.as_bytes()) else {
-            return Err("it is no checkpoint".to_owned());
+            return Err("it is not a checkpoint".to_owned());
         };
         let line = rest.iter().position(|byte| *byte == b'\n').unwrap_or(0);
         let (version, rest) = rest.split_at(line);
         let version = String::from_utf8_lossy(version);
         if version != VERSION {
             return Err(format!(
-                "its format has version {}, this program reads version {VERSION}",
+                "its format has version {}, but this program reads version {VERSION}",
                 version.escape_debug()
             ));
         }
-        let damaged = || "it is damaged: its checksum is not that of its contents".to_owned();
+        let damaged = || "it is damaged: its checksum does not match its contents".to_owned();
         let Some((contents, sum)) = bytes.split_last_chunk::<8>() else {
             return Err(damaged());
         };
@@ -213,7 +213,7 @@ impl Checkpoint {
             rest.get(1..rest.len().saturating_sub(8))
                 .unwrap_or_default(),
         );
-        let cut = "it is cut short";
+        let cut = "it is truncated";
         let text = rest.count().and_then(|n| rest.take(n)).ok_or(cut)?;
         if let Some(why) = identity.unlike(&String::from_utf8_lossy(text)) {
             return Err(why);
@@ -370,7 +370,7 @@ mod tests {
         let why = Checkpoint::of_bytes(&bytes, &identity("0.2"));
         assert_eq!(
             why,
-            Err("it is of another run: h = 0.1 there, h = 0.2 here".to_owned())
+            Err("it belongs to another run: h = 0.1 there, h = 0.2 here".to_owned())
         );
         let [one, other] = [0.0, 1.0].map(|last| {
             let mut list = vec![0.5; 1000];
@@ -387,7 +387,7 @@ mod tests {
         assert_eq!(
             why,
             Err(format!(
-                "its format has version 9, this program reads version {VERSION}"
+                "its format has version 9, but this program reads version {VERSION}"
             ))
         );
     }

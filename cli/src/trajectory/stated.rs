@@ -24,7 +24,7 @@ impl JudgedTrajectory {
     /// The trajectory `inner` of the planned run, with its steps judged.
     pub(crate) fn new(card: &Card, plan: &Plan, which: Which, inner: Box<dyn Trajectory>) -> Self {
         let judge = match which {
-            Which::None => Err("not asked for".to_owned()),
+            Which::None => Err("not requested".to_owned()),
             _ => judge(card, plan),
         };
         let verdict = Verdict {
@@ -56,11 +56,11 @@ fn judge(card: &Card, plan: &Plan) -> Result<Judge, String> {
         .order
         .filter(|order| card.preprocessed && *order > card.order);
     if let Some(order) = modified {
-        return Err(format!("a step of order {order} has modified moments"));
+        return Err(format!("a step of order {order} uses modified moments"));
     }
     let found = statement(card, plan.choice.as_ref(), &plan.case, card.observables);
     let (model, sizes, setup) =
-        found.ok_or_else(|| "the text of the model is not at hand".to_owned())?;
+        found.ok_or_else(|| "the text of the model is not available".to_owned())?;
     Judge::new(&model, &sizes, setup)
 }
 

@@ -58,7 +58,7 @@ impl StepLimit {
             false => SOUGHT,
         };
         let why = if numbers > most {
-            format!("the state has {numbers} numbers, more than {most}")
+            format!("the state has {numbers} numbers, and the search supports {most}")
         } else {
             let begun = Instant::now();
             let effort = Effort {
@@ -96,13 +96,13 @@ impl StepLimit {
         let short = |x: f64| plain(three_digits(x));
         match self {
             Self::Known(limit) if limit.step.is_finite() => Some(format!(
-                "fastest small motion about the start, at rest: frequency ω = {}; longest step 2/ω = {}, of which h is {}",
+                "fastest small motion about the initial configuration: ω = {}; stability limit 2/ω = {}; h is {} of it",
                 short(limit.frequency()),
                 short(limit.step),
                 short(h.abs() / limit.step),
             )),
             Self::NotSought(why) => Some(format!(
-                "longest step of small motions about the start: not computed, since {why}"
+                "stability limit of small motions: not computed, since {why}"
             )),
             Self::Cut(patience) => Some(format!(
                 "stability limit of the step size: not found within {} s; {OPTION} SECONDS searches longer",

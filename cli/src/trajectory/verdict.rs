@@ -221,8 +221,8 @@ pub fn lost(outcomes: &[Outcome], h: f64) -> Vec<String> {
         #[allow(clippy::cast_precision_loss)]
         let time = plain(node as f64 * h);
         Some(format!(
-            "the {} is lost from node {node} (time {time}) on: it changed by more than its terms at the start. The step is too \
-             long for the motion there; reduce h",
+            "the {} is not conserved from node {node} (time {time}) on: it changed by more than the size of its initial terms. \
+                The step is too large for this motion; reduce h",
             outcome.invariant.name
         ))
     });
@@ -244,7 +244,7 @@ pub fn zeros(outcomes: &[Outcome]) -> Vec<String> {
         let by: Vec<String> = by.iter().map(|name| format!("{name} = 0")).collect();
         let names = names.join(", ");
         format!(
-            "zero in every term with {}, so that nothing is tested: {names}",
+            "zero because {}, so these invariants are not tested: {names}",
             by.join(", ")
         )
     };
@@ -270,7 +270,10 @@ pub fn table(outcomes: &[Outcome], width: Option<usize>) -> String {
     let mut text = crate::words::columns::aligned(&rows, &[1, 2, 3, 4], width);
     let absolute: Vec<String> = outcomes.iter().filter_map(Outcome::absolute).collect();
     if !absolute.is_empty() {
-        let said = format!("absolute, as the scale is zero: {}", absolute.join(", "));
+        let said = format!(
+            "absolute, because the scale is zero: {}",
+            absolute.join(", ")
+        );
         text.push('\n');
         text.push_str(&paragraph(&said, width, 2));
     }

@@ -4,7 +4,7 @@
 pub(crate) fn way_of(compiled: bool) -> &'static str {
     match (compiled, cfg!(feature = "native")) {
         (true, _) => "compiled",
-        (false, true) => "from its text, as native code where a step runs often",
+        (false, true) => "from its text, with native code for frequent steps",
         (false, false) => "from its text, without native code",
     }
 }

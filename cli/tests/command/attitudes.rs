@@ -54,8 +54,8 @@ fn wrong_rotations_are_told_with_what_to_write() {
     for [wrong, said] in table(
         r#"
         [0.6, 0.7, 0, 0]                      | R0: the quaternion has norm 0.92195444572928
-        { axis = [0, 0, 0], angle = 1 }       | R0: axis: a direction has a length that is not zero
-        { axis = [0, 0, 1] }                  | R0: missing key `angle` beside `axis`
+        { axis = [0, 0, 0], angle = 1 }       | R0: axis: a direction must have a non-zero length
+        { axis = [0, 0, 1] }                  | R0: missing key `angle` in addition to `axis`
         { axis = [0, 0, 1], angel = 1 }       | R0: unknown key `angel`; did you mean `angle`?
         { euler = "zzx", angles = [0, 0, 0] } | R0: euler: expected three axes
         { from = [0, 0, 1], to = [0, 0, -1] } | R0: the directions are opposite

@@ -80,7 +80,7 @@ fn every_mistake_is_named_with_file_and_line() {
     // Key replaced, its new value, what the message says after the place.
     for [key, value, message] in table(
         r#"
-        model  | "other"                        | model: this case is for `other`, but `harmonic-rotor` is to run
+        model  | "other"                        | model: this case is for `other`, not for `harmonic-rotor`
         model  | 3                              | model: expected a string, found a value of type integer
         name   | []                             | name: expected a string, found a value of type array
         h      | -0.1                           | h: -0.1 is not positive; give a positive step size; to run backwards in time, reverse all initial momenta
@@ -88,7 +88,7 @@ fn every_mistake_is_named_with_file_and_line() {
         h      | nan                            | h: NaN is not a finite number
         h      | inf                            | h: inf is not a finite number
         h      | 1e999                          | h: inf is not a finite number
-        h      | "0.1*q"                        | h: "0.1*q": `q` has no value here; an expression may hold the step and the parameters that are one number: kappa
+        h      | "0.1*q"                        | h: "0.1*q": `q` has no value here; an expression may contain the step and parameters that are single numbers: kappa
         steps  | 0                              | steps: must be a whole number, at least 1, found 0
         steps  | -7                             | steps: must be a whole number, at least 1, found -7
         steps  | 10.5                           | steps: must be a whole number, at least 1, found 10.5
@@ -97,14 +97,14 @@ fn every_mistake_is_named_with_file_and_line() {
         z      | [1.0, 2.0]                     | parameters.z: expected a vector of 3 numbers [a, ..], found a vector of 2 numbers
         z      | 1.0                            | parameters.z: expected a vector of 3 numbers [a, ..], found one number
         z      | [1.0, nan, 0.0]                | parameters.z: NaN is not a finite number
-        z      | [1.0, "a", 0.0]                | parameters.z: "a": `a` has no value here; an expression may hold
+        z      | [1.0, "a", 0.0]                | parameters.z: "a": `a` has no value here; an expression may contain
         J      | [1.0, 1.0, 1.0]                | parameters.J: expected a symmetric 3x3 matrix [[..], ..], written in full, found a vector of 3
         J      | [[1, 0], [0, 1]]               | parameters.J: expected a symmetric 3x3 matrix [[..], ..], written in full, found a 2x2 matrix
         J      | [[1, 0, 0], [0, 1], [0, 0, 1]] | parameters.J: expected a symmetric 3x3 matrix [[..], ..], written in full, found an array that
         Lambda | [1.0, 0.0, 0.0]                | initial.Lambda: expected a 3x3 matrix [[..], [..], [..]], a unit quaternion [w, x, y, z], { axis =
         Lambda | [1.0, 1.0, 0.0, 0.0]           | initial.Lambda: the quaternion has norm 1.414
         Lambda | [1.00001, 0.0, 0.0, 0.0]       | initial.Lambda: the quaternion has norm 1.00001
-        energy | -1                             | bounds.energy: a bound is never negative, found -1
+        energy | -1                             | bounds.energy: a bound must not be negative, found -1
         energy | inf                            | bounds.energy: inf is not a finite number
 "#,
     ) {
@@ -294,10 +294,10 @@ fn an_inertia_that_no_body_has_is_refused_by_its_moments() {
     let gallery = Gallery::shipped();
     let folder = Folder::new("no-body");
     let text = on(&gallery, &["case", "free-body"]).out;
-    let of_inertia = ["moments of inertia obey I1 <= I2 + I3; 2.5 > 2.1"];
+    let of_inertia = ["moments of inertia must satisfy I1 <= I2 + I3; 2.5 > 2.1"];
     let of_moments = [
-        "of the two others, which no body can have",
-        "positive moments of inertia alone are not enough",
+        "of the other two, which is impossible for a body",
+        "positive moments of inertia are not enough",
     ];
     for (line, told) in [
         ("I = [2.5, 1.3, 0.8]", of_inertia.as_slice()),
@@ -333,7 +333,7 @@ fn a_kinetic_energy_that_is_not_positive_is_warned_of_at_the_start() {
     let (negative, json) = with("-1.5");
     for words in [
         "negative in 1 of 6",
-        "I = tr(J) Id - J, not J",
+        "this applies to I = tr(J) Id - J",
         "kinetic minus potential",
     ] {
         assert!(

@@ -148,8 +148,8 @@ fn a_model_without_other_methods_is_compared_with_itself() {
     let done = rotor("compare harmonic-rotor --steps 50");
     done.ended(0).says_nothing();
     done.prints([
-        "reference extrapolated: no equations of this model were written by hand",
-        "it measures the step, not the equations",
+        "reference extrapolated: this model has no hand-written equations",
+        "this tests the accuracy of the step, not the equations",
         "\ngenerated ",
         "\nextrapolated ",
     ]);
@@ -165,7 +165,7 @@ fn files_are_the_same_but_for_times() {
             .prints("comparison.csv, comparison.json, comparison.svg");
         folder
             .clebsch(&request)
-            .refuses("give --force to replace it");
+            .refuses("this exists; replace it with --force");
         ["comparison.csv", "comparison.svg"].map(|file| folder.bytes(&format!("{name}/{file}")))
     };
     assert!(read("one") == read("two"));

@@ -234,7 +234,7 @@ fn the_printed_sign_of_the_force_in_3_62_explodes() {
     let done =
         folder.clebsch("run @wrong.clebsch --case models/elastic/pseudo-rigid.toml --steps 30");
     assert_ne!(done.code, 0);
-    done.says("no step from node 8");
+    done.says("step from node 8");
 }
 
 /// Multipliers are observables, and constraints at both levels are invariants. The message for inconsistent
@@ -258,7 +258,7 @@ fn multipliers_and_constraints_are_seen() {
         (
             "x = [0.3,",
             "x = [0.4,",
-            "the initial configuration is off the constraint",
+            "the initial configuration violates the constraint",
         ),
         (
             "momentum = [0.0,",
@@ -285,7 +285,7 @@ fn a_sample_of_a_held_model_is_at_rest_and_says_so() {
     );
     let sample = folder.clebsch("case @ring.clebsch");
     sample.prints("\nmomentum = [0.0, 0.0]\n");
-    sample.prints("must satisfy them");
+    sample.prints("must satisfy the constraints");
     folder.write(
         "rod.clebsch",
         "model Rod { label i in 0..N step s; param m: Real at nodes; field q: Vec<3> at nodes;

@@ -7,7 +7,7 @@ fn list_shows_models_with_cases_and_one_line() {
     let done = rotor("list").succeeds();
     assert_eq!(
         done.out,
-        "model           family  cases         what it is\n\
+        "model           family  cases         description\n\
          harmonic-rotor  rigid   swing, quiet  Rotor on a fixed axis with a restoring torque.\n"
     );
     let json = rotor("list --json").json();
@@ -80,7 +80,7 @@ fn every_wrong_request_is_named() {
         $ --steps 99999999999999999999 | 2 | --steps & at most 18446744073709551615
         $ --order four      | 2 | 'four' & --order & whole number
         $ --order -4        | 2 | '-4' & --order & whole number
-        $ --solver newton   | 2 | --solver newton: this model has one solver only
+        $ --solver newton   | 2 | --solver newton: this model has only one solver
         $ --every 0         | 2 | --every & at least 1
         $ --h -0.1          | 2 | '-0.1' & --h & positive
         $ --h 0             | 2 | --h & positive

@@ -52,13 +52,13 @@ fn what_has_no_value_is_told_at_its_key() {
     let folder = Folder::new("expressions-wrong");
     for [from, to, said] in table(
         r#"
-        m1 = "1/k"           | m1 = "1/n"            | h: "m1/100": `m1` has no value here: m1 = "1/n", and `n` has no value; an expression may hold the step
-        m2 = "k*m1"          | m2 = "1/n"            | parameters.m2: "1/n": `n` has no value here; an expression may hold the step
-        m1 = "1/k"           | m1 = "m2/2"           | in a circle
-        m1 = "1/k"           | m1 = "1/0"            | m1 = "1/0" is no finite number
+        m1 = "1/k"           | m1 = "1/n"            | h: "m1/100": `m1` has no value here: m1 = "1/n", and `n` has no value; an expression may contain the step
+        m2 = "k*m1"          | m2 = "1/n"            | parameters.m2: "1/n": `n` has no value here; an expression may contain the step
+        m1 = "1/k"           | m1 = "m2/2"           | are circular definitions
+        m1 = "1/k"           | m1 = "1/0"            | m1 = "1/0" is not a finite number
         steps = "10*k"       | steps = "10.2*k"      | steps: must be a whole number, at least 1, found 20.4
         "k - 1"              | "k -"                 | initial.x: "k -":
-        energy = "1/k"       | energy = "-k"         | bounds.energy: a bound is never negative, found -2
+        energy = "1/k"       | energy = "-k"         | bounds.energy: a bound must not be negative, found -2
         a = [0, 0, "sin(0)"] | a = { csv = "a.csv" } | an array of a file is { npz =
 "#,
     ) {

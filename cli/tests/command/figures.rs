@@ -27,7 +27,7 @@ fn every_figure_is_drawn_once() {
     }
     folder
         .clebsch("figures --out @all")
-        .refuses("give --force to replace it");
+        .refuses("this exists; replace it with --force");
 }
 
 #[test]
@@ -35,7 +35,7 @@ fn figures_of_missing_models_are_left_out() {
     let folder = Folder::new("no_figures");
     let done = rotor(&format!("figures --out {}", folder.path("none")));
     done.ended(0).says_nothing();
-    let line = "2.5     left out: the gallery has no model `free-body`\n";
+    let line = "2.5     omitted: the gallery has no model `free-body`\n";
     done.prints(line);
 }
 

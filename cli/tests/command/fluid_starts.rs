@@ -142,7 +142,7 @@ fn a_lattice_that_cannot_fill_its_domain_evenly_is_refused_with_numbers_that_can
         };
         let done = of(257, "").exits(2);
         let said = format!(
-            "initial.X: 257 particles do not fill the domain evenly with lattice = \"{kind}\"; take "
+            "initial.X: 257 particles do not fill the domain evenly with lattice = \"{kind}\"; use "
         );
         let (_, rest) = done
             .err
@@ -150,7 +150,7 @@ fn a_lattice_that_cannot_fill_its_domain_evenly_is_refused_with_numbers_that_can
             .unwrap_or_else(|| panic!("{}", done.err));
         let (numbers, rest) = rest.split_once(" particles").expect("numbers");
         assert!(
-            rest.contains("lattice = \"random\", which takes any number"),
+            rest.contains("lattice = \"random\", which accepts any number"),
             "{rest}"
         );
         let numbers = numbers.replace(" or ", ", ");
@@ -206,13 +206,13 @@ fn what_has_no_value_is_told_with_what_to_write() {
     for [text, said] in table("
         slope(S, 3)   | slope(S, 3): the domain has two directions: write 1 or 2
         slope(S, 0)   | the domain has two directions
-        slope(S, x)   | the direction of a slope is a whole number, as in slope(S, 1)
-        slope(S)      | a slope is that of a mesh along a direction, as in slope(S, 1)
-        slope(2, 1)   | a slope is that of a mesh by its name
-        slope(S^2, 1) | 2*S*slope(S, 1) of S^2
-        slope(m, 1)   | `m` is no mesh of the model; slopes are those of meshes on a grid, of which the model has `H`, `S`
-        slope(Q, 1)   | `Q` is no mesh of the model
-        grad(S, 1)    | `grad` is no function of site data; there are sin
+        slope(S, x)   | the direction of a slope must be a whole number, as in slope(S, 1)
+        slope(S)      | `slope` takes a mesh and a direction, as in slope(S, 1)
+        slope(2, 1)   | `slope` takes the name of a mesh
+        slope(S^2, 1) | 2*S*slope(S, 1) for S^2
+        slope(m, 1)   | `m` is not a mesh of the model; slopes exist for meshes on a grid, of which the model has `H`, `S`
+        slope(Q, 1)   | `Q` is not a mesh of the model
+        grad(S, 1)    | `grad` is not a function of site data; there are sin
         Q             | `Q` has no value here
         w             | `w` has no value here
 ") {
@@ -227,7 +227,7 @@ fn what_has_no_value_is_told_with_what_to_write() {
         &of("1 + 0.2*exp", "1 + 0.2*S*exp"),
         &[
             "parameters.m: ",
-            "`S` is a mesh, whose values the parameters and the places X decide",
+            "`S` is a mesh, whose values depend on the parameters and the positions X",
             "velocity_X = [\"-slope(S, 2)\"",
         ],
     );
@@ -235,7 +235,7 @@ fn what_has_no_value_is_told_with_what_to_write() {
         &of("f = 1.5", "f = \"slope(S, 1)\""),
         &[
             "parameters.f: ",
-            "slope(S, 1) has no value here: slopes are those of meshes on the grid of a fluid",
+            "slope(S, 1) has no value here: use it for meshes on the grid of a fluid",
         ],
     );
     check(
@@ -245,16 +245,16 @@ fn what_has_no_value_is_told_with_what_to_write() {
         ),
         &[
             "initial.X: ",
-            "`S` depends on the places X, which are stated here",
+            "`S` depends on the positions X, which are given here",
         ],
     );
     check(
         &velocity("S").replace("alpha = \"0.1*c0\"\n", ""),
-        &["`S` is made of alpha: missing key `parameters.alpha`"],
+        &["`S` needs alpha: missing key `parameters.alpha`"],
     );
     check(
         &velocity("S").replace("\"0.1*c0\"", "-1.0"),
-        &["`S` has no value at these places: "],
+        &["`S` has no value at these positions: "],
     );
     // Another set of sites.
     let two = MODEL
@@ -271,7 +271,7 @@ fn what_has_no_value_is_told_with_what_to_write() {
     for (momentum, said) in [
         (
             "S",
-            "`S` has values at the particles `a`, and those of Y stand at `b`",
+            "`S` has values at the particles `a`, but those of Y belong to `b`",
         ),
         ("x", "`x` has no value here"),
     ] {

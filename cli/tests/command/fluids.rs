@@ -195,7 +195,7 @@ fn a_wrong_case_is_told_by_key_and_site() {
             (
                 "lattice = \"brick\"",
                 "lattice = \"bricks\"",
-                "no lattice is called \"bricks\"",
+                "the lattice \"bricks\" does not exist",
             ),
         ],
     );
@@ -205,7 +205,7 @@ fn a_wrong_case_is_told_by_key_and_site() {
             (
                 "m = { depth = \"1\" }",
                 "m = [1.0, 2.0]",
-                "parameters.m: a list has a value for each of the 400 sites, and this one has 2",
+                "parameters.m: a list needs one value for each of the 400 sites; this list has 2",
             ),
             (
                 "m = { depth = \"1\" }",
@@ -215,12 +215,12 @@ fn a_wrong_case_is_told_by_key_and_site() {
             (
                 "X = { lattice = \"brick\", jitter = 0.1, seed = 1 }",
                 "X = [\"0.5\", \"0.5\"]",
-                "at one place",
+                "at the same position",
             ),
             (
                 "jitter = 0.1",
                 "sweeps = 3",
-                "sweeps: lattice = \"brick\" has none",
+                "sweeps: lattice = \"brick\" has no such key",
             ),
             (
                 "X = { lattice = \"brick\", jitter = 0.1, seed = 1 }",
@@ -270,5 +270,5 @@ fn masses_are_depths_times_the_areas_of_cells() {
     clebsch(&format!(
         "run models/fluids/particle-mesh-1d.clebsch --case {wrong} --steps 1"
     ))
-    .refuses("share: Voronoi cells are those");
+    .refuses("share: Voronoi cells need particles");
 }

@@ -325,13 +325,13 @@ fn what_is_wrong_is_told_where_it_stands() {
         r#"
         npz = "gone.npz"                         | gone.npz: No such file
         npz = "."                                | cannot read
-        npz = "note.txt"                         | note.txt is no npz file
-        npz = "cut.npz"                          | cut.npz is no npz file
-        npz = "one.npy"                          | one.npy is a single array, as numpy.save writes it
+        npz = "note.txt"                         | note.txt is not an npz file
+        npz = "cut.npz"                          | cut.npz is not an npz file
+        npz = "one.npy"                          | one.npy is a single array, written by numpy.save
         npz = "none.npz"                         | none.npz has no arrays
-        npz = "damaged.npz"                      | damaged.npz is damaged: `q` does not read
-        npz = "data.npz", key = "records"        | data.npz is damaged: `records` does not read
-        npz = "compressed.npz"                   | write it by numpy.savez
+        npz = "damaged.npz"                      | damaged.npz is damaged: `q` cannot be read
+        npz = "data.npz", key = "records"        | data.npz is damaged: `records` cannot be read
+        npz = "compressed.npz"                   | write it with numpy.savez
         npz = "data.npz", key = "x"              | data.npz has no array `x`; known: q, p, single, whole, runs, turned, wide, short, infinite, complex, records
         npz = "data.npz", key = "run"            | data.npz has no array `run`; did you mean `runs`?
         npz = "data.npz", key = "complex"        | has entries of type `<c16`
@@ -341,8 +341,8 @@ fn what_is_wrong_is_told_where_it_stands() {
         npz = "data.npz", key = "infinite"       | data.npz is inf at site 1, which is not a finite number
         npz = "data.npz", simple = 1             | unknown key `simple`; did you mean `sample`?
         key = "q"                                | missing key `npz`
-        npz = 1                                  | npz: expected a text in quotes, found a value of type integer
-        npz = "data.npz", key = 1                | key: expected a text in quotes
+        npz = 1                                  | npz: expected a string in quotes, found a value of type integer
+        npz = "data.npz", key = 1                | key: expected a string in quotes
         npz = "data.npz", sample = 0.5           | sample: expected a whole number
         npz = "data.npz", sample = 0             | has no samples, its shape is (3,)
         npz = "data.npz", key = "runs", sample = 2 | has 2 samples, 0 to 1 or, counted from the end, -1 to -2; found 2
@@ -412,7 +412,7 @@ fn values_that_an_end_holds_are_told_where_they_stand() {
         ),
         (
             "u = [1.0, 2.0]\nmomentum_u = 0.0".to_owned(),
-            ":21: initial.u: a list has",
+            ":21: initial.u: a list needs",
         ),
         (
             "u = \"1/i\"\nmomentum_u = 0.0".to_owned(),
@@ -445,12 +445,12 @@ fn a_parameter_of_an_end_asks_which_ends_there_are() {
         folder.write("case.toml", &case);
         folder.clebsch("run @line.clebsch --case @case.toml")
     };
-    let ends = "(the first end: free, pinned; the last one: free, load; or \"periodic\")";
+    let ends = "(first end: free, pinned; last end: free, load; or \"periodic\")";
     for [extra, owner, example] in table(
         r#"
         F = 0.1   | `load`         | add [ends] with i = ["free", "load"]
         F_N = 0.1 | `load`         | i = ["free", "load"]
-        L = 3.0   | is of the ring | add [ends] with i = "periodic"
+        L = 3.0   | belongs to the ring | add [ends] with i = "periodic"
 "#,
     ) {
         let done = run(extra, "").exits(2);

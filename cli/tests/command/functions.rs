@@ -91,9 +91,9 @@ fn what_is_wrong_of_a_function_is_told_by_its_line() {
         [functions]\nb = "x"                     | missing key `functions.R`
         [functions]\nb = "x"\nR = "y"            | :6: functions.R: expected a list of 2 expressions
         [functions]\nb = "cos(x"\nR = ["x", "y"] | :5: functions.b: in this expression, at character 4: this `(` is not closed
-        [functions]\nb = "q"\nR = ["x", "y"]     | :5: functions.b: `q` is not known here
+        [functions]\nb = "q"\nR = ["x", "y"]     | :5: functions.b: `q` is unknown
         // What the derivation finds is told at the case as well, where the expression stands.
-        [functions]\nb = "x"\nR = ["sqrt(-1 - y^2)", "y"] | :6: functions.R: the base of a root is negative here for all values
+        [functions]\nb = "x"\nR = ["sqrt(-1 - y^2)", "y"] | :6: functions.R: the base of this root is negative for all values
         [functions]\nc = "x"\nR = ["x", "y"]     | :5: unknown key `functions.c`
 "#,
     ) {

@@ -8,7 +8,7 @@ fn a_run_with_steps_made_by_parts_says_that_it_is_not_symplectic() {
     clebsch(&long).fails("cannot take the first step");
     let halved = runs(&[&long[..], &["--halve"]].concat());
     halved.prints([
-        "made by parts: 20 steps of 20",
+        "subdivided steps: 20 steps of 20",
         "this run is not symplectic",
     ]);
     let object = clebsch(&[&long[..], &["--halve", "--json"]].concat()).json();
@@ -19,7 +19,7 @@ fn a_run_with_steps_made_by_parts_says_that_it_is_not_symplectic() {
     );
     assert_eq!(object["arguments"]["halve"], true);
     // If every step succeeds, there is no note.
-    clebsch("run free-body --steps 20 --halve").never_prints("made by parts");
+    clebsch("run free-body --steps 20 --halve").never_prints("subdivided");
 }
 
 /// A weak wall at det = 0, met at speed: half the step can be made, the whole way to the node of the step cannot.
@@ -43,6 +43,6 @@ fn a_step_that_no_parts_make_says_that_they_were_tried() {
     let done = folder
         .clebsch("run @soft.clebsch --case @fall.toml --halve")
         .exits(1);
-    let tried = "--halve has tried it by 2, 4, ... to 65536 steps of a part of its length";
+    let tried = "--halve tried 2, 4, ... up to 65536 substeps";
     done.says(tried);
 }

@@ -105,11 +105,11 @@ fn every_model_is_derived_and_runs_its_case() {
         // give.
         if text_of(&format!("lattices/{name}.clebsch")).contains("sum(") {
             done.ended(2);
-            done.says("off the constraint");
-            sample.prints("must satisfy them");
+            done.says("violates the constraint");
+            sample.prints("must satisfy the constraints");
             let done =
                 clebsch(&format!("run models/lattices/{name}.clebsch --case sample")).exits(2);
-            let way = "print them by `clebsch case ";
+            let way = "save them with `clebsch case ";
             done.says(way);
             continue;
         }
@@ -170,7 +170,7 @@ fn a_wrong_case_is_told_by_line_and_site() {
         (
             "q = \"log",
             "q = [1.0, 2.0] #",
-            ":22: initial.q: a list has a value for each of the 32 sites, and this one has 2",
+            ":22: initial.q: a list needs one value for each of the 32 sites; this list has 2",
         ),
         (
             "q = \"log",
@@ -251,8 +251,7 @@ fn lists_hold_what_is_given_at_an_end_too() {
     let moving = run("u = [0.0, 0.1, 0.2, 0.3]\nmomentum_u = [0.1, 0.2]");
     assert_eq!(by_list.out, moving.out);
     run("u = \"i/10\"\nmomentum_u = [0.0, 0.1, 0.2, 0.0]").succeeds();
-    run("u = [0.0, 0.1, 0.2]\nmomentum_u = 0.0")
-        .says("for each of the 4 sites, and this one has 3");
+    run("u = [0.0, 0.1, 0.2]\nmomentum_u = 0.0").says("for each of the 4 sites; this list has 3");
     // One that moves, none that does, and more than are taken.
     let one = |from: &str, to: &str, expected: &str| {
         let text = text_of("lattices/toda-chain.toml")
@@ -293,6 +292,6 @@ fn a_wrong_sum_is_told_in_the_model_where_a_case_is_given() {
     );
     folder
         .clebsch("run @m.clebsch --case @c.toml")
-        .refuses("stands within another one")
+        .refuses("contains another sum over sites")
         .says("m.clebsch:6:");
 }

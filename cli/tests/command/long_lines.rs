@@ -59,7 +59,7 @@ fn wrong_data_of_a_long_line_name_their_site() {
     let (code, err) = run("q = \"0.3*sin(2*pi*i/N)\"", "q = [1.0, 2.0]");
     assert_eq!(code, 2);
     assert!(
-        err.contains("for each of the 5000 sites, and this one has 2"),
+        err.contains("for each of the 5000 sites; this list has 2"),
         "{err}"
     );
     let (code, err) = run("i = \"periodic\"", "i = \"held\"");

@@ -17,10 +17,10 @@ fn printed(model: &str, case: &str) -> f64 {
         number.unwrap_or_else(|| panic!("{}{}", done.out, done.err))
     };
     let frequency = number(
-        "fastest small motion about the start, at rest: frequency ω = ",
+        "fastest small motion about the initial configuration: ω = ",
         "; ",
     );
-    let step = number("longest step 2/ω = ", ", of which h is ");
+    let step = number("stability limit 2/ω = ", "; h is ");
     assert!((frequency * step / 2.0 - 1.0).abs() < 0.01);
     step
 }
@@ -53,7 +53,7 @@ fn a_straight_rod_has_the_limit_of_its_coupled_modes() {
     below.ended(0);
     below.never_says("longest");
     above.ended(1);
-    above.says("1.15 times the longest one");
+    above.says("1.15 times the stability limit");
 }
 
 /// One top that hangs, in rotations and in unit quaternions, has the frequency of a pendulum.
@@ -105,7 +105,7 @@ fn a_wrong_sign_between_neighbours_is_warned_of() {
         for (text, warned) in [(&text, false), (&wrong, true)] {
             let model = folder.write("model.clebsch", text);
             let done = searched(&format!("run {model} --case {case} --steps 1 --h {h}"));
-            let said = done.err.contains("is there a sign wrong");
+            let said = done.err.contains("is the sign of the potential energy");
             assert_eq!(said, warned, "{h}: {}{}", done.out, done.err);
             assert_eq!(done.err.contains("elliptic"), warned, "{}", done.err);
         }
@@ -225,7 +225,7 @@ fn of_steps_of_another_kind_nothing_is_said() {
     };
     silent(of("middle", "h*(k/2)*((q + next(q))/2)^2", "5.0"));
     // The same spring at the node has the limit 2.
-    of("node", "h*(k/2)*q^2", "2.05").says("1.02 times the longest one");
+    of("node", "h*(k/2)*q^2", "2.05").says("1.02 times the stability limit");
     silent(of("node", "h*(k/2)*q^2", "0.5"));
 }
 
@@ -243,7 +243,7 @@ fn of_one_body_that_is_unstable_no_sign_is_doubted() {
     // bending, 0.002, is 2.6910; with half the other, which joins bending and twist, 2.7188 by numpy; 0.3 over that.
     long.says([
         "rate 2.719",
-        "do not resolve how the start is left; those up to 1.103e-1 do",
+        "do not resolve the growth; use at most 1.103e-1",
     ]);
     long.never_says("sign");
     let short = run("0.08");
@@ -260,7 +260,7 @@ fn of_a_step_that_is_far_too_long_the_limit_is_told() {
         ))
     };
     // From eight times to a million times too long.
-    let said = "times the longest one that keeps small motions about the start small, 1.2";
+    let said = "times the stability limit 1.2";
     for h in ["0.01", "1", "1000"] {
         run(h).says(said);
     }
@@ -270,7 +270,7 @@ fn of_a_step_that_is_far_too_long_the_limit_is_told() {
         "run models/lattices/circular-rod.clebsch --case models/lattices/circular-rod.toml --h 100",
     )
     .exits(1);
-    refused.says(["times the longest one", "cannot take the first step"]);
+    refused.says(["times the stability limit", "cannot take the first step"]);
     // The same numbers in JSON.
     let object = run("0.0005").json();
     let limit = &object["longest_step"];
@@ -313,7 +313,7 @@ fn chains_that_hang_have_the_limits_of_laguerre() {
         below.ended(0);
         below.never_says("longest");
         above.ended(1);
-        above.says(["1.02 times the longest one", "no step from node"]);
+        above.says(["1.02 times the stability limit", "step from node"]);
     }
 }
 
@@ -401,10 +401,10 @@ fn where_nothing_is_known_of_a_held_line_the_reason_is_said() {
         let all = all.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(all.contains(words), "{all}");
     };
-    let not = "longest step of small motions about the start: not computed, since ";
+    let not = "stability limit of small motions: not computed, since ";
     said(
         of("loose", "1.0", ""),
-        &format!("{not}at rest nothing resists"),
+        &format!("{not}the stiffness at the initial configuration is zero"),
     );
     said(
         of("negative", "(-1.0)", "- dot(x, x)"),
@@ -412,7 +412,7 @@ fn where_nothing_is_known_of_a_held_line_the_reason_is_said() {
     );
     said(
         of("middle", "1.0", "- 2*dot(X, X)"),
-        &format!("{not}the step does not move the fastest one"),
+        &format!("{not}the scheme does not treat the fastest mode"),
     );
 }
 

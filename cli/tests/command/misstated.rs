@@ -24,8 +24,9 @@ fn a_momentum_that_is_not_tangent_is_told_of_the_constraint_that_takes_it() {
         x = [0.0, -1.0]\ny = [1.0, 0.0]\nmomentum_x = [1.0, 0.0]\nmomentum_y = [0.5, 0.25]\n";
     let done = run(&folder, PENDULA, case);
     assert_ne!(done.code, 0);
-    let told = "q: the initial momentum is not tangent to the constraint `y_k·y_k = 1`: constraint forces take 5.000e-1 \
-        of its size 1.559e0, with the multiplier 0.25 for this constraint; subtract the multiplier times the gradient";
+    let told = "q: the initial momentum is not tangent to the constraint `y_k·y_k = 1`: projecting it onto the constraints \
+        removes 5.000e-1 of its size 1.559e0, with the multiplier 0.25 for this constraint; subtract the multiplier times the \
+        gradient";
     done.says(told);
     // Without that part it runs.
     let done = run(
@@ -43,7 +44,7 @@ fn what_overflows_is_told_from_what_has_no_value() {
     let case = "model = \"spring\"\nname = \"own\"\nh = 5.0\nsteps = 400\n[parameters]\nm = 1.0\nk = 1.0\n[initial]\nx = 1.0\nmomentum = 0.0\n";
     let done = run(&folder, model, case);
     assert_ne!(done.code, 0);
-    let why = "the invariant `energy` is inf: it is larger than any number of double precision, 1.8e308; reduce the step size";
+    let why = "the invariant `energy` is inf: it exceeds the largest double, 1.8e308; reduce the step size";
     done.says(why);
 }
 
@@ -103,7 +104,7 @@ fn words_of_other_languages_in_a_case_are_answered() {
 /// The message of a model begins with what is wrong, on its first line.
 #[test]
 fn rates_and_degrees_in_a_model_are_answered() {
-    let rate = "writes a rate of change as a difference over the step: `(next(x) - x)/h`";
+    let rate = "write a rate of change as a difference over the step: `(next(x) - x)/h`";
     for (lagrangian, said) in [
         ("m*h*(d/dt x)^2/2", rate),
         ("m*h*dt(x)^2/2", rate),
@@ -201,7 +202,7 @@ fn slips_of_a_new_user_are_answered_by_what_to_write() {
         check two.clebsch --case sample        | first step: solved
         run toda-chain --set N=100             | `N` is the number of sites of `i`
         run free-body --set Lambda.angle=1     | `--set 'Lambda={axis=[0,1,0], angle=1}'`
-        run free-body --set I=[0.2,0.2,0.55]   | moments of inertia obey I3 <= I1 + I2; 0.55 > 0.4
+        run free-body --set I=[0.2,0.2,0.55]   | moments of inertia must satisfy I3 <= I1 + I2; 0.55 > 0.4
 ",
     ) {
         let found = said(words);

@@ -142,7 +142,7 @@ fn a_file_without_a_model_that_runs_is_told_as_derive_tells_it() {
         let derived = on(&gallery, &["derive", missing]);
         let done = on(&gallery, &["run", missing]);
         assert_eq!((done.code, &done.err), (2, &derived.err));
-        done.says("there is no model file");
+        done.says("does not exist; `clebsch new");
     }
 }
 
@@ -190,8 +190,7 @@ fn a_comparison_of_a_file_says_what_it_measures_against() {
         ],
     )
     .succeeds();
-    let said =
-        "no equations of this model were written by hand; the interpreted stepper with steps";
+    let said = "this model has no hand-written equations; the interpreted stepper with steps";
     done.prints(said);
     done.prints("\ninterpreted ");
     let read = |name: &str| std::fs::read_to_string(format!("{out}/{name}")).expect(name);

@@ -28,8 +28,8 @@ fn a_start_of_ten_to_twelve_digits_is_moved_onto_its_constraint() {
     ] {
         pendulum(x)
             .succeeds()
-            .prints("initial configuration moved onto its constraints, by ")
-            .prints(format!("`λ` was off by {off}"));
+            .prints("the initial configuration was moved onto its constraints, by at most ")
+            .prints(format!("`λ` was violated by {off}"));
     }
 }
 

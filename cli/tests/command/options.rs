@@ -35,7 +35,7 @@ fn quantities_are_set_by_name_and_component() {
     for [set, words] in table(
         "
         X=1   | `X` has 3 numbers; name one, such as X.1
-        X=1,2 | `X` has 3 components, and 2 values are given
+        X=1,2 | `X` has 3 components, but 2 values are given
         k=1,2 | `k` takes one number
         q=1   | `kepler` has no such parameter or initial value; it has m, k, X, momentum
         k=two | `two` is not a number: `two` has no value here
@@ -62,7 +62,7 @@ fn a_velocity_takes_the_place_of_a_momentum() {
     }
     for [arguments, words] in table(
         "
-        run kepler --set velocity.y=1       | give the velocity whole, by --set velocity=...
+        run kepler --set velocity.y=1       | give the whole velocity, with --set velocity=...
         run kepler --set velocity=1,2       | has 3 numbers
         run kepler --set angular_velocity=1 | no such parameter or initial value
 ",
@@ -230,7 +230,8 @@ fn invariants_are_looked_at_where_it_was_asked() {
     };
     // The energy swings: the last node is not its farthest.
     assert!(run("1") > run("1000"));
-    clebsch("run kepler --steps 100 --every 10").prints("drifts: at one node in 10 and the last");
+    clebsch("run kepler --steps 100 --every 10")
+        .prints("drifts: sampled at every 10 nodes and at the last");
 }
 
 #[test]
@@ -277,7 +278,7 @@ fn an_energy_that_is_lost_is_told_with_its_node() {
     folder.write("fall.toml", case("[1, 0, 0]", "[0, 0, 0]"));
     folder
         .clebsch("run @two-body.clebsch --case @fall.toml")
-        .says("warning: the energy is lost from node 79 (time 0.79) on");
+        .says("warning: the energy is not conserved from node 79 (time 0.79) on");
     let json = folder.clebsch("run @two-body.clebsch --case @fall.toml --json");
     let json = json.json();
     assert_eq!(json["results"]["invariants"][0]["lost_at"], 79);

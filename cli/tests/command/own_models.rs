@@ -59,7 +59,7 @@ fn a_new_model_has_a_name_that_models_can_have() {
     let folder = Folder::new("own-models-names");
     for name in ["Some", "Vec", "Self", "none", "result", "T"] {
         let path = folder.path(name);
-        clebsch(&format!("new {path}")).refuses("give the model another name, such as my-");
+        clebsch(&format!("new {path}")).refuses("choose another name for the model, such as my-");
     }
     assert!(folder.names().is_empty(), "{:?}", folder.names());
     for name in ["String", "my-some", "h", "f64", "model", "super"] {

@@ -49,7 +49,7 @@ fn columns_are_drawn_against_time_and_each_other() {
     for [arguments, words] in table(
         "
         --y Y            | the run has no column `Y`
-        --y X.4          | `X.4` names no single column of `X`; give a component, X.1 to X.3
+        --y X.4          | `X.4` does not name one column of `X`; give a component, X.1 to X.3
         --y X --from 1e9 | the run has times 0 to
 ",
     ) {

@@ -48,7 +48,7 @@ fn no_model_exceeds_a_bound_from_rest_or_without_forces() {
             done.never_prints("NaN");
             // A free body at rest has nothing that has a size.
             if name == "free-body" && rest {
-                let words = "absolute, as the scale is zero: ";
+                let words = "absolute, because the scale is zero: ";
                 done.prints(words);
             }
         }
@@ -64,7 +64,7 @@ fn absolute_drifts_are_said_and_judged() {
     let file = folder.write("rest.toml", &rest);
     let run = ["run", "harmonic-rotor", "--case", &file, "--steps", "20"];
     let done = rotor(&run).succeeds();
-    let words = "\nabsolute, as the scale is zero: energy\n";
+    let words = "\nabsolute, because the scale is zero: energy\n";
     done.prints(words);
     let json = rotor(&[&run[..], &["--json"]].concat()).json();
     let energy = &json["results"]["invariants"][0];
@@ -98,7 +98,7 @@ fn what_is_zero_by_a_parameter_is_told_and_not_praised() {
         let done = rotor(&run).succeeds();
         done.out
     };
-    let told = "zero in every term with g = 0, so that nothing is tested: ";
+    let told = "zero because g = 0, so these invariants are not tested: ";
     let falling = run("[0.0, 0.0, -1.0]");
     assert!(!falling.contains(told), "{falling}");
     let free = run("[0.0, 0.0, 0.0]");
@@ -112,7 +112,7 @@ fn what_is_zero_by_a_parameter_is_told_and_not_praised() {
     );
     let read = |name: &str| std::fs::read_to_string(format!("{out}/{name}")).expect("is written");
     assert!(read("invariants.svg").contains("zero with g = 0"));
-    assert!(read("run.html").contains("<p>Zero in every term with g = 0"));
+    assert!(read("run.html").contains("<p>Zero because g = 0"));
     let json: serde_json::Value = serde_json::from_str(&read("run.json")).expect("JSON");
     let all = json["results"]["invariants"].as_array().expect("a list");
     let own = all.iter().find(|own| own["name"] == "momentum_across_g");

@@ -94,7 +94,10 @@ fn a_left_bound_is_code_three_and_the_results_are_written() {
     let arguments = ["run", "harmonic-rotor", "--case", &file, "--out", &out];
     let again = rotor(&[&arguments[..], &["--resume"]].concat()).exits(3);
     assert!(again.out.starts_with("complete already: "), "{}", again.out);
-    assert_eq!(again.err, "clebsch: a bound was exceeded, see run.json\n");
+    assert_eq!(
+        again.err,
+        "clebsch: an invariant exceeded its bound, see run.json\n"
+    );
 }
 
 #[test]
@@ -105,7 +108,7 @@ fn an_existing_folder_is_kept_unless_forced() {
     let before = folder.bytes("out/trajectory.csv");
     let again = ["run", "harmonic-rotor", "--steps", "9", "--out", &out];
     let done = rotor(&again).exits(2);
-    done.says("this exists; give --force to replace it");
+    done.says("this exists; replace it with --force");
     assert_eq!(folder.bytes("out/trajectory.csv"), before);
     rotor(&[&again[..], &["--force"]].concat()).succeeds();
     let after = folder.read("out/trajectory.csv");
@@ -123,12 +126,12 @@ fn force_never_removes_what_no_run_wrote() {
     let done = folder
         .rotor("run harmonic-rotor --out @out --force")
         .exits(2);
-    done.says("it holds `thesis.tex`");
+    done.says("it contains `thesis.tex`");
     assert_eq!(names(&out), ["thesis.tex"]);
     folder.write("file", "a file");
     folder
         .rotor("run harmonic-rotor --out @file --force")
-        .refuses("this exists and is no folder");
+        .refuses("this exists and is not a folder");
 }
 
 #[test]
@@ -157,7 +160,7 @@ fn plots_are_plain_svg() {
                 "bound 1e-3",
                 "10⁻³",
                 "I(t) − I(0)",
-                "the largest of about 67 samples",
+                "maxima over bins of about 67 samples",
             ],
         ),
         ("advected.svg", &["Γ₁", "vertical seen from the body"]),

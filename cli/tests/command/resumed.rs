@@ -213,7 +213,7 @@ fn a_killed_run_is_not_begun_anew_by_mistake() {
     let folder = Folder::new("killed-not-lost");
     let out = folder.path("out");
     let child = long(&out, "checkpoint", "--checkpoint 0.01");
-    run(LONG, &out, "--resume").says("still going on");
+    run(LONG, &out, "--resume").says("another run is writing into this folder");
     ended_by("-KILL", child);
     let short = "heavy-top --steps 10";
     run(short, &out, "").refuses("--resume");
@@ -224,11 +224,11 @@ fn a_killed_run_is_not_begun_anew_by_mistake() {
     let before = contents(&out);
     run(short, &out, "--resume").ended(0);
     run("heavy-top --steps 11", &out, "--resume").refuses([
-        "this run is complete, with steps = 10; to go on from its end, start a new run",
+        "this run is complete, with steps = 10; to continue it, start a new run",
         "trajectory.npz\", sample = -1 }",
     ]);
     let other = run("heavy-top --steps 11 --h 0.003", &out, "--resume");
-    other.says("it holds another run, with another `h`");
+    other.says("it contains another run, with another `h`");
     assert!(before == contents(&out));
 }
 

@@ -23,7 +23,7 @@ fn folds(name: &str, model: &str, case: &str, share: &str) {
     let text = format!("model = \"{name}\"\nsteps = 1\n{case}");
     let case = folder.write(&format!("{name}.toml"), &text);
     let done = rotor(&format!("run {model} --case {case}")).exits(1);
-    let words = format!("the tangent becomes singular when {share}");
+    let words = format!("its tangent becomes singular at {share}");
     assert!(done.err.contains(&words), "{}", done.err);
 }
 

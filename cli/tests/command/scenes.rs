@@ -133,7 +133,7 @@ fn a_body_without_a_place_is_beside_the_others() {
     let scene = data(&page);
     assert!(places(&scene, "bodies", "A").iter().all(|p| *p == [0.0; 3]));
     assert!(page.contains("A about the origin"));
-    assert!(page.contains("B has no place in the model and is drawn beside the others."));
+    assert!(page.contains("B has no position in the model and is drawn next to the others."));
     let arm = scene["arm"].as_f64().expect("a length");
     let [b, x] = [("bodies", "B"), ("chains", "x")].map(|(kind, name)| places(&scene, kind, name));
     let apart = |p: &[f64], q: &[f64]| {

@@ -105,6 +105,6 @@ fn the_number_of_steps_may_be_an_option() {
     done.prints("5 steps, to time 0.05");
     let done = run(&folder, TOP, CASE, "").exits(2);
     let said =
-        "case.toml: missing key `steps`: the number of steps; or give --until T or --steps N";
+        "case.toml: missing key `steps`: give the number of steps, or --until T or --steps N";
     done.says(said);
 }

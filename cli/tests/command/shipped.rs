@@ -58,7 +58,7 @@ fn a_shipped_model_runs_by_its_name_as_by_its_file() {
     ] {
         clebsch(&format!("run {model}")).refuses(format!("did you mean `{case}`?"));
     }
-    clebsch("run kepler:circular --case eccentric").says("--case names another one");
+    clebsch("run kepler:circular --case eccentric").says("--case names another");
 }
 
 #[test]
@@ -109,7 +109,7 @@ fn a_new_model_runs_wherever_it_was_copied_from() {
         assert_eq!(fs::read_to_string(&model).expect("the model"), before);
     }
     for wrong in ["3x", "a b!", "ö", "-"] {
-        clebsch(&["new", &folder.path(wrong)]).refuses("cannot name a model");
+        clebsch(&["new", &folder.path(wrong)]).refuses("cannot be the name of a model");
     }
 }
 
@@ -138,7 +138,7 @@ fn input_without_end_is_refused() {
         &["derive", "/dev/zero"][..],
         &["run", "kepler", "--case", &long],
     ] {
-        clebsch(arguments).refuses("longer than 10 MB");
+        clebsch(arguments).refuses("larger than 10 MB");
     }
     with(
         &Gallery::shipped(),
@@ -146,7 +146,7 @@ fn input_without_end_is_refused() {
         &" ".repeat(10_000_001),
         None,
     )
-    .says("standard input is longer than 10 MB");
+    .says("standard input is larger than 10 MB");
 }
 
 #[test]

@@ -117,11 +117,11 @@ fn results_of_a_run_that_stopped_are_kept_beside_a_folder_made_meanwhile() {
     let done = run_while(event, &out, &["--case", &file]);
     kept_beside(&done, &folder.path("out-2"));
     assert!(
-        done.err.starts_with("clebsch: no step from node 9 "),
+        done.err.starts_with("clebsch: step from node 9 "),
         "{}",
         done.err
     );
-    let made = "made by someone else during the run";
+    let made = "another program created it during the run";
     done.says(made);
     assert_eq!(folder.names(), ["out", "out-2", "stiff.toml"]);
 }
@@ -138,7 +138,7 @@ fn a_folder_made_meanwhile_is_left_as_it_is() {
     };
     let done = run_while(event, &out, &[]);
     kept_beside(&done, &folder.path("out-2"));
-    done.says("made by someone else during the run");
+    done.says("another program created it during the run");
     assert_eq!(
         fs::read_to_string(&thesis).expect("the file"),
         "years of work"
@@ -274,7 +274,7 @@ fn a_folder_of_the_name_of_a_file_of_a_run_is_not_replaced() {
     fs::create_dir(format!("{out}/run.json")).expect("a folder");
     folder
         .rotor("run harmonic-rotor --out @out --force")
-        .refuses("it holds `run.json`");
+        .refuses("it contains `run.json`");
     assert!(Path::new(&out).join("run.json").is_dir());
 }
 

@@ -181,5 +181,5 @@ fn names_of_all_kinds_compile() {
     }
     folder
         .clebsch("derive @own.clebsch --standalone --format markdown")
-        .refuses("`--standalone` prints LaTeX, not markdown; leave `--format` out");
+        .refuses("`--standalone` prints LaTeX, not markdown; remove `--format`");
 }

@@ -73,7 +73,7 @@ fn the_steps_that_are_judged_are_those_asked_for() {
     assert_eq!(of("all")["judged"], 300);
     assert!(of("none").is_null());
     clebsch("run free-body --steps 10 --order 4")
-        .prints("action as stated: not judged: a step of order 4 has modified moments");
+        .prints("action as stated: not judged: a step of order 4 uses modified moments");
 }
 
 /// Each part of a composed step is judged with its own step size, for compiled bodies, for bodies read from a

@@ -30,7 +30,7 @@ fn json(text: &str) -> Value {
 
 /// The node at which the message says that the run stopped.
 fn node_of(message: &str) -> u64 {
-    let from = message.split("no step from node ").nth(1);
+    let from = message.split("step from node ").nth(1);
     let digits = from.and_then(|rest| rest.split(' ').next());
     digits
         .and_then(|n| n.parse().ok())
@@ -214,7 +214,7 @@ fn a_comparison_that_stops_leaves_what_it_computed() {
         ];
         let done = rotor(&[&arguments[..], &["--out", &out]].concat()).exits(1);
         let node = node_of(&done.err);
-        let said = format!("gave up at node {}: no step from node {node} ", node + 1);
+        let said = format!("failed at node {}: step from node {node} ", node + 1);
         let words = done.out.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(words.contains(&said), "{}", done.out);
         assert!(words.contains("written to "), "{}", done.out);

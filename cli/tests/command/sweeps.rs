@@ -30,7 +30,7 @@ fn a_row_is_the_run_of_its_point() {
     let out = folder.path("sweep");
     let done = sweep(&out, &[]).exits(1);
     done.prints("15 points");
-    done.prints("10 complete, 0 stopped before their end, 5 refused");
+    done.prints("10 complete, 0 stopped early, 5 refused");
     // The step of 5 is the third value of the axis that varies first.
     done.says("the first refused point, 2: ");
     let values = column(&out, "gU.z");
@@ -153,7 +153,7 @@ fn parts_are_joined_to_the_table_of_the_whole() {
     // The order does not belong to the case, and the columns do not contain it.
     let text = folder.read("other/sweep.json");
     assert!(text.contains("\"order\": 4"), "{text}");
-    refused(&[a, b, c, &other], "of another sweep");
+    refused(&[a, b, c, &other], "belongs to another sweep");
     let csv = format!("{d}/sweep.csv");
     let text = fs::read_to_string(&csv).expect("there");
     let cut = text.trim_end().rsplit_once('\n').expect("lines").0;
@@ -173,7 +173,7 @@ fn wrong_axes_are_named() {
         ("gU.w=1", "components gU.1 to gU.3"),
         ("h=a", "`a` is not a number"),
         ("h=1:2", "three parts"),
-        ("h=1:2:0", "from 1 to"),
+        ("h=1:2:0", "give 1 to"),
         ("Lambda.11=1", "no rotation any more"),
         ("h=0:1:1000000", ""),
     ] {
@@ -220,7 +220,7 @@ fn a_sweep_none_of_whose_points_starts_fails_with_the_reason() {
     let out = folder.path("sweep");
     folder
         .clebsch("sweep heavy-top --vary h=5,6 --steps 3 --out @sweep")
-        .fails("no point could be started; the first refused point, 0: ");
+        .fails("no point started; the first refused point, 0: ");
     assert_eq!(column(&out, "status"), [2.0, 2.0]);
 }
 

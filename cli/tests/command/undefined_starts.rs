@@ -30,8 +30,8 @@ fn the_site_of_a_value_without_an_action_is_named() {
             );
             let err = refused(&format!("undefined-{count}-{site}"), FIELD, &case);
             let said = format!(
-                "cannot take the first step: at i = {site}, `exp(x)` is larger than any number: `x` is 800; change the initial \
-                 values or parameters there"
+                "cannot take the first step: at i = {site}, `exp(x)` exceeds the largest double: `x` is 800; change the \
+                 initial values or parameters at that point"
             );
             assert!(err.contains(&said), "{err}");
         }
@@ -59,8 +59,9 @@ fn a_link_without_length_is_named() {
             places.join(", ")
         );
         let err = refused(&format!("undefined-link-{count}"), model, &case);
-        let said =
-            format!("at i = {site}, the length of `next(x, i) - x` is 0 and has no derivative");
+        let said = format!(
+            "at i = {site}, the length of `next(x, i) - x` is 0, where it has no derivative"
+        );
         assert!(err.contains(&said), "{err}");
     }
 }
@@ -75,11 +76,11 @@ fn what_is_not_finite_is_named_without_sites_too() {
     for (x, said) in [
         (
             "[0, 0]",
-            "step: the length of `x` is 0 and has no derivative there",
+            "step: the length of `x` is 0, where it has no derivative",
         ),
         (
             "[800, 0]",
-            "step: `exp(x[1])` is larger than any number: `x[1]` is 800",
+            "step: `exp(x[1])` exceeds the largest double: `x[1]` is 800",
         ),
     ] {
         let case = format!(

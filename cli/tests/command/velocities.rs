@@ -98,11 +98,11 @@ fn angular_velocities_are_those_of_the_body_or_of_space() {
     done.prints(said);
     let done = of("angular_velocity = [0, 0.2, 5]\nbody_momentum = [0, 0, 1]");
     let said =
-        "top.toml:10: initial.angular_velocity: is given beside body_momentum: give one of them";
+        "top.toml:10: initial.angular_velocity: conflicts with body_momentum: give one of them";
     done.says(said);
     let done = of("omega = [0, 0.2, 5]");
     let said = "unknown key `omega` in [initial]; velocities are given by `angular_velocity` (in the axes of the body), \
-                `spatial_angular_velocity` (in those of space)";
+        `spatial_angular_velocity` (in space axes)";
     done.says(said);
 }
 
@@ -196,7 +196,7 @@ fn what_is_not_given_rests_and_has_the_momentum_of_coupled_velocities() {
     let folder = Folder::new("velocities-mixed");
     let mixed = format!("{case}momentum_b = 0.1\n");
     let done = run(&folder, model, &mixed, "").exits(2);
-    let said = "initial.velocity_a: the momentum depends on the velocity of `b` too";
+    let said = "initial.velocity_a: the momentum also depends on the velocity of `b`";
     done.says(said);
     // Where nothing couples them, one may be given by its velocity and another one by its momentum.
     let apart = model.replace("+ m2*l^2*cos(between)*da*db", "");
@@ -268,8 +268,8 @@ fn velocities_that_leave_a_constraint_are_refused() {
     }
     let folder = Folder::new("velocities-across");
     let done = run(&folder, model, &case("[0.4, 0.1, 0]"), "").exits(2);
-    let said = "case.toml:10: initial.velocity_x: the velocities leave the constraint `λ`: its left side less its right side changes \
-                at the rate 0.480000";
+    let said = "case.toml:10: initial.velocity_x: the velocities violate the constraint `λ`: its left side minus its right \
+        side changes at the rate 0.480000";
     done.says(said);
 }
 
@@ -347,7 +347,7 @@ fn a_sweep_keeps_velocities_and_varies_them() {
         assert!((p - v).abs() < 1e-3, "{p}");
     }
     let done = vary("momentum.2=1,3").exits(2);
-    let said = "the case gives velocity_x instead; set that";
+    let said = "the case gives velocity_x instead; set velocity_x";
     done.says(said);
 }
 
@@ -382,7 +382,7 @@ fn a_velocity_that_no_momentum_knows_is_refused() {
             "model = \"{name}\"\nh = 0.01\nsteps = 5\n[parameters]\nm = 2\n[initial]\n{start}\n"
         );
         let done = run(&folder, model, &case, "").exits(2);
-        let said = format!("{key}: no momentum depends on this velocity, so it would be lost");
+        let said = format!("{key}: no momentum depends on this velocity");
         let example = "as in `m*(next(x) - x)^2/(2*h)`";
         done.says(&said).says(example);
     }

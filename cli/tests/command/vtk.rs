@@ -320,7 +320,7 @@ fn what_is_not_seen_is_refused_before_it_runs() {
             "run @number.clebsch --case sample --vtk --out {}",
             folder.path("out")
         ))
-        .refuses("nothing that is seen");
+        .refuses("has nothing to show");
     assert!(!Path::new(&folder.path("out")).exists());
     // Without a folder there is nowhere to write to.
     rotor("run harmonic-rotor --vtk").ended(2);

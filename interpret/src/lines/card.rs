@@ -175,8 +175,10 @@ impl Carded {
         for (name, rows, reason) in others {
             if kept.iter().all(|i| i.name != name) {
                 let formula = match of_holds(name) {
-                    true if of_sums => format!("the length of a sum over all sites; {reason}"),
-                    true => format!("the root of the sum of squares over all sites; {reason}"),
+                    true if of_sums => format!("the norm of a sum over all sites; {reason}"),
+                    true => {
+                        format!("the square root of the sum of squares over all sites; {reason}")
+                    }
                     false => format!("a sum over all sites; {reason}"),
                 };
                 kept.push(Invariant::exact(text(name), text(&formula), rows));

@@ -62,14 +62,14 @@ impl From<LineError> for Unstarted {
 impl fmt::Display for Unstarted {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Missing(quantity) => write!(f, "`{quantity}` is not given"),
+            Self::Missing(quantity) => write!(f, "`{quantity}` is missing"),
             Self::Components {
                 quantity,
                 components,
                 found,
             } => write!(
                 f,
-                "`{quantity}` takes {components} numbers for each value, and {found} are given"
+                "`{quantity}` takes {components} numbers for each value, found {found}"
             ),
             Self::Line(e) => write!(f, "{e}"),
         }
@@ -202,9 +202,9 @@ impl LineModel {
             let (multiplier, is_rate) = held(line, f)?;
             let reason = match is_rate {
                 true => format!(
-                    "the rate of change of what {multiplier} holds vanishes: the momentum is projected on arrival"
+                    "the rate of change of the constraint of {multiplier} vanishes: the momentum is projected at every node"
                 ),
-                false => format!("held by the multiplier {multiplier}"),
+                false => format!("enforced by the multiplier {multiplier}"),
             };
             Some((ascii(f), 1, reason))
         });

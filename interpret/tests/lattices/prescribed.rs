@@ -315,8 +315,8 @@ fn what_a_field_carries_goes_on_beside_an_end_that_holds_it() {
 #[test]
 fn lines_that_loops_do_not_take_are_refused_with_the_reason() {
     for (beside, why) in [
-        (Beside::Clock, "goes on with the step by itself"),
-        (Beside::Carried, "is carried from its value at the start"),
+        (Beside::Clock, "advances with the step by itself"),
+        (Beside::Carried, "has a constraint but no definition"),
     ] {
         for ends in [["free", "free"], ["pinned", "free"], ["free", "pinned"]] {
             let source = beside.model();

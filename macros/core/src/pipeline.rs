@@ -176,8 +176,10 @@ fn invocation(tokens: TokenStream) -> Result<TokenStream, Errors> {
             continue;
         }
         if found.replace(group.stream()).is_some() {
-            let second =
-                Diagnostic::new(Place::token(name.span()), "the file holds several models");
+            let second = Diagnostic::new(
+                Place::token(name.span()),
+                "the file contains several models",
+            );
             return Err(second.help("put each model into a file of its own").into());
         }
     }

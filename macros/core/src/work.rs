@@ -129,14 +129,14 @@ pub(crate) fn excess() -> Option<String> {
     let asked = ASKED.get();
     match (exhausted(), cut_short()) {
         (true, _) if asked > 0 => Some(format!(
-            "an expression of its derivation has {asked} nodes, and at most {LARGEST} are taken"
+            "an expression of its derivation has {asked} nodes, and the limit is {LARGEST}"
         )),
         (true, _) => Some(format!(
-            "its derivation makes more than {} nodes of expressions, the most that is given",
+            "its derivation makes more than {} nodes of expressions, which is the limit",
             nodes()
         )),
         (_, true) => Some(format!(
-            "its derivation takes more than {} products of numbers, the most that is given",
+            "its derivation needs more than {} products of numbers, which is the limit",
             products()
         )),
         _ => None,

@@ -44,11 +44,10 @@ pub enum NotARigidMotion {
 impl fmt::Display for NotARigidMotion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Rotation(why) => write!(f, "no rigid motion: upper left block: {why}"),
+            Self::Rotation(why) => write!(f, "not a rigid motion: upper left block: {why}"),
             Self::LastRow { defect } => write!(
                 f,
-                "no rigid motion: the last row is not (0, ..., 0, 1) or the last column is not finite, \
-                 off by {defect:.3e}"
+                "not a rigid motion: the last row is not (0, ..., 0, 1) or the last column is not finite, off by {defect:.3e}"
             ),
         }
     }

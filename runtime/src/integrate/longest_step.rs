@@ -267,16 +267,16 @@ impl LongestStep {
         let h = h.abs();
         if self.is_elliptic() {
             return Some(format!(
-                "small motions about the start, at rest, grow, and fastest those that alternate between neighbours, with the \
-                 rate {:.3e}: is there a sign wrong in the potential energy, or in a term that joins neighbours? Where the label \
-                 is a coordinate the problem is elliptic then: the more sites the faster this grows, whatever the step",
+                "small motions about the initial configuration grow, fastest where they alternate between neighbours, with the \
+                 rate {:.3e}: is the sign of the potential energy or of a coupling of neighbours wrong? If the label is a \
+                 coordinate, the problem is elliptic, and the growth rate increases with the number of sites for any step",
                 self.growth
             ));
         }
         if h > self.step {
             return Some(format!(
-                "the step h = {h} is {:.2} times the longest one that keeps small motions about the start small, \
-                 {:.3e} (2/ω of the fastest): what is disturbed there grows in every step; take a shorter one",
+                "the step h = {h} is {:.2} times the stability limit {:.3e} of small motions about the initial configuration \
+                 (2/ω of the fastest mode): disturbances grow in every step; reduce h",
                 h / self.step,
                 self.step
             ));
@@ -288,20 +288,19 @@ impl LongestStep {
                 _ => format!("exp({:.3e})", h * self.growth),
             };
             let grow = format!(
-                "small motions about the start, at rest, grow with the rate {:.3e}, by a factor of {a_step} a step",
+                "small motions about the initial configuration grow with the rate {:.3e}, by a factor of {a_step} per step",
                 self.growth
             );
             // A body on its head and a rod that is pulled along its length are unstable by right; between neighbours
             // what grows so fast is mostly a wrong sign.
             return Some(match self.configurations {
                 1 => format!(
-                    "{grow}: where the motion is near it, steps of h = {h} do not resolve how the start is left; those \
-                     up to {:.3e} do",
+                    "{grow}: near that configuration, steps of h = {h} do not resolve the growth; use at most {:.3e}",
                     self.resolving()
                 ),
                 _ => format!(
-                    "{grow}: is there a sign wrong in the potential energy, or in a term that joins neighbours? Where \
-                     the start is so unstable, steps of h = {h} do not resolve how it is left; those up to {:.3e} do",
+                    "{grow}: is the sign of the potential energy or of a coupling of neighbours wrong? If the instability is \
+                     real, steps of h = {h} do not resolve the growth; use at most {:.3e}",
                     self.resolving()
                 ),
             });

@@ -50,10 +50,7 @@ impl fmt::Display for NotFinite {
         } = self;
         write!(f, "at node {node} (time {time}) ")?;
         if node.abs_diff(*since) > 1 {
-            write!(
-                f,
-                "or between it and node {since}, which was looked at before, "
-            )?;
+            write!(f, "or since the last checked node, {since}, ")?;
         }
         // Counted from 1, as in files and plots.
         match (self.index, self.columns) {
@@ -68,9 +65,9 @@ impl fmt::Display for NotFinite {
         }?;
         f.write_str(match value.is_nan() {
             true => {
-                ": the argument of a function left its domain, or a result is undefined, as 0/0 and inf - inf are; "
+                ": the argument of a function left its domain, or an operation is undefined, such as 0/0 or inf - inf; "
             }
-            false => ": it is larger than any number of double precision, 1.8e308; ",
+            false => ": it exceeds the largest double, 1.8e308; ",
         })?;
         // A shorter step changes nothing at the start.
         f.write_str(match node {

@@ -102,10 +102,10 @@ impl fmt::Display for LineError {
                 least,
             } if found < least => write!(
                 f,
-                "{count} = {found}, and this line with its ends takes at least {least}"
+                "{count} = {found}, but this chain with its ends needs at least {least}"
             ),
             Self::Count { count, found, .. } => {
-                write!(f, "{count} = {found} is more than memory holds")
+                write!(f, "{count} = {found} does not fit into memory")
             }
             Self::Length {
                 quantity,
@@ -114,7 +114,7 @@ impl fmt::Display for LineError {
                 sites,
             } => write!(
                 f,
-                "`{quantity}` is given at {found} sites, and there are {expected} {sites}: give one value for each"
+                "`{quantity}` has values at {found} sites, but there are {expected} {sites}: give one value for each"
             ),
             Self::Parameter(error) => write!(f, "{error}"),
             Self::Site { at, error } => write!(f, "at site {}: {error}", at.site),

@@ -54,17 +54,17 @@ impl fmt::Display for NoReaction {
         if self.share >= 1.0 {
             return write!(
                 f,
-                "the constraints are not independent there: their derivatives vanish, or one is a combination of others, \
-                 and the reactions are not determined; leave out a constraint that follows from others, or hold less at \
+                "the constraints are not independent there: their derivatives vanish, or one is a combination of others, so \
+                 the constraint forces are undetermined; remove a constraint that follows from others, or prescribe less at \
                  the ends"
             );
         }
         let percent = 100.0 * self.share;
         write!(
             f,
-            "no reactions hold the constraints at the end of the step: they could be followed for {percent:.1} percent of \
-             the way from the motion without any, beyond which the constraints are not independent or turn too fast to be \
-             followed; take a shorter step, or leave out a constraint that follows from others"
+            "no constraint forces enforce the constraints at the end of the step: continuation reached {percent:.1} percent of \
+             the way from the unconstrained motion, where the constraints become dependent or change too fast; reduce the \
+             step size, or remove a constraint that follows from others"
         )
     }
 }

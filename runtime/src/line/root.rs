@@ -56,10 +56,9 @@ impl fmt::Display for NoRoot {
         let percent = 100.0 * self.share;
         write!(
             f,
-            "the equation for the velocity has no solution that follows from rest: it could be followed for \
-             {percent:.1} percent of the way to the momentum, beyond which the derivative of the momentum by the \
-             velocity is singular or not finite, or turns too fast to be followed; take a shorter step, or check the \
-             parameters of kinetic terms"
+            "the equation of the step has no solution connected to h = 0: continuation reached {percent:.1} percent of the \
+             momentum, where the derivative by the velocity becomes singular, not finite, or changes too fast; reduce the \
+             step size, or check the parameters of kinetic terms"
         )
     }
 }

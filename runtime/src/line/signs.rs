@@ -61,8 +61,8 @@ pub fn closes<T: Real>(quantity: &'static str, list: &Attitudes<T>) -> Result<()
         true => Err(ParameterError {
             field: quantity,
             problem: Problem::SignAroundRing,
-            remedy: "state terms of neighbours so that the sign of one of them leaves them as they are, by products of two \
-                     components of im(q^T*next(q, i)), or give attitudes that make an even number of turns",
+            remedy: "make the coupling of neighbours even in each quaternion, with products of two components of \
+                im(q^T*next(q, i)), or give attitudes that make an even number of turns",
         }),
         false => Ok(()),
     }

@@ -69,17 +69,17 @@ impl MeshError {
 impl fmt::Display for MeshError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotFinite { site } => write!(f, "particle {site} is at no finite place"),
+            Self::NotFinite { site } => write!(f, "the position of particle {site} is not finite"),
             Self::TooFar { site, periods } => write!(
                 f,
-                "particle {site} is {periods:e} periods of the domain away, where rounding loses its place"
+                "particle {site} is {periods:e} periods of the domain away, where rounding makes its position meaningless"
             ),
             Self::Coincident { first, second } => {
-                write!(f, "particles {first} and {second} are at one place")
+                write!(f, "particles {first} and {second} are at the same position")
             }
             Self::Flat { sites: [a, b, c] } => write!(
                 f,
-                "particles {a}, {b} and {c} are so near and so nearly on a line that rounding decides their cells"
+                "particles {a}, {b} and {c} are so close and so nearly collinear that rounding decides their cells"
             ),
             Self::NotConverged {
                 iterations,
@@ -87,15 +87,15 @@ impl fmt::Display for MeshError {
                 tolerance,
             } => write!(
                 f,
-                "after {iterations} iterations a residual of {residual:e} is left, and {tolerance:e} is asked for"
+                "no convergence after {iterations} iterations: the residual is {residual:e}, needed {tolerance:e}"
             ),
             Self::Count { given, sites } => {
-                write!(f, "{given} values are given for {sites} sites")
+                write!(f, "found {given} values for {sites} sites")
             }
             Self::Outside { site, by } => {
                 write!(
                     f,
-                    "particle {site} is {by:e} beyond a wall, further than a reflection puts back"
+                    "particle {site} is {by:e} beyond a wall, too far for a reflection"
                 )
             }
         }

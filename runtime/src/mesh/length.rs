@@ -29,13 +29,13 @@ pub(super) fn check_length<T: Real, const D: usize>(
         let index = 0;
         return refused(
             Problem::NotFinite { index, value },
-            "give the length over which the depth is smoothed",
+            "give the smoothing length of the depth",
         );
     }
     if alpha.least() < 0.0 {
         return refused(
             Problem::AssumptionFails { text: "alpha >= 0" },
-            "give a length that is zero or positive, about twice the distance of particles or nodes",
+            "give a length that is zero or positive, about twice the distance between particles or nodes",
         );
     }
     if value > MOST * longest {
@@ -43,7 +43,7 @@ pub(super) fn check_length<T: Real, const D: usize>(
             Problem::AssumptionFails {
                 text: "alpha <= 100 L, with L the longest side of the domain",
             },
-            "a depth that is smoothed over more than the domain is its mean: take a shorter length",
+            "give a shorter length: smoothed over more than the domain, the depth is its mean",
         );
     }
     Ok(())

@@ -244,7 +244,7 @@ pub fn write(file: &mut (impl Write + Seek), rows: &dyn Rows, arrays: &[Array]) 
         })?;
         if written != array.size() {
             let message = format!(
-                "the array `{}` was made for {} bytes, and the rows have {written}: make it for as many samples",
+                "the array `{}` has space for {} bytes, but the rows have {written}: create it for as many samples",
                 array.name,
                 array.size()
             );

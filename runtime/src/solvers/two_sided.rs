@@ -19,9 +19,8 @@ impl fmt::Display for SingularFactor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "the velocity is not determined: {} is singular to working precision, so that the \
-             kinetic energy does not see every velocity; check the parameters in it, and how the \
-             motion got there",
+            "the velocity is not determined: {} is singular to working precision, so the kinetic energy does not depend on \
+             every velocity; check its parameters and the state",
             self.factor
         )
     }

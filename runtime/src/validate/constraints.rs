@@ -31,7 +31,7 @@ pub fn on_constraint<T: Real>(
             size,
             scale,
         },
-        remedy: "give a configuration that obeys it to ten digits, or the parameters for which this one does",
+        remedy: "give a configuration that satisfies it to ten digits, or adjust the parameters",
     })
 }
 
@@ -51,8 +51,8 @@ pub fn along_constraint<T: Real>(
         return Err(ParameterError {
             field,
             problem: Problem::DependentConstraints { equation },
-            remedy: "leave out constraints that follow from others, or start elsewhere; where none does, masses differ by so much that \
-                     what one constraint does is rounding beside another: take some nearer to one another, and give a mass that is zero a small positive value",
+            remedy: "remove constraints that follow from others, or start elsewhere; if all are independent, the masses differ \
+                too much for double precision: make them more similar, and replace zero masses by small positive values",
         });
     }
     let (taken, whole) = (taken.magnitude(), whole.magnitude());
@@ -69,7 +69,7 @@ pub fn along_constraint<T: Real>(
             whole,
         },
         remedy: "subtract the multiplier times the gradient of the left side minus the right side, or give the momentum of a \
-                 velocity that keeps the constraint",
+            velocity that satisfies the constraint",
     })
 }
 
@@ -84,6 +84,6 @@ pub fn has_inertia<T: Real>(field: &'static str, answer: T) -> Result<(), Parame
     Err(ParameterError {
         field,
         problem: Problem::NoInertia,
-        remedy: "give every site that moves a positive mass, and second moments that leave no direction without inertia",
+        remedy: "give every moving site a positive mass, and second moments with inertia in every direction",
     })
 }

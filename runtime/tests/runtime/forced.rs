@@ -259,9 +259,8 @@ fn a_point_mass_is_refused_with_the_reason_and_the_way_out() {
         let said = error.in_field("m a aᵀ").to_string();
         for words in [
             "`m a aᵀ`: the smallest moment of inertia is",
-            "all mass lies on a line, and momenta do not determine the spin about it",
-            "so that J has rank two or three: add to it the second moments of the mass about its \
-             own centre",
+            "all mass lies on a line, so momenta do not determine the spin about it",
+            "add to J the second moments of the mass about its own centre, so that J has rank two or three",
         ] {
             assert!(said.contains(words), "{words}\n{said}");
         }

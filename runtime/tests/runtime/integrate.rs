@@ -146,8 +146,7 @@ fn an_error_stops_the_run_at_its_node() {
     assert_eq!(notes.nodes, [0, 1, 2, 3, 4, 5, 6, 7]);
     assert_eq!(
         error.to_string(),
-        "no step from node 7 (state unchanged): `x` is NaN or infinite; reduce the step size or \
-         check the initial values"
+        "step from node 7 failed (state unchanged): `x` is NaN or infinite; reduce the step size or check the initial values"
     );
 }
 
@@ -313,7 +312,7 @@ fn a_number_that_is_none_stops_the_run_at_its_node() {
             (
                 Watched::Invariant,
                 8,
-                "at node 8 (time 4) or between it and node 4, which was looked at before, component 2 of the invariant `pair` is ",
+                "at node 8 (time 4) or since the last checked node, 4, component 2 of the invariant `pair` is ",
             ),
             (
                 Watched::Scale,
@@ -323,12 +322,13 @@ fn a_number_that_is_none_stops_the_run_at_its_node() {
             (
                 Watched::Scale,
                 8,
-                "at node 8 (time 4) or between it and node 4, which was looked at before, component 2 of the natural scale of the invariant `pair` is ",
+                "at node 8 (time 4) or since the last checked node, 4, component 2 of the natural scale of the invariant \
+                 `pair` is ",
             ),
             (
                 Watched::Observable,
                 4,
-                "at node 4 (time 2) or between it and node 0, which was looked at before, entry (2, 3) of `Λ` is ",
+                "at node 4 (time 2) or since the last checked node, 0, entry (2, 3) of `Λ` is ",
             ),
         ] {
             let mut trajectory = Failing {
@@ -349,7 +349,7 @@ fn a_number_that_is_none_stops_the_run_at_its_node() {
             );
             let why = match value.is_nan() {
                 true => "the argument of a function left its domain",
-                false => "it is larger than any number of double precision",
+                false => "it exceeds the largest double",
             };
             let words = format!("{words}{value}: {why}");
             assert!(error.to_string().starts_with(&words), "{error}");

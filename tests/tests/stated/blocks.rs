@@ -448,7 +448,7 @@ fn a_block_that_loses_its_inverse_says_so() {
             }
             assert!(
                 state.node() < 200,
-                "the motion meets det = 0 at about time 1"
+                "its determinant reaches 0 at about time 1"
             );
         };
         assert!(

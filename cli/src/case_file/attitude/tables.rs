@@ -39,7 +39,7 @@ pub(super) fn rotation(table: &DeTable<'_>, of: &Numbers<'_>) -> Result<Matrix3<
         }
         return Err(match self::keys().any(|key| key == asked) {
             true => format!(
-                "`{asked}` and `{}` state two rotations: give one of them",
+                "`{asked}` and `{}` give two rotations: give one of them",
                 keys.first().copied().unwrap_or_default()
             ),
             false => format!("unknown key `{asked}`{}", did_you_mean(asked, self::keys())),
@@ -47,7 +47,7 @@ pub(super) fn rotation(table: &DeTable<'_>, of: &Numbers<'_>) -> Result<Matrix3<
     }
     let get = |key: &str| {
         let value = table.get(key).map(|v| v.get_ref());
-        value.ok_or_else(|| format!("missing key `{key}` beside `{}`", other(keys, key)))
+        value.ok_or_else(|| format!("missing key `{key}` in addition to `{}`", other(keys, key)))
     };
     match keys {
         ["axis", _] => {
@@ -87,7 +87,7 @@ fn direction(key: &str, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Vector3
     let length = vector.norm();
     match length > 0.0 && length.is_finite() {
         true => Ok(vector / length),
-        false => Err(format!("{key}: a direction has a length that is not zero")),
+        false => Err(format!("{key}: a direction must have a non-zero length")),
     }
 }
 
@@ -113,7 +113,7 @@ fn euler(
     angles: &DeValue<'_>,
     of: &Numbers<'_>,
 ) -> Result<Matrix3<f64>, String> {
-    let wrong = "euler: expected three axes, no two neighbours alike, such as \"zxz\" or \"zyx\"";
+    let wrong = "euler: expected three axes, neighbours different, such as \"zxz\" or \"zyx\"";
     let letters = axes.as_str().ok_or(wrong)?.to_lowercase();
     let axes: Option<Vec<usize>> = letters.chars().map(|c| "xyz".find(c)).collect();
     let axes = axes.ok_or(wrong)?;
@@ -137,7 +137,7 @@ fn euler(
 fn between(from: Vector3<f64>, to: Vector3<f64>) -> Result<Matrix3<f64>, String> {
     if (from + to).norm() <= OPPOSITE {
         return Err(
-            "the directions are opposite, and half a turn about many axes takes one to the other: give { axis = [..], angle = \"pi\" }"
+            "the directions are opposite, so the rotation is not unique: give { axis = [..], angle = \"pi\" }"
                 .to_owned(),
         );
     }

@@ -109,7 +109,7 @@ impl Reader<'_> {
         }
         if list.len() != count {
             return Err(format!(
-                "a list has a value for each of the {count} sites, and this one has {}",
+                "a list needs one value for each of the {count} sites; this list has {}",
                 list.len()
             )
             .into());
@@ -121,11 +121,9 @@ impl Reader<'_> {
                 _ => vec![one],
             };
             if own.len() != size {
-                return Err(format!(
-                    "site {site} has {} numbers, where {size} are taken",
-                    own.len()
-                )
-                .into());
+                return Err(
+                    format!("site {site} has {} numbers, expected {size}", own.len()).into(),
+                );
             }
             for value in own {
                 out.push(self.at(q, value, site)?);

@@ -54,8 +54,7 @@ impl Reader<'_> {
             let mesh = self.mesh(&name).ok_or_else(|| self.is_none(&name))?;
             if !self.stands_on_grid(mesh) {
                 return Err(format!(
-                    "slope({name}, {along}): `{name}` has values at the particles and none between them; slopes are those of meshes \
-                     on a grid{}",
+                    "slope({name}, {along}): `{name}` has values only at the particles; slopes exist for meshes on a grid{}",
                     self.on_grid()
                 ));
             }
@@ -108,7 +107,7 @@ impl Reader<'_> {
 
     fn is_none(&self, name: &str) -> String {
         format!(
-            "slope({name}, ...): `{name}` is no mesh of the model; slopes are those of meshes on a grid{}",
+            "slope({name}, ...): `{name}` is not a mesh of the model; slopes exist for meshes on a grid{}",
             self.on_grid()
         )
     }
@@ -117,19 +116,22 @@ impl Reader<'_> {
     fn at_start(&self, q: &Quantity, name: &str, mesh: usize) -> Result<Rc<AtParticles>, String> {
         let lattice = &self.stated.lattice;
         let Some(places) = lattice.places() else {
-            return Err(format!("`{name}` is of places, and the model has none"));
+            return Err(format!(
+                "`{name}` depends on positions, and the model has none"
+            ));
         };
         let of = ascii(&places.name.text);
         let instead = || self.instead(name, &of, mesh);
         if q.kind == Kind::Parameter {
             return Err(format!(
-                "`{name}` is a mesh, whose values the parameters and the places {of} decide: {}",
+                "`{name}` is a mesh, whose values depend on the parameters and the positions {of}: {}",
                 instead()
             ));
         }
         let Some(at) = self.fluid.columns.get(&of) else {
             return Err(format!(
-                "`{name}` depends on the places {of}, which are stated here: write them as a lattice, or in the index of a particle; {}",
+                "`{name}` depends on the positions {of}, which are given here: write them as a lattice, or in the index of a \
+                 particle; {}",
                 instead()
             ));
         };
@@ -137,7 +139,7 @@ impl Reader<'_> {
             let labels = &lattice.labels;
             let index = |label: usize| labels.get(label).map_or("", |l| l.index.text.as_str());
             return Err(format!(
-                "`{name}` has values at the particles `{}`, and those of {} stand at `{}`: {}",
+                "`{name}` has values at the particles `{}`, but those of {} belong to `{}`: {}",
                 index(places.label),
                 ascii(&q.name.text),
                 index(q.label),
@@ -158,10 +160,10 @@ impl Reader<'_> {
             Unvalued::Missing(of) => {
                 let key = ascii(&of);
                 format!(
-                    "`{name}` is made of {key}: missing key `parameters.{key}`, or no finite number there"
+                    "`{name}` needs {key}: missing key `parameters.{key}`, or not a finite number there"
                 )
             }
-            other => format!("`{name}` has no value at these places: {other}"),
+            other => format!("`{name}` has no value at these positions: {other}"),
         })?;
         let found = Rc::new(found);
         self.meshes.borrow_mut().insert(mesh, found.clone());
@@ -177,7 +179,7 @@ impl Reader<'_> {
             (true, _) => format!("[\"-slope({name}, 2)\", \"slope({name}, 1)\"]"),
         };
         format!(
-            "it may stand in velocities and momenta of {of} in [initial], as in velocity_{of} = {example}"
+            "write it in velocities and momenta of {of} in [initial], as in velocity_{of} = {example}"
         )
     }
 }

@@ -101,7 +101,7 @@ fn follow(
         if node.is_multiple_of(plan.every.max(1)) || node == case.steps {
             // The model computes its observables from the state of the method.
             let here = (card.open)(&case.parameters, &method.shown(), Settings::step(case.h))
-                .map_err(|error| (node, format!("no state of the model: {error}")))?;
+                .map_err(|error| (node, format!("not a state of the model: {error}")))?;
             push(record, node, case.h, here.as_ref()).map_err(|what| (node, what))?;
         }
     }
@@ -147,7 +147,9 @@ pub(crate) fn extrapolation(records: &[&Record], places: &[f64]) -> Result<Recor
     let (observables, _) = neville(records, places, |record| &record.observables);
     let (invariants, _) = neville(records, places, |record| &record.invariants);
     let Some(first) = records.first() else {
-        return Err(Failure::Failed("no step to extrapolate from".to_owned()));
+        return Err(Failure::Failed(
+            "there are no steps to extrapolate from".to_owned(),
+        ));
     };
     Ok(Record {
         observables,

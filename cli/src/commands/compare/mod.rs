@@ -146,7 +146,7 @@ pub(crate) fn against_all(
             .every
             .saturating_mul((size.saturating_mul(courses)).div_ceil(LARGEST));
         return Err(Failure::Usage(format!(
-            "--every {}: more numbers than memory should hold; give --every {every} or more",
+            "--every {}: the results would take too much memory; give --every {every} or more",
             plan.every
         )));
     }
@@ -182,13 +182,13 @@ pub(crate) fn against_all(
                 made.name()
             );
             let why = if others.is_empty() {
-                "no equations of this model were written by hand"
+                "this model has no hand-written equations"
             } else {
-                "the reference of this model gave up"
+                "the reference of this model failed"
             };
             let said = format!(
-                "extrapolated: {why}; {doc}: it measures the step, not the equations; \
-                 its last term is {accuracy:.0e}"
+                "extrapolated: {why}; {doc}: this tests the accuracy of the step, not the equations; its last term is \
+                 {accuracy:.0e}"
             );
             (course, said, ("extrapolated", doc, None))
         }
@@ -299,10 +299,7 @@ fn print(
     for score in &done.scores {
         rows.push(vec![score.name.clone(), score.doc.clone()]);
         if let Some((node, why)) = &score.stopped {
-            rows.push(vec![
-                String::new(),
-                format!("gave up at node {node}: {why}"),
-            ]);
+            rows.push(vec![String::new(), format!("failed at node {node}: {why}")]);
         }
     }
     out.write_all(aligned(&rows, &[], width).as_bytes())

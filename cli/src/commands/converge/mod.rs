@@ -77,7 +77,7 @@ pub(crate) fn converge(
     let order = plan.order.unwrap_or(card.order);
     writeln!(out)?;
     for line in [
-        format!("the step is of order {order}; an order is measured between a line and the line above, the last line is fitted to all"),
+        format!("the step has order {order}; each order compares a row with the row above, and the last row fits all rows"),
         format!("errors are relative to the largest size of each quantity; \"-\" marks errors near rounding ({:.0e})", levels::ROUNDING),
     ]
     .into_iter()
@@ -105,15 +105,15 @@ fn lower(done: &Measured, order: u32) -> Option<String> {
     let as_the_step = all().find(|(_, fitted)| fitted.is_some() && !is_lower(fitted));
     let cause = match as_the_step {
         _ if unsettled => format!(
-            "the orders still change between lines, so the largest steps are too long to show one: start with a smaller `--h`, or take \
-             more than {} levels",
+            "the orders still change between rows, so the largest steps are too large to show an order: start with a smaller \
+             `--h`, or use more than {} levels",
             done.levels.len()
         ),
         Some((name, _)) => format!(
-            "`{name}` converges with the order of the step, so this is an error of each node by itself, which does not add up: as of a \
-             momentum that is not projected at its node"
+            "`{name}` converges with the order of the step, so this error belongs to single nodes and does not accumulate, as \
+             for a momentum that is not projected at its node"
         ),
-        None => "take more levels, or smaller steps, to see whether it stays".to_owned(),
+        None => "use more levels, or smaller steps, to check whether it persists".to_owned(),
     };
     (!named.is_empty()).then(|| {
         format!(

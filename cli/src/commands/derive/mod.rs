@@ -56,8 +56,8 @@ pub fn derive(
 }
 
 /// An ordinary build omits the second prover, which would add a sixth to its time.
-const WITHOUT_PROVER: &str = "this command was built without the second prover; build it with `cargo run --profile quick \
-     -p clebsch-cli --features second-proof -- derive MODEL --second-proof`; `--explain` shows the first proof";
+const WITHOUT_PROVER: &str = "this command was built without the second prover; build it with `cargo run --profile quick -p \
+    clebsch-cli --features second-proof -- derive MODEL --second-proof`, or use `--explain` for the first proof";
 
 /// The text of a model and its citations. A name of the gallery comes first, then a file, which has no
 /// citations; `-` is standard input.
@@ -70,12 +70,13 @@ fn source(
         let text = bounded::stream(input, "standard input")?;
         if text.trim().is_empty() {
             return Err(Failure::Usage(
-                "standard input is empty; `-` reads a model's text from there".to_owned(),
+                "standard input is empty; with `-`, clebsch reads the text of a model from it"
+                    .to_owned(),
             ));
         }
         return Ok(("standard input".to_owned(), text, Citations::NONE));
     }
-    let named = named(gallery, name, "derive takes a model or its text")?;
+    let named = named(gallery, name, "derive needs a model or its text")?;
     let text = statement(&named).to_owned();
     let (name, citations) = match named {
         Named::Compiled(entry) => (entry.card.kebab.to_owned(), entry.citations),
@@ -105,7 +106,7 @@ fn format(matches: &ArgMatches) -> Result<&str, Failure> {
         (false, ..) | (true, true, "latex" | "tex") => Ok(format),
         (true, false, _) => Ok("latex"),
         (true, true, _) => Err(Failure::Usage(format!(
-            "`--standalone` prints LaTeX, not {format}; leave `--format` out"
+            "`--standalone` prints LaTeX, not {format}; remove `--format`"
         ))),
     }
 }
@@ -233,7 +234,8 @@ fn second_proof(_: &Derivation) -> String {
 fn write_all(gallery: &Gallery, folder: &Path) -> Result<(), Failure> {
     if !folder.is_dir() {
         return Err(Failure::Usage(
-            "there is no folder `generated` here: run this in the root of the project".to_owned(),
+            "there is no folder `generated` here: run this in the root folder of the project"
+                .to_owned(),
         ));
     }
     for entry in &gallery.entries {

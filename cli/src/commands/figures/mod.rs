@@ -152,7 +152,7 @@ pub fn figures(
 ) -> Result<u8, Failure> {
     let files = FIGURES.map(|figure| figure.file);
     let Some(target) = matches.get_one::<PathBuf>("out") else {
-        return Err(Failure::Usage("--out DIR is needed".to_owned()));
+        return Err(Failure::Usage("--out DIR is required".to_owned()));
     };
     let staging = Staging::new(target, matches.get_flag("force"), &files)?;
     let as_json = matches.get_flag("json");
@@ -190,7 +190,7 @@ pub fn figures(
     for figure in &left {
         writeln!(
             streams.out,
-            "{:<7} left out: the gallery has no model `{}`",
+            "{:<7} omitted: the gallery has no model `{}`",
             figure.number, figure.model
         )?;
     }

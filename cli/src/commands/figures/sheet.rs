@@ -92,7 +92,7 @@ impl<'a> Subject<'a> {
         let model = self.card().kebab;
         let Some(offer) = offer else {
             return Err(Failure::Failed(format!(
-                "{model} lacks a method to compare with"
+                "{model} has no method to compare with"
             )));
         };
         let Course { record, stopped } = course::other(self.card(), &self.plan(), &offer);

@@ -45,7 +45,7 @@ impl Columns {
         let file = folder.join("trajectory.npz");
         if !file.is_file() {
             return Err(Failure::Usage(format!(
-                "{} holds no trajectory.npz; name the folder that `clebsch run --out` wrote",
+                "{} contains no trajectory.npz; give the folder that `clebsch run --out` wrote",
                 shown(folder)
             )));
         }
@@ -119,7 +119,7 @@ impl Columns {
                 let times = [self.times.first(), self.times.last()];
                 let [first, last] = times.map(|t| t.copied().unwrap_or(0.0));
                 Err(Failure::Usage(format!(
-                    "fewer than two samples are within --from and --to; the run has times {first} to {last}"
+                    "fewer than two samples are between --from and --to; the run has times {first} to {last}"
                 )))
             }
         }
@@ -253,7 +253,7 @@ impl Columns {
                 Some(site) => {
                     format!("an end prescribes `{head}_{site}`, so the run has no such column")
                 }
-                None => format!("`{}` names no single column of `{head}`", shown(name)),
+                None => format!("`{}` does not name one column of `{head}`", shown(name)),
             };
             let instead = example(head, inner, sites.as_deref());
             return Err(Failure::Usage(format!("{what}; give {instead}")));

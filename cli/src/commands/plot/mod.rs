@@ -31,7 +31,7 @@ pub(crate) fn plot(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result<u8
     if y.is_empty() {
         writeln!(
             streams.out,
-            "columns of {}; draw them by --y NAME, against time or by --x NAME",
+            "columns of {}; plot them with --y NAME, against time or with --x NAME",
             shown(folder)
         )?;
         for line in columns.described() {
@@ -66,7 +66,7 @@ pub(crate) fn plot(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result<u8
     let name = match matches.get_one::<PathBuf>("out") {
         Some(name) if name.extension().is_none_or(|ending| ending != "svg") => {
             return Err(Failure::Usage(format!(
-                "--out {}: pictures are SVG; give a name that ends in .svg, and convert it, for example by rsvg-convert",
+                "--out {}: pictures are SVG; give a name that ends in .svg, and convert it, for example with rsvg-convert",
                 shown(name)
             )));
         }

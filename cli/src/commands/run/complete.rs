@@ -20,7 +20,7 @@ pub(super) fn already(
     let wrong = |words: &str| Failure::Usage(format!("--resume: {}: {words}", shown(target)));
     let text = std::fs::read_to_string(target.join("run.json")).unwrap_or_default();
     let Ok(there) = text.parse::<serde_json::Value>() else {
-        return Err(wrong("this is no folder of a run"));
+        return Err(wrong("this is not the folder of a run"));
     };
     let own = run_json::plan_json(card, plan)
         .to_string()
@@ -41,7 +41,7 @@ pub(super) fn already(
         [] => {}
         keys if keys.contains(&"steps") && keys.iter().all(|k| ["steps", "every"].contains(k)) => {
             return Err(wrong(&format!(
-                "this run is complete, with steps = {}; to go on from its end, start a new run whose values in [initial] are taken from it, \
+                "this run is complete, with steps = {}; to continue it, start a new run with its final values in [initial], \
                  such as x = {{ npz = \"{}\", sample = -1 }}",
                 there["steps"],
                 shown(target.join("trajectory.npz").as_path())
@@ -49,7 +49,7 @@ pub(super) fn already(
         }
         [key, ..] => {
             return Err(wrong(&format!(
-                "it holds another run, with another `{key}`; choose another folder by --out"
+                "it contains another run, with another `{key}`; choose another folder with --out"
             )));
         }
     }
@@ -62,14 +62,12 @@ pub(super) fn already(
     });
     if vtk && !has_vtk {
         return Err(wrong(
-            "the run there is complete and was written without --vtk; give --force instead to run it again",
+            "the run there is complete and was written without --vtk; run it again with --force",
         ));
     }
     if there["results"]["complete"] != json!(true) {
         let why = there["results"]["stopped"]["why"].as_str().unwrap_or("?");
-        return Err(wrong(&format!(
-            "the run there cannot be gone on with: {why}"
-        )));
+        return Err(wrong(&format!("the run there cannot be resumed: {why}")));
     }
     output::remove_what_resumes(target);
     match as_json {
@@ -80,12 +78,15 @@ pub(super) fn already(
     let results = &there["results"];
     let refuted = results["action_as_stated"]["holds"] == json!(false);
     if results["kept"] == json!(false) {
-        let _ = writeln!(streams.err, "clebsch: a bound was exceeded, see run.json");
+        let _ = writeln!(
+            streams.err,
+            "clebsch: an invariant exceeded its bound, see run.json"
+        );
     }
     if refuted {
         let _ = writeln!(
             streams.err,
-            "clebsch: steps do not solve the equations of the action as stated, see run.json"
+            "clebsch: steps do not solve the equations of the stated action, see run.json"
         );
     }
     match refuted || results["kept"] == json!(false) {

@@ -67,8 +67,8 @@ impl Run<'_> {
         match words.all_put() && seen.all_put() {
             true => Ok(()),
             false => Err(Failure::Usage(
-                "--resume: the checkpoint does not fit the state of this model; it was written by another build \
-                 of clebsch. Give --force instead to begin anew"
+                "--resume: the checkpoint does not fit the state of this model: another build of clebsch wrote it. Start over \
+                 with --force instead"
                     .to_owned(),
             )),
         }
@@ -182,7 +182,7 @@ impl Kept<'_> {
         };
         Failure::Failed(
             match folder.join(crate::trajectory::checkpoint::NAME).is_file() {
-                true => format!("{message}; --resume goes on from the last checkpoint"),
+                true => format!("{message}; --resume continues from the last checkpoint"),
                 false => message,
             },
         )

@@ -96,7 +96,7 @@ pub fn run(
     };
     let started = {
         let numbers: usize = plan.case.initial.iter().map(Vec::len).sum();
-        let what = format!("starting from {numbers} numbers: the first step is tried");
+        let what = format!("starting from {numbers} numbers: trying the first step");
         let _told = Waiting::told(what, streams.progress);
         plan.open(card)
     };
@@ -271,7 +271,7 @@ pub fn run(
             lines.push(format!("written to {place}: {}", files.join(", ")));
             if !files.iter().any(|file| file == output::FILES[0]) {
                 lines.push(format!(
-                    "{} is left out, since it would be long; --csv writes it",
+                    "{} was not written because it would be long; write it with --csv",
                     output::FILES[0]
                 ));
             }
@@ -314,8 +314,8 @@ fn resumed(staging: &Staging, card: &Card, checkpoint: &Checkpoint) -> Result<St
     again.map_err(|error| cannot(staging, &error))?.ok_or_else(|| {
         let file = staging.folder().join(samples::NAME);
         Failure::Usage(format!(
-            "--resume: {}: the samples before the checkpoint are damaged: their checksum is another. Give \
-             --force instead to begin anew",
+            "--resume: {}: the samples before the checkpoint are damaged: their checksum differs. Start over with --force \
+             instead",
             shown(&file)
         ))
     })
@@ -330,7 +330,7 @@ fn cannot(staging: &Staging, error: &io::Error) -> Failure {
 fn refused(error: &RunError, plan: &Plan) -> String {
     match (error, plan.halve) {
         (RunError::Step(_), true) => format!(
-            "{error}; --halve has tried it by 2, 4, ... to {} steps of a part of its length, none of which went the whole way",
+            "{error}; --halve tried 2, 4, ... up to {} substeps, and all failed",
             Halved::MOST_PARTS
         ),
         _ => error.to_string(),
@@ -344,7 +344,7 @@ fn interrupted(signal: u8) -> String {
         15 => "SIGTERM".to_owned(),
         other => format!("signal {other}"),
     };
-    format!("interrupted by {by}; a run with --out goes on by --resume")
+    format!("interrupted by {by}; if the run has --out, resume it with --resume")
 }
 
 /// The beginning of the run once more with every node kept, when the record is sparser than that.
@@ -369,7 +369,7 @@ fn fits(card: &Card, plan: &Plan) -> Result<(), Failure> {
     }
     let every = plan.every.saturating_mul(size.div_ceil(LARGEST));
     Err(Failure::Usage(format!(
-        "--every {}: {size} numbers would be written, at most {LARGEST} can be; give --every {every} or more",
+        "--every {}: {size} numbers would be written, and the limit is {LARGEST}; give --every {every} or more",
         plan.every
     )))
 }

@@ -88,21 +88,20 @@ pub(crate) fn below_the_table(run: &Finished<'_>, made: u64) -> Vec<String> {
         let time = number::plain(stopped.time);
         let all = steps(run.plan.case.steps);
         format!(
-            "stopped at node {} (time {time}), after {made} of {all}: these are the results \
-             up to there",
+            "stopped at node {} (time {time}), after {made} of {all}: the results end there",
             stopped.node
         )
     });
     let halved = run.halvings.filter(|h| h.steps > 0).map(|h| {
         format!(
-            "made by parts: {} of {made}, by up to {} each; this run is not symplectic, and its energy may drift",
+            "subdivided steps: {} of {made}, into up to {} substeps; this run is not symplectic, and its energy may drift",
             steps(h.steps),
             h.parts
         )
     });
     let looked = (run.plan.every > 1).then(|| {
         format!(
-            "drifts: at one node in {} and the last (--every)",
+            "drifts: sampled at every {} nodes and at the last (--every)",
             run.plan.every
         )
     });

@@ -18,8 +18,9 @@ use std::path::{Path, PathBuf};
 /// The description of a sweep that is complete.
 pub(super) fn description(folder: &Path) -> Result<Value, String> {
     let [_, _, json, ..] = table::FILES;
-    let text = fs::read_to_string(folder.join(json))
-        .map_err(|error| format!("this is no folder of a sweep: {json} cannot be read: {error}"))?;
+    let text = fs::read_to_string(folder.join(json)).map_err(|error| {
+        format!("this is not the folder of a sweep: {json} cannot be read: {error}")
+    })?;
     text.parse::<Value>()
         .map_err(|error| format!("{json} is damaged: {error}"))
 }
@@ -44,7 +45,7 @@ pub(crate) fn collect(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result
         .collect();
     let Some(target) = matches.get_one::<PathBuf>("out") else {
         return Err(Failure::Usage(
-            "--out DIR: name a folder for the table".to_owned(),
+            "--out DIR: give a folder for the table".to_owned(),
         ));
     };
     let mut whole: Option<(Value, &PathBuf)> = None;
@@ -74,7 +75,7 @@ pub(crate) fn collect(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result
                     .next()
                     .map_or("number of parts", |(key, _)| key.as_str());
                 return Err(wrong(format!(
-                    "it is of another sweep than {}: its {key} differs",
+                    "it belongs to another sweep than {}: its {key} differs",
                     shown(*other)
                 )));
             }
@@ -84,7 +85,7 @@ pub(crate) fn collect(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result
     }
     parts.sort_by_key(|part| (part.first, part.end));
     let Some((description, _)) = whole else {
-        return Err(Failure::Usage("name the folders of the parts".to_owned()));
+        return Err(Failure::Usage("give the folders of the parts".to_owned()));
     };
     let all = description["points"].as_u64().unwrap_or(0);
     let mut next = 0;
@@ -102,7 +103,7 @@ pub(crate) fn collect(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result
     }
     if next != all {
         return Err(Failure::Usage(format!(
-            "the part that begins with point {next} is missing: {} of {of} parts were given",
+            "the part that starts with point {next} is missing: {} of {of} parts are given",
             parts.len()
         )));
     }
@@ -114,7 +115,7 @@ pub(crate) fn collect(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result
         let path = part.folder.join(csv);
         let failed =
             |error: std::io::Error| Failure::io(&format!("cannot read {}", shown(&path)), &error);
-        let damaged = || Failure::Usage(format!("{}: it is damaged, or was changed", shown(&path)));
+        let damaged = || Failure::Usage(format!("{}: it is damaged or was changed", shown(&path)));
         let mut lines = BufReader::new(File::open(&path).map_err(failed)?).lines();
         let first = lines.next().ok_or_else(damaged)?.map_err(failed)?;
         if *header.get_or_insert_with(|| first.clone()) != first {
@@ -143,7 +144,7 @@ pub(crate) fn collect(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result
         }
     }
     let Some((points, columns)) = points else {
-        return Err(Failure::Usage("name the folders of the parts".to_owned()));
+        return Err(Failure::Usage("give the folders of the parts".to_owned()));
     };
     let rows = points
         .into_rows(staging.folder())

@@ -84,7 +84,7 @@ pub(crate) fn sweep(
     let (first, end) = shard.map_or((0, all), |shard| shard.points(all));
     let Some(target) = matches.get_one::<PathBuf>("out") else {
         return Err(Failure::Usage(
-            "--out DIR: name a folder for the table".to_owned(),
+            "--out DIR: give a folder for the table".to_owned(),
         ));
     };
     let as_json = matches.get_flag("json");
@@ -158,7 +158,7 @@ pub(crate) fn sweep(
         };
         let done = match there.len() - left.len() {
             0 => String::new(),
-            done => format!("; {done} are there already"),
+            done => format!("; {done} are done already"),
         };
         let told = format!("{}: {all} points{here}{done}", card.kebab);
         streams
@@ -182,7 +182,7 @@ pub(crate) fn sweep(
     if let Some(signal) = signal {
         let _ = writeln!(
             streams.err,
-            "clebsch: interrupted; the points computed so far are kept, and --resume goes on with the others"
+            "clebsch: interrupted; the finished points are kept, and --resume computes the rest"
         );
         return Ok(BY_SIGNAL.saturating_add(signal));
     }
@@ -200,7 +200,7 @@ pub(crate) fn sweep(
     };
     let why = format!("the first refused point, {point}: {}", sweep.refusal(point));
     match tally.done + tally.stopped {
-        0 => Err(Failure::Failed(format!("no point could be started; {why}"))),
+        0 => Err(Failure::Failed(format!("no point started; {why}"))),
         _ => {
             let _ = writeln!(streams.err, "clebsch: {why}");
             Ok(told)
@@ -244,7 +244,9 @@ fn already(
     let there = collect::description(target).map_err(wrong)?;
     for (key, value) in own.as_object().into_iter().flatten() {
         if there.get(key) != Some(value) {
-            return Err(wrong(format!("it holds another sweep: its {key} differs")));
+            return Err(wrong(format!(
+                "it contains another sweep: its {key} differs"
+            )));
         }
     }
     output::remove_what_resumes(target);

@@ -57,7 +57,7 @@ impl Sweep<'_> {
             Err(failure) => failure.to_string(),
             Ok(mut trajectory) => match trajectory.step() {
                 Err(error) => error.to_string(),
-                Ok(()) => "what is watched is no number at its start".to_owned(),
+                Ok(()) => "an observed value is not a number at the start".to_owned(),
             },
         }
     }

@@ -79,7 +79,7 @@ impl Tally {
     /// In words.
     pub(super) fn text(&self) -> String {
         format!(
-            "{} complete, {} stopped before their end, {} refused; {} with an invariant beyond its bound",
+            "{} complete, {} stopped early, {} refused; {} with an invariant beyond its bound",
             self.done, self.stopped, self.refused, self.beyond_bounds
         )
     }

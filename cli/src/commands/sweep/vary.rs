@@ -54,8 +54,10 @@ fn read_values(text: &str) -> Result<Vec<f64>, String> {
                 .and_then(|count| usize::try_from(count).ok())
                 .filter(|count| (1..=MOST_VALUES).contains(count))
                 .ok_or_else(|| match count_of(from, to, count) {
-                    Some(count) => format!("the third part is a count; write {from}:{to}:{count}"),
-                    None => format!("give from 1 to {MOST_VALUES} values"),
+                    Some(count) => {
+                        format!("the third part is the number of values; write {from}:{to}:{count}")
+                    }
+                    None => format!("give 1 to {MOST_VALUES} values"),
                 })?;
             if count == 1 {
                 return Ok(vec![from]);
@@ -88,7 +90,7 @@ pub(super) fn points(axes: &[Axis]) -> Result<u64, Failure> {
         .iter()
         .try_fold(1_u64, |n, axis| n.checked_mul(axis.values.len() as u64));
     all.filter(|n| *n <= MOST_POINTS)
-        .ok_or_else(|| Failure::Usage(format!("a sweep has at most {MOST_POINTS} points")))
+        .ok_or_else(|| Failure::Usage(format!("a sweep can have at most {MOST_POINTS} points")))
 }
 
 /// The values of a point, one of each axis: the last axis varies fastest.
@@ -125,7 +127,7 @@ mod tests {
             assert!(read_values(wrong).is_err(), "{wrong}");
         }
         let why = read_values("1:2:0.25").expect_err("no count");
-        assert_eq!(why, "the third part is a count; write 1:2:5");
+        assert_eq!(why, "the third part is the number of values; write 1:2:5");
     }
 
     #[test]

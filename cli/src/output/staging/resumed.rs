@@ -68,8 +68,7 @@ impl Staging {
         match left.find(|folder| has_checkpoint(folder)) {
             None => Ok(()),
             Some(_) => Err(Failure::Usage(format!(
-                "--out {}: a run into this folder was killed and left a checkpoint; give --resume to go on \
-                 from it, or --force to begin anew without it",
+                "--out {}: a killed run into this folder left a checkpoint; resume it with --resume, or start over with --force",
                 shown(target)
             ))),
         }
@@ -100,7 +99,7 @@ impl Staging {
             };
             if let Err(TryLockError::WouldBlock) = held.try_lock() {
                 return Err(Failure::Failed(format!(
-                    "--out {}: another run into this folder is still going on",
+                    "--out {}: another run is writing into this folder",
                     shown(target)
                 )));
             }
@@ -121,7 +120,7 @@ impl Staging {
         }
         if let Some((folder, why)) = refused {
             return Err(Failure::Usage(format!(
-                "--resume: {}: {why}; nothing was changed. Give --force instead to begin anew",
+                "--resume: {}: {why}; nothing was changed. Start over with --force instead",
                 shown(&folder.join(checkpoint::NAME))
             )));
         }
@@ -155,7 +154,7 @@ impl Staging {
             let hidden = staging.sibling(".", &format!(".{PARTIAL}-{id}-{count}"));
             super::place(folder, &hidden).map(|()| hidden)
         });
-        let cannot = |error| Failure::io(&format!("cannot take up {}", shown(folder)), &error);
+        let cannot = |error| Failure::io(&format!("cannot continue in {}", shown(folder)), &error);
         match hidden {
             Ok(hidden) => staging.hidden = hidden,
             Err(error) => {

@@ -61,7 +61,7 @@ pub(crate) fn drawn(card: &Card, plan: &Plan) -> Result<Vec<Drawn>, Failure> {
     match all.is_empty() {
         false => Ok(all),
         true => Err(Failure::Usage(format!(
-            "--vtk: `{}` has nothing that is seen in the plane or in space; trajectory.npz holds its numbers",
+            "--vtk: `{}` has nothing to show in the plane or in space; trajectory.npz has its numbers",
             card.kebab
         ))),
     }

@@ -257,28 +257,27 @@ impl<'a> Algebra<'a> {
         Some(match self.excess.get() {
             Some(Excess::Terms(n)) => {
                 format!(
-                    "a normal form has {n} terms, and at most {} are taken",
+                    "a normal form has {n} terms, and the limit is {}",
                     term_limit()
                 )
             }
             Some(Excess::Word(n)) => format!(
-                "a product in its normal form has {n} factors, and at most {WORD_LIMIT} are taken"
+                "a product in its normal form has {n} factors, and the limit is {WORD_LIMIT}"
             ),
             Some(Excess::Coefficient) => {
-                "a coefficient of its normal form is no fraction of whole numbers below 2^127"
+                "a coefficient of its normal form is not a fraction of whole numbers below 2^127"
                     .to_owned()
             }
             Some(Excess::Contradiction) => {
-                "a normal form has another value than the expression it stands for, which is a fault of clebsch: please report \
-                 this model"
+                "a normal form differs from its expression, which is an error of clebsch: please report this model"
                     .to_owned()
             }
             _ if spent > work_limit() => format!(
-                "its normal forms take {spent} products of terms, and at most {} are taken",
+                "its normal forms need {spent} products of terms, and the limit is {}",
                 work_limit()
             ),
             Some(Excess::Evaluated(n)) => format!(
-                "its identities have {n} nodes to be evaluated, and at most {} are",
+                "its identities have {n} nodes to evaluate, and the limit is {}",
                 evaluation_limit()
             ),
             None => return None,

@@ -89,11 +89,11 @@ pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
                     Diagnostic::new(
                         step.place,
                         format!(
-                            "`{}` counts the nodes already, and cannot be the step",
+                            "`{}` is the time index and cannot be the step size too",
                             step.text
                         ),
                     )
-                    .help("give the step a name of its own, for example `time k step h;`"),
+                    .help("choose another name for the step size, for example `time k step h;`"),
                 );
             }
         }
@@ -286,9 +286,7 @@ impl Declared {
                 if kinds.is_none() {
                     let message = format!("an argument of `{}` is not declared", name.text);
                     let d = Diagnostic::new(name.place, message);
-                    errors.push(
-                        d.help("declare the field and the parameters that it is made of before it"),
-                    );
+                    errors.push(d.help("declare its field and parameters before the functional"));
                 }
                 self.functional(name, kinds, shape, (path, Reach::Sites), errors);
             }
@@ -329,7 +327,7 @@ impl Declared {
             errors.push(
                 Diagnostic::new(
                     name.place,
-                    format!("in files `{text}` and `{other}` are one name, `{spelt}`"),
+                    format!("`{text}` and `{other}` have the same name in files, `{spelt}`"),
                 )
                 .help("choose names that differ when Greek letters are spelt out")
                 .also(first.place, format!("`{other}` is declared here")),
@@ -342,11 +340,12 @@ impl Declared {
             let other = &first.name;
             let d = Diagnostic::new(
                 name.place,
-                format!("`{text}` and `{other}` print alike, as one name"),
+                format!("`{text}` and `{other}` look the same in print"),
             );
             errors.push(match foreign(text, other) {
                 Some(characters) => d.help(characters),
-                None => d.help(format!("choose names that differ in print: Greek words become letters, digits and what follows `_` become subscripts, and `_{}` is the index of what moves", self.time_index)),
+                None => d.help(format!("choose names that differ in print: Greek words become letters, digits and what follows \
+                    `_` become subscripts, and `_{}` is the time index", self.time_index)),
             }
             .also(first.place, format!("`{other}` is declared here")));
             return false;
@@ -355,7 +354,7 @@ impl Declared {
         if seen(step, &self.time_index) == shown {
             let message = match step == text {
                 true => format!("`{text}` is the time step"),
-                false => format!("`{text}` prints as the time step `{step}` does"),
+                false => format!("`{text}` prints like the time step `{step}`"),
             };
             errors.push(
                 Diagnostic::new(name.place, message)
@@ -435,16 +434,17 @@ impl Declared {
     fn typeset_as_another(&self, name: &Name) -> Option<Diagnostic> {
         let latex = self.in_latex(name);
         let text = &name.text;
-        let help = "write another text after `as`: in formulas only names that differ in print can be told apart, an index in time not counted";
+        let help =
+            "write another text after `as`: names must differ in print, not counting a time index";
         if let Some((shown, place)) = &name.typeset {
             let fixed = PRINTED.into_iter().find(|sign| seen(sign, "") == latex);
             let step = &self.symbols.get(self.step).name;
             let message = match fixed {
                 Some(sign) => format!(
-                    "`{shown}` prints as `{sign}`, which has a fixed meaning in derivations"
+                    "`{shown}` prints like `{sign}`, which has a fixed meaning in derivations"
                 ),
                 None if seen(step, &self.time_index) == latex => {
-                    format!("`{shown}` prints as the time step `{step}` does")
+                    format!("`{shown}` prints like the time step `{step}`")
                 }
                 None => String::new(),
             };
@@ -454,7 +454,7 @@ impl Declared {
         }
         let (_, other) = self.typeset.iter().find(|(l, _)| *l == latex)?;
         let place = |n: &Name| n.typeset.as_ref().map_or(n.place, |(_, place)| *place);
-        let message = format!("`{text}` and `{}` are typeset alike", other.text);
+        let message = format!("`{text}` and `{}` look the same in LaTeX", other.text);
         let first = format!("`{}` is declared here", other.text);
         Some(
             Diagnostic::new(place(name), message)
@@ -480,8 +480,15 @@ impl Declared {
             Some((id, Role::Element | Role::Advected)) => Some(id),
             Some((_, Role::Velocity)) => {
                 errors.push(
-                    Diagnostic::new(name.place, format!("`{}` is a velocity: it lives on one edge and is not carried to the next", name.text))
-                        .help("constraints carry group elements and advected quantities"),
+                    Diagnostic::new(
+                        name.place,
+                        format!(
+                            "`{}` is a velocity: it belongs to one edge and has no evolution \
+                        constraint",
+                            name.text
+                        ),
+                    )
+                    .help("write constraints for group elements and advected quantities"),
                 );
                 None
             }
@@ -490,7 +497,7 @@ impl Declared {
                     Diagnostic::new(
                         name.place,
                         format!(
-                            "`{}` is constant in time: no constraint carries it",
+                            "`{}` is constant in time, so it has no evolution constraint",
                             name.text
                         ),
                     )
@@ -538,7 +545,7 @@ impl Declared {
             match update {
                 Some((_, first)) => errors.push(
                     Diagnostic::new(place, format!("`{name}` has two constraints"))
-                        .also(*first, "the first one is here"),
+                        .also(*first, "the first constraint is here"),
                 ),
                 None => *update = Some((e.clone(), place)),
             }

@@ -253,7 +253,7 @@ impl<'a> Elaborator<'a> {
                             format!("only numbers divide, and this is {what}"),
                         )
                         .help(match bottom.shape().is_vector() {
-                            true => "divide by a number made of it, such as its length `sqrt(dot(x, x))`",
+                            true => "divide by a number, such as the length `sqrt(dot(x, x))`",
                             false => "multiply by the inverse: `inv(A) * b` or `A^-1 * b`",
                         }),
                     );
@@ -285,9 +285,9 @@ impl<'a> Elaborator<'a> {
                     _ => fail(
                         Diagnostic::new(
                             e.place,
-                            "a matrix has the powers ^-1 and ^1 to ^8, and ^T",
+                            "a matrix has only the powers ^-1 and ^1 to ^8, and ^T",
                         )
-                        .help("for a number, take the trace or determinant first"),
+                        .help("to get a number, take the trace or determinant first"),
                     ),
                 }
             }

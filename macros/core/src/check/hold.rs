@@ -100,12 +100,12 @@ pub(super) fn without_clocks(spec: &Spec) -> Result<(), Errors> {
         };
         let name = &spec.symbols.get(clock.symbol).name;
         let message = format!(
-            "`{name}` goes on with the step by itself, and a held constraint is one on configurations: its rate of change \
-             would have a part that no velocity brings"
+            "`{name}` advances with the step by itself, and a `hold` constraint must not depend on time: no velocity could \
+             keep it"
         );
         errors.push(Diagnostic::new(hold.place, message).help(format!(
-            "pull what is driven by a stiff spring to where it should be, as in `-h*(K/2)*(x - A*sin(w*{name}))^2`; or \
-             hold it to a field that moves, whose motion is solved for"
+            "drive the configuration by a stiff spring, as in `-h*(K/2)*(x - A*sin(w*{name}))^2`, or constrain it to a field \
+             that clebsch solves for"
         )));
     }
     errors.propagate()
@@ -117,11 +117,12 @@ fn refused(symbols: &Symbols, name: &Name, value: &Expr, place: Place) -> Option
     let role = |r: Role| letters.iter().find(|l| symbols.get(l.symbol).role == r);
     if let Some(v) = role(Role::Velocity) {
         let message = format!(
-            "`{}` is a velocity, and a held constraint is one on configurations at a node",
+            "`{}` is a velocity, and a `hold` constraint may contain only configurations at a node",
             symbols.get(v.symbol).name
         );
         return Some(Diagnostic::new(place, message).help(
-            "hold the configuration itself, for example `hold λ: dot(x, x) = L^2;`: its rate of change is held as well. Nonholonomic constraints, on velocities alone, are not supported yet",
+            "constrain the configuration, for example `hold λ: dot(x, x) = L^2;`; clebsch constrains its rate of change too. \
+             Nonholonomic constraints are not supported yet",
         ));
     }
     if letters.iter().any(|l| l.shift != Shift::HERE) {
@@ -135,12 +136,12 @@ fn refused(symbols: &Symbols, name: &Name, value: &Expr, place: Place) -> Option
     let algebra = Algebra::new(symbols);
     if algebra.is_zero(value) {
         let message = format!(
-            "both sides of the constraint of `{}` are the same: its multiplier is not determined",
+            "both sides of the constraint of `{}` are equal, so its multiplier is undetermined",
             name.text
         );
         return Some(
             Diagnostic::new(place, message)
-                .help("leave the constraint out, or correct one of its sides"),
+                .help("remove the constraint, or correct one of its sides"),
         );
     }
     if role(Role::Element)
@@ -152,17 +153,19 @@ fn refused(symbols: &Symbols, name: &Name, value: &Expr, place: Place) -> Option
             name.text
         );
         return Some(Diagnostic::new(place, message).help(
-            "a held constraint is made of what moves, for example `hold λ: det(Q) = 1;`; a condition on parameters is stated by `assume`",
+            "a `hold` constraint must contain a configuration, for example `hold λ: det(Q) = 1;`; write a condition on \
+             parameters with `assume`",
         ));
     }
     let shape = value.shape();
     if !shape.is_scalar() && !shape.is_vector() {
         let message = format!(
-            "this constraint is {}, and a multiplier is a number or a vector",
+            "this constraint is {}, but a multiplier must be a number or a vector",
             shape_text(symbols, shape)
         );
         return Some(Diagnostic::new(place, message).help(
-            "state independent entries, each with a multiplier of its own: `hold a: dot(Q*E1, Q*E1) = 1;`, `hold b: dot(Q*E1, Q*E2) = 0;`; of a column, `A*E1`",
+            "constrain independent entries, each with its own multiplier: `hold a: dot(Q*E1, Q*E1) = 1;`, `hold b: dot(Q*E1, \
+             Q*E2) = 0;`; write a column as `A*E1`",
         ));
     }
     None

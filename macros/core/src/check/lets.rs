@@ -125,9 +125,9 @@ fn message(lets: &[Let], circle: &[usize]) -> Diagnostic {
         |l| l.name.place,
     );
     let text = match circle {
-        [one] => format!("`{}` is defined by itself", name(*one)),
-        _ => format!("these definitions go in a circle: {}", links.join(", ")),
+        [one] => format!("`{}` is defined in terms of itself", name(*one)),
+        _ => format!("these definitions are circular: {}", links.join(", ")),
     };
     Diagnostic::new(place, text)
-        .help("a `let` stands for an expression of what is declared: write one of them out, or make it a `param`")
+        .help("write one of them in terms of declared quantities, or make it a `param`")
 }

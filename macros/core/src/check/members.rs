@@ -71,9 +71,7 @@ const MOMENTA: [&str; 5] = [
 pub(crate) fn name_of_function(name: &str, place: Place) -> Diagnostic {
     Diagnostic::new(
         place,
-        format!(
-            "`{name}` is already a function of the model's stepper or of its state, and this would become another one"
-        ),
+        format!("`{name}` is already the name of a function of the stepper or of its state"),
     )
     .help(format!(
         "choose another name, for example `{name}1`; a parameter may be called `{name}`"
@@ -112,9 +110,7 @@ fn is_column(ascii: &str) -> bool {
 fn name_of_column(name: &str, place: Place) -> Diagnostic {
     Diagnostic::new(
         place,
-        format!(
-            "the files of a run have a column `{name}` already, and this would be a second one"
-        ),
+        format!("the output files already have a column named `{name}`"),
     )
     .help(format!("choose another name, for example `{name}1`"))
 }
@@ -143,7 +139,8 @@ fn components(declared: &Declared, errors: &mut Errors) {
             errors.push(
                 Diagnostic::new(
                     *place,
-                    format!("the files of a run call component {digits} of `{of}` `{name}`, and this would be a second column of that name"),
+                    format!("the output files name component {digits} of `{of}` `{name}`, so they would have two columns of \
+                        that name"),
                 )
                 .help(format!("choose another name, for example `{stem}{digits}`")),
             );

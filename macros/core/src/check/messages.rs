@@ -26,12 +26,12 @@ pub fn too_large(place: Place, size: u32, largest: u32, lets: bool) -> Diagnosti
     let d = Diagnostic::new(
         place,
         format!(
-            "this expression is too large: it has {size} quantities, numbers and operations, and at most {largest} are taken"
+            "this expression is too large: it has {size} quantities, numbers and operations, and the limit is {largest}"
         ),
     );
-    let d = d.help("shorten it, by fewer terms or bodies, or make parts of it parameters");
+    let d = d.help("use fewer terms or bodies, or turn parts of the expression into parameters");
     match lets {
-        true => d.help("what a `let` stands for is counted wherever it is used"),
+        true => d.help("a `let` counts in full wherever it is used"),
         false => d,
     }
 }
@@ -41,7 +41,7 @@ pub fn too_much_work(place: Place, excess: Option<String>) -> Diagnostic {
     let excess = excess.map(|e| format!(": {e}")).unwrap_or_default();
     Diagnostic::new(place, format!("this model is too large to derive{excess}"))
         .of_size()
-        .help("shorten it, or make parts of it parameters")
+        .help("shorten it, or turn parts of it into parameters")
 }
 
 pub fn no_lagrangian(place: Place) -> Diagnostic {
@@ -57,23 +57,23 @@ pub fn second_lagrangian(place: Place) -> Diagnostic {
 pub fn assumption_not_constant(place: Place) -> Diagnostic {
     Diagnostic::new(
         place,
-        "an assumption is about parameters only; this one changes in time",
+        "an assumption may contain parameters only, and this one changes in time",
     )
-    .help("drop the quantities that move, or make it a definition of an advected quantity")
+    .help("remove the moving quantities, or write the relation as the definition of an advected quantity")
 }
 
 pub fn scale_not_constant(place: Place) -> Diagnostic {
     Diagnostic::new(
         place,
-        "`scale` must be a non-zero number made of the step and parameters",
+        "`scale` must be a non-zero number that depends on the step and parameters only",
     )
-    .help("the thesis's normalisation of rigid bodies is `scale -h;`")
+    .help("for the normalisation of rigid bodies in the thesis, write `scale -h;`")
 }
 
 pub fn definition_not_of_configuration(place: Place) -> Diagnostic {
     Diagnostic::new(
         place,
-        "a definition gives the quantity by the configuration and parameters at the same time level",
+        "a definition may contain only the configuration and parameters, at the same node",
     )
     .help("write for example `advected Γ: Vec<3> = Λ^T * z;`")
 }
@@ -91,7 +91,7 @@ pub fn missing_constraint(
         _ if q.shape.is_vector() => format!("constraint next({name}) = {v}^T * {name};"),
         _ => format!("constraint next({name}) = {v}^T * {name} * {v};"),
     };
-    Diagnostic::new(place, format!("no evolution constraint for `{name}`")).help(format!(
+    Diagnostic::new(place, format!("`{name}` has no evolution constraint")).help(format!(
         "add its Clebsch constraint, for example `{example}`"
     ))
 }
@@ -111,10 +111,11 @@ pub fn not_carried_by_field(
     };
     Diagnostic::new(
         place,
-        format!("no evolution constraint for `{name}`"),
+        format!("`{name}` has no evolution constraint"),
     )
     .help(format!(
-        "add its constraint, for example `{example}`; a function of `{field}` needs none: write it by `{field}` in the Lagrangian"
+        "add a constraint, for example `{example}`; if `{name}` is a function of `{field}`, write it in terms of `{field}` in \
+         the Lagrangian instead"
     ))
 }
 
@@ -122,12 +123,13 @@ pub fn not_carried_by_field(
 pub fn constraint_of_field(name: &str, place: Place) -> Diagnostic {
     Diagnostic::new(
         place,
-        format!("a field has no constraint: every entry of `{name}` moves freely, by its increment `next({name}) - {name}`"),
+        format!("a field cannot have a constraint: every entry of `{name}` moves freely, by its increment `next({name}) - \
+            {name}`"),
     )
     .help(format!(
-        "leave the constraint out: the Lagrangian determines the increment, which the kinetic energy holds as `next({name}) - {name}`"
+        "remove the constraint: the Lagrangian determines the increment, through the kinetic energy in `next({name}) - {name}`"
     ))
-    .help("a configuration that is multiplied by its velocity is stated by `group`")
+    .help("to multiply a configuration by its velocity, declare it with `group`")
 }
 
 pub fn not_a_reconstruction(symbols: &Symbols, g: &DeclaredGroup, place: Place) -> Diagnostic {
@@ -146,7 +148,7 @@ pub fn unused_velocity(spec: &Spec, c: &Configuration) -> Diagnostic {
         let example = c.group.kinetic_example(x);
         let d = Diagnostic::new(
             spec.lagrangian_place,
-            format!("`next({x})` does not appear in the Lagrangian: the equation of `{x}` holds none of its increments, and a step cannot be solved for it"),
+            format!("`next({x})` does not appear in the Lagrangian, so a step cannot be solved for `{x}`"),
         )
         .help(format!("add a kinetic term, for example `{example}`"));
         // The Lagrangian may contain the increment of another field, multiplied by this field at the start of the step.
@@ -157,7 +159,8 @@ pub fn unused_velocity(spec: &Spec, c: &Configuration) -> Diagnostic {
         return match other.filter(|_| stands(c.element, Shift::HERE)) {
             Some(other) => {
                 let y = &spec.symbols.get(other.element).name;
-                d.help(format!("a product with another increment holds both ends of `{x}` alike: `({x} + next({x}))/2` times `next({y}) - {y}`"))
+                d.help(format!("a product with the increment of `{y}` needs both ends of `{x}`: write `({x} + next({x}))/2` \
+                    times `next({y}) - {y}`"))
             }
             None => d,
         };
@@ -188,8 +191,8 @@ pub fn shift_too_far(place: Place, symbols: &Symbols, letter: Letter) -> Diagnos
         ),
     );
     d.help(match before {
-        true => format!("write the term one step later: `{x}` for `prev({x})`, `next({x})` for `{x}`"),
-        false => format!("write the term one step earlier: `next({x})` for `next(next({x}))`, `{x}` for `next({x})`"),
+        true => format!("shift the term by one step: write `{x}` for `prev({x})` and `next({x})` for `{x}`"),
+        false => format!("shift the term by one step: write `next({x})` for `next(next({x}))` and `{x}` for `next({x})`"),
     })
 }
 
@@ -197,7 +200,7 @@ pub fn shifted_velocity(place: Place, velocity: &str) -> Diagnostic {
     Diagnostic::new(
         place,
         format!(
-            "the velocity `{velocity}` lives on the edge itself and cannot be taken on another one"
+            "the velocity `{velocity}` belongs to its edge and cannot be shifted to another edge"
         ),
     )
     .help(format!(
@@ -210,11 +213,12 @@ pub fn power_of_vector(place: Place, what: &str, q: Rational) -> Diagnostic {
     let two = Rational::integer(2);
     let d = Diagnostic::new(
         place,
-        format!("only numbers and square matrices have powers, and this is {what}"),
+        format!("only numbers and square matrices have powers; this is {what}"),
     );
     match q == two {
-        true => d.help("the square of its length is `dot(a, a)`"),
-        false => d.help("powers of its length are powers of a number: `dot(a, a)` is the square, `dot(a, a)^2` the fourth power"),
+        true => d.help("for the square of the length, write `dot(a, a)`"),
+        false => d.help("for a power of the length, take a power of a number: `dot(a, a)` is the square, `dot(a, a)^2` the \
+            fourth power"),
     }
 }
 
@@ -226,7 +230,7 @@ fn meaning(word: &str) -> Option<&'static str> {
         "E1" | "E2" | "E3" => "a unit vector along an axis",
         "re" | "im" => "a function, a part of a quaternion",
         "sum" => "a function, the sum over sites",
-        "rate" => "a function, a rate of change",
+        "rate" => "a function, the rate of change",
         "tr" | "Tr" => "a function, the trace",
         _ => return None,
     })
@@ -246,13 +250,14 @@ pub fn reserved(name: &Name) -> Diagnostic {
 /// The error for a constraint with values at both ends of a step; `end` if all values are at the end.
 pub fn held_over_the_step(place: Place, end: bool) -> Diagnostic {
     if end {
-        let message =
-            "a held constraint states what holds at one node, and this one holds `next(...)`";
+        let message = "a `hold` constraint applies at one node, and this one contains `next(...)`";
         return Diagnostic::new(place, message)
-            .help("leave `next` out: the constraint then holds at every node");
+            .help("remove `next`: the constraint applies at every node");
     }
-    let message = "this constraint is one on velocities, since it holds `next(...)`: nonholonomic constraints are not supported yet";
+    let message = "this constraint contains `next(...)`, so it constrains velocities: nonholonomic constraints are not \
+        supported yet";
     Diagnostic::new(place, message).help(
-        "if it is the increment of a function of the configuration, as `next(x) - x = r*(next(φ) - φ)` is, hold that function: `hold λ: x - r*φ = c;`",
+        "if it is the increment of a function of the configuration, constrain that function: for `next(x) - x = r*(next(φ) - \
+         φ)`, write `hold λ: x - r*φ = c;`",
     )
 }

@@ -152,8 +152,8 @@ fn checked(model: &Model, extent: Extent) -> Result<Spec, Errors> {
                 Ok((l, r)) => {
                     if *relation != crate::syntax::ast::Comparison::Equal && !l.shape().is_scalar() {
                         errors.push(
-                            Diagnostic::new(*place, "what is larger is decided between numbers")
-                                .help("state it of a number made of both, such as `det(J) > 0` or `J[1, 1] > 0`"),
+                            Diagnostic::new(*place, "only numbers can be compared by size")
+                                .help("compare a number, such as `det(J) > 0` or `J[1, 1] > 0`"),
                         );
                     }
                     if [&l, &r].iter().any(|e| !is_constant(&names, e)) {
@@ -461,8 +461,9 @@ fn usage(spec: &Spec, extent: Extent) -> Result<(), Errors> {
     }
     if spec.configurations.is_empty() {
         errors.push(
-            Diagnostic::new(spec.name_place, "the model has no configuration")
-                .help("state one, for example `group Λ: SO<3> velocity Ω;` or `field X: Vec<3>;`"),
+            Diagnostic::new(spec.name_place, "the model has no configuration").help(
+                "declare one, for example `group Λ: SO<3> velocity Ω;` or `field X: Vec<3>;`",
+            ),
         );
     }
     for l in &used {

@@ -40,7 +40,7 @@ pub(super) fn unusable(name: &Name) -> Option<Diagnostic> {
         return Some(messages::reserved(name));
     }
     let message = if let Some(sign) = printed {
-        format!("`{text}` prints as `{sign}`, which has a fixed meaning in derivations")
+        format!("`{text}` prints like `{sign}`, which has a fixed meaning in derivations")
     } else if RUST.contains(&text) {
         format!("`{text}` is a Rust keyword and cannot be used as a name")
     } else {
@@ -55,7 +55,7 @@ pub(super) fn foreign(a: &str, b: &str) -> Option<String> {
     let c = strange(a).or_else(|| strange(b))?;
     let plain = twin(c)?;
     Some(format!(
-        "`{c}` is U+{:04X}, which looks like `{plain}`, U+{:04X}, and is another character: write `{plain}` everywhere",
+        "`{c}` is U+{:04X}; it looks like `{plain}`, U+{:04X}, but is another character: write `{plain}` everywhere",
         u32::from(c),
         u32::from(plain)
     ))
@@ -72,7 +72,7 @@ pub(super) fn model_name(name: &Name, errors: &mut Errors) {
         let d = Diagnostic::new(
             name.place,
             format!(
-                "`{}` names a type, which starts with a capital letter",
+                "`{}` names a type, so it must start with a capital letter",
                 name.text
             ),
         );

@@ -20,10 +20,12 @@ const SHAPES: [&str; 6] = ["Real", "Vec", "Sym", "Skew", "Diag", "Mat"];
 fn instead_of_one(kind: &str) -> &'static str {
     match kind {
         "SO" => {
-            "that group has one element and nothing moves: leave it out; turns of the plane are `SO<2>`, rotations of space `SO<3>`"
+            "that group has one element, so nothing moves: remove it; rotations of the plane are `SO<2>`, rotations of space \
+             `SO<3>`"
         }
         "GL" => {
-            "a factor that stays positive is the exponential of a field: `field x: Real;` and `exp(x)`; linear maps of the plane are `GL<2>`"
+            "write a positive factor as the exponential of a field: `field x: Real;` and `exp(x)`; linear maps of the plane \
+             are `GL<2>`"
         }
         _ => "a single number is `Real`",
     }
@@ -38,11 +40,11 @@ fn size(symbols: &Symbols, kind: &str, s: &Size, errors: &mut Errors) -> Option<
             errors.push(
                 Diagnostic::new(
                     *place,
-                    format!("a size is between 2 and {LARGEST}, not {n}"),
+                    format!("a size must be between 2 and {LARGEST}, not {n}"),
                 )
                 .help(match n {
                     0 | 1 => instead_of_one(kind),
-                    _ => "take a smaller system, or split it into blocks",
+                    _ => "use a smaller system, or split it into blocks",
                 }),
             );
             None
@@ -110,7 +112,7 @@ pub fn shape(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Sha
             let other = k.sizes.iter().find(|s| !is_one(s)).map(size_text);
             let d = Diagnostic::new(
                 k.place,
-                format!("`Mat<{own}>` is no matrix: each of its sizes is at least 2"),
+                format!("`Mat<{own}>` is not a matrix: each size must be at least 2"),
             );
             errors.push(match other {
                 Some(n) if k.sizes.first().is_some_and(is_one) => d.help(format!(
@@ -186,14 +188,14 @@ pub fn field(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Sha
     let own = written(k);
     let (message, help) = match is_group(&k.name.text) {
         true => (
-            format!("the values of a field are added, and sums of elements of `{own}` leave it"),
-            format!("a configuration in a group is stated by `group Λ: {own} velocity Ω;`"),
+            format!("a field is a sum of its increments, and `{own}` is not closed under sums"),
+            format!("declare a configuration in a group as `group Λ: {own} velocity Ω;`"),
         ),
         false => (
             format!(
-                "a field varies in every entry by itself, and those of `{own}` are bound to one another"
+                "the entries of a field are independent, and the entries of `{own}` are not"
             ),
-            "fields are Real, Vec<n>, Diag<n>, Mat<n> or Mat<n, m>, and Sym<n> and Skew<n> of a number n".to_owned(),
+            "fields can be Real, Vec<n>, Diag<n>, Mat<n> or Mat<n, m>, and Sym<n> and Skew<n> if n is a number".to_owned(),
         ),
     };
     errors.push(Diagnostic::new(k.place, message).help(help));
@@ -251,11 +253,10 @@ pub fn group(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Grou
     let found = given.and_then(|n| groups::named(name, n));
     if found.is_none() {
         let own = groups::listed("and", |family, _| family == name);
-        let are = if own.contains(' ') { "are" } else { "is" };
         let own = own.replace(" and ", "` and `").replace(", ", "`, `");
-        let message = format!("`{}` is not in this version's table of groups", written(k));
+        let message = format!("this version does not support the group `{}`", written(k));
         errors.push(Diagnostic::new(k.place, message).help(format!(
-            "of this family there {are} `{own}`; the groups are {}",
+            "of this family it supports `{own}`; the groups are {}",
             all()
         )));
     }

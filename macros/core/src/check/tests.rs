@@ -64,7 +64,7 @@ fn numbers_glued_to_names_are_refused() {
         ("2h", "2h", vec!["`2*h`"]),
     ] {
         let message = refused("", text);
-        let said = format!("`{spelled}` is a number glued to a name");
+        let said = format!("`{spelled}` is neither a number nor a name");
         assert!(message.contains(&said), "{text}: {message}");
         for remedy in remedies {
             assert!(message.contains(remedy), "{text}: {message}");
@@ -87,7 +87,7 @@ fn juxtaposition_after_a_divisor_is_refused() {
         ("m/sqrt(g) m", "`/(a*m)`", "`/a*m`"),
     ] {
         let message = refused("", text);
-        assert!(message.contains("read in two ways"), "{text}: {message}");
+        assert!(message.contains("is ambiguous"), "{text}: {message}");
         assert!(message.contains(below), "{text}: {message}");
         assert!(message.contains(beside), "{text}: {message}");
     }
@@ -124,7 +124,7 @@ fn parentheses_after_what_is_no_function_are_refused() {
         assert!(message.contains(&said), "{message}");
     }
     let message = refused("param rot: Real;", "rot(m)");
-    assert!(message.contains("hides the function") && message.contains("`rot*(...)`"));
+    assert!(message.contains("shadows the function") && message.contains("`rot*(...)`"));
     assert!(checked("param rot: Real;", "rot*(m)").is_ok());
 }
 
@@ -138,7 +138,7 @@ fn components_are_counted_from_one() {
     same("J^T[1, 3]", "J[3, 1]");
     for (text, said) in [
         ("Γ[0]", "counted from 1 to 3"),
-        ("Γ[4]", "there is no component 4"),
+        ("Γ[4]", "no component 4"),
         ("w[5]", "counted from 1 to 4"),
         ("F[1, 3]", "counted from 1 to 2"),
         ("F[4, 1]", "counted from 1 to 3"),
@@ -252,7 +252,7 @@ fn advected_quantities_are_declared_together_as_apart() {
     for (declared, said) in [
         (
             "advected A, B: Sym<3> = Λ^T*J*Λ;",
-            "a definition belongs to one quantity",
+            "only one quantity can have a definition",
         ),
         ("advected A, A: Sym<3>;", "`A`"),
         ("advected A, J: Sym<3>;", "`J`"),
@@ -308,10 +308,13 @@ fn numbers_of_other_languages_are_refused() {
         ("0b11*m", "write `3`"),
         ("m^0x2", "write `2`"),
         ("0o1_7*m", "write `15`"),
-        ("0xffffffffffffffffffffffffffffffffff*m", "decimal digits"),
+        (
+            "0xffffffffffffffffffffffffffffffffff*m",
+            "numbers are decimal",
+        ),
         ("2f64*m", "write `2`"),
         ("1.5f32*m", "write `1.5`"),
-        ("3u8*m", "no type here"),
+        ("3u8*m", "have no type"),
     ] {
         let message = refused("", text);
         assert!(message.contains(said), "{text}: {message}");
@@ -411,29 +414,33 @@ fn unit_vectors_are_those_of_the_size() {
         (
             "size 2",
             "dot(Λ*v, E3)",
-            "there is no `E3` in 2 dimensions\n  help: the unit vectors are `E1` and `E2` here",
+            "`E3` does not exist in 2 dimensions\n  help: the unit vectors here are `E1` and `E2`",
         ),
-        ("size 2", "dot(Λ*E3, v)", "there is no `E3` in 2 dimensions"),
+        (
+            "size 2",
+            "dot(Λ*E3, v)",
+            "`E3` does not exist in 2 dimensions",
+        ),
         (
             "size 2",
             "tr(Λ*E1*E3^T)",
-            "there is no `E3` in 2 dimensions",
+            "`E3` does not exist in 2 dimensions",
         ),
         (
             "size 3",
             "dot(Λ*v, E4)",
-            "there is no `E4` in 3 dimensions\n  help: the unit vectors are `E1` to `E3` here",
+            "`E4` does not exist in 3 dimensions\n  help: the unit vectors here are `E1` to `E3`",
         ),
-        ("size 3", "dot(Λ*v, E1 + E5)", "there is no `E5`"),
+        ("size 3", "dot(Λ*v, E1 + E5)", "`E5` does not exist"),
         (
             "size 3",
             "dot(Λ*v, E9)",
-            "the unit vectors with a name are `E1` to `E8`",
+            "the named unit vectors are `E1` to `E8`",
         ),
         (
             "dim n in 3..=8;",
             "dot(Λ*v, E4)",
-            "there is no `E4` for the smallest `n`, which is 3",
+            "`E4` does not exist for the smallest `n`, which is 3",
         ),
     ] {
         let message = of_size(n, term);
@@ -445,19 +452,19 @@ fn unit_vectors_are_those_of_the_size() {
 #[test]
 fn definitions_in_a_circle_are_told_as_one() {
     let cases = [
-        ("let a = 2*a;", "`a` is defined by itself"),
+        ("let a = 2*a;", "`a` is defined in terms of itself"),
         (
             "let a = 2*b; let b = m + a;",
-            "these definitions go in a circle: `a` uses `b`, `b` uses `a`",
+            "these definitions are circular: `a` uses `b`, `b` uses `a`",
         ),
         (
             "let a = tr(J)*b; let b = -(c[1]); let c = a*v; let d = a;",
-            "these definitions go in a circle: `a` uses `b`, `b` uses `c`, `c` uses `a`",
+            "these definitions are circular: `a` uses `b`, `b` uses `c`, `c` uses `a`",
         ),
         (
             // The error lists the cycle, without the path that leads to it.
             "let d = a; let a = b^2; let b = sin(a);",
-            "these definitions go in a circle: `a` uses `b`, `b` uses `a`",
+            "these definitions are circular: `a` uses `b`, `b` uses `a`",
         ),
     ];
     for (lets, said) in cases {
@@ -480,25 +487,29 @@ fn what_papers_write_otherwise_is_told_as_the_language_writes_it() {
         ("param u: Vec3;", "m", "write `Vec<3>`"),
         ("param u: Sym3;", "m", "write `Sym<3>`"),
         ("param u: SO3;", "m", "write `SO<3>`"),
-        ("param u: Vec(3);", "m", "sizes stand in angle brackets"),
-        ("param u: Real = 1.0;", "m", "values stand in the case"),
+        ("param u: Vec(3);", "m", "write sizes in angle brackets"),
+        ("param u: Real = 1.0;", "m", "values belong in the case"),
         (
             "group R: SO(3) velocity w;",
             "m",
-            "sizes stand in angle brackets",
+            "write sizes in angle brackets",
         ),
-        ("# a remark\n", "m", "remarks begin with `//`"),
-        ("L = m;", "m", "stated by `lagrangian = ...;`"),
-        ("E = m*g;", "m", "given a name by `let E = ...;`"),
-        ("q: Vec<3>;", "m", "`field q: ...;` moves"),
-        ("", "m/dt^2", "the time step is `h` here"),
+        ("# a remark\n", "m", "write a comment after `//`"),
+        ("L = m;", "m", "write `lagrangian = ...;`"),
+        (
+            "E = m*g;",
+            "m",
+            "to name an expression, write `let E = ...;`",
+        ),
+        ("q: Vec<3>;", "m", "`field q: ...;` for a configuration"),
+        ("", "m/dt^2", "the time step is named `h` here"),
         (
             "",
             "m*t",
-            "cannot depend on the time `t` unless a clock is declared",
+            "cannot depend on the time `t` unless you declare a clock",
         ),
-        ("", "v.z", "a component of a vector is written `v[3]`"),
-        ("", "m**2", "a power is written `a^2`"),
+        ("", "v.z", "write a component of a vector as `v[3]`"),
+        ("", "m**2", "write a power as `a^2`"),
         ("", "|v|", "the length of a vector is `sqrt(dot(X, X))`"),
         ("", "m/|v|", "the length of a vector is `sqrt(dot(X, X))`"),
         ("", "dot(dΓ, v)", "`(next(Γ) - Γ)/h`"),

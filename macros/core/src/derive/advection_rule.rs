@@ -81,11 +81,12 @@ fn check_definition(
     let by_definition = show(&algebra.raise(&algebra.lower(&by_definition)));
     let mut d = Diagnostic::new(
         a.definition_place.unwrap_or(a.place),
-        format!("the definition of `{name}` contradicts its constraint: one step later it gives {by_definition}, and the two differ by {}", show(&algebra.raise(&rest))),
+        format!("the definition of `{name}` contradicts its constraint: at the next node it gives {by_definition}, and the two \
+            differ by {}", show(&algebra.raise(&rest))),
     )
     .help(match spec.has_only_fields() {
-        true => "correct one of the two; for a field `X`, `Y = X - a` is carried by `next(Y) = Y + (next(X) - X)`",
-        false => "correct one of the two; for `next(Λ) = Λ * Ω`, `Γ = Λ^T * z` is carried by `next(Γ) = Ω^T * Γ`",
+        true => "correct one of the two; for a field `X`, the constraint of `Y = X - a` is `next(Y) = Y + (next(X) - X)`",
+        false => "correct one of the two; for `next(Λ) = Λ * Ω`, the constraint of `Γ = Λ^T * z` is `next(Γ) = Ω^T * Γ`",
     });
     d = d.also(a.place, format!("the constraint of `{name}` is here"));
     errors.push(d);

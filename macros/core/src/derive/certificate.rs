@@ -109,9 +109,10 @@ pub fn certify(x: &Inputs) -> Result<Certificate, Errors> {
             errors.push(
                 Diagnostic::new(
                     x.spec.lagrangian_place,
-                    format!("the derivation of this model cannot be proved: {}: {text} is left", step.name),
+                    format!("clebsch cannot prove the derivation of this model: {}: {text} remains", step.name),
                 )
-                .help("state the same Lagrangian in simpler terms; the algebra knows products, transposes, traces, hats and inverses, not every identity of functions"),
+                .help("write the same Lagrangian in simpler terms: the algebra knows products, transposes, traces, hats and \
+                    inverses, but not every identity of functions"),
             );
         }
     }

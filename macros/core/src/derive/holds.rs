@@ -225,19 +225,20 @@ pub(super) fn dependent(d: &Derivation, assumed: &[Expr]) -> Option<Diagnostic> 
         let hold = &d.spec.holds[j];
         let name = &d.letters.symbols.get(hold.multiplier).name;
         let message = format!(
-            "the constraint of `{name}` follows from the others, or some of its components from one another: \
-             {wanted} equations hold {rank} directions, and its multiplier is not determined"
+            "the constraint of `{name}` follows from the others, or some of its components follow from one another: {wanted} \
+             equations constrain only {rank} directions, so its multiplier is undetermined"
         );
         let is_turned = |e: &Expr| e.shape().is_vector() && rank + 1 == wanted;
         let help = match hold.left.shape() == hold.value.shape() {
             true if is_turned(&hold.left) => {
-                "leave out what the other constraints state already; vectors of one length, as `R*a` and `S*b`, are made parallel by two \
-                 numbers: `dot(R*c, S*b) = 0` and `dot(R*d, S*b) = 0` with `c` and `d` across `a`"
+                "remove what the other constraints state already; to make vectors of equal length, such as `R*a` and `S*b`, \
+                 parallel, use two numbers: `dot(R*c, S*b) = 0` and `dot(R*d, S*b) = 0` with `c` and `d` perpendicular to \
+                 `a`"
             }
-            true => "leave out what the other constraints state already",
+            true => "remove what the other constraints state already",
             false => {
-                "a matrix is held by all of its entries, a symmetric one by those on and above the diagonal, a skew one by its \
-                 axial vector: between rotations state `vee(A^T*B) = 0` for `A = B`"
+                "an equation of matrices constrains all entries, of symmetric matrices the entries on and above the diagonal, \
+                 of skew matrices the axial vector: for rotations, write `vee(A^T*B) = 0` instead of `A = B`"
             }
         };
         return Some(Diagnostic::new(hold.place, message).help(help));
@@ -385,7 +386,7 @@ pub(super) fn kept(
     integrability.lax = None;
     integrability.discrete_energy.exact = false;
     integrability.casimirs = Known::NotSought(
-        "constraints are held, and the space that they leave is no longer that of the bracket"
+        "the `hold` constraints restrict the motion to a smaller space than the bracket describes"
             .to_owned(),
     );
     for (j, hold) in spec.holds.iter().enumerate() {
@@ -397,7 +398,7 @@ pub(super) fn kept(
             scale: Some(scale(s, hold)),
             value: Some(hold.value.clone()),
             exact: true,
-            reason: format!("held by the multiplier {}", multiplier.name),
+            reason: format!("enforced by the multiplier {}", multiplier.name),
         });
         if projected {
             invariants.push(Invariant {
@@ -408,7 +409,7 @@ pub(super) fn kept(
                 value: None,
                 exact: true,
                 reason: format!(
-                    "the rate of change of what {} holds vanishes: the momentum is projected on arrival",
+                    "the rate of change of the constraint of {} vanishes: the momentum is projected at every node",
                     multiplier.name
                 ),
             });

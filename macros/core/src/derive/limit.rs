@@ -46,7 +46,7 @@ pub const STANDING: &str = "the action of a step does not shrink in proportion t
 pub const DRIVEN: &str = "the Lagrangian depends on time";
 
 /// The reason if the step size cannot be extracted from a function.
-pub(crate) const INSIDE: &str = "the step stands inside a function or root";
+pub(crate) const INSIDE: &str = "the step occurs inside a function or root";
 
 /// The limit, or why it does not exist.
 pub fn limit(

@@ -250,8 +250,8 @@ impl Derivation {
         match degenerate.filter(|_| self.solve.needs_second_moments()) {
             None => reason.clone(),
             Some((rank, n)) => format!(
-                "{reason}, for no parameters, since the kinetic energy has rank {rank} of {n}: \
-                 all are refused at the start"
+                "{reason}, but the kinetic energy has rank {rank} of {n}: every choice of the parameters is rejected at the \
+                 start"
             ),
         }
     }
@@ -285,7 +285,7 @@ fn too_large(place: Place, excess: Option<String>) -> Diagnostic {
     };
     Diagnostic::new(place, message)
         .of_size()
-        .help("take fewer bodies or terms, lower powers of sums and less nested products, or make parts parameters")
+        .help("use fewer bodies or terms, lower powers of sums or fewer nested products, or turn parts into parameters")
 }
 
 /// All results, in the order of their dependencies.

@@ -34,7 +34,8 @@ pub(super) fn form(
     i: usize,
     algebra: &Algebra,
 ) -> Result<(Expr, Expr, Expr), String> {
-    let refused = "the momentum is not that of a quadratic form and a multiple of the real part";
+    let refused =
+        "the momentum is not the momentum of a quadratic form plus a multiple of the real part";
     let name = &letters.symbols.get(spec.configurations[i].velocity).name;
     // As the balance of a model with a single configuration.
     let own = Spec {

@@ -135,9 +135,11 @@ fn of_advected(
                 format!("the constraint of `{name}` cannot be inverted for `{name}`: it must multiply `{name}` once, between invertible factors"),
             )
             .help(match by_field(spec, a) {
-                _ if !is_moved(spec, a) => format!("what nothing moves goes on in proportion to itself, as `next({name}) = c*{name}`, or by what is added to it, as `next({name}) = {name} + h`"),
-                Some(x) => format!("what is made of `{x}` or its increment has no inverse and cannot be a factor of `{name}`; {}", of_field(s, a, &x)),
-                None => "actions read like `Ω^T * Γ` or `Ω^T * S * Ω`; the velocity and parameters of a group are invertible".to_owned(),
+                _ if !is_moved(spec, a) => format!("if no configuration moves the quantity, multiply it by a factor, \
+                    `next({name}) = c*{name}`, or add a summand, `next({name}) = {name} + h`"),
+                Some(x) => format!("an expression of `{x}` or its increment has no inverse and cannot be a factor of `{name}`; \
+                    {}", of_field(s, a, &x)),
+                None => "write an action as `Ω^T * Γ` or `Ω^T * S * Ω`; velocities and parameters in a group are invertible".to_owned(),
             }),
         ));
     };
@@ -306,7 +308,8 @@ fn wrong_side(
         return Diagnostic::new(
             a.place,
             format!(
-                "`{name}` is not advected by the group: increments of the field `{x}` add up, and two steps of this constraint are not one by their sum; its variation leaves {rest}"
+                "`{name}` is not advected by the group: increments of the field `{x}` add up, but two steps of this constraint \
+                 are not one step by their sum; its variation leaves {rest}"
             ),
         )
         .help(of_field(s, a, &x));
@@ -345,7 +348,7 @@ fn wrong_side(
         ),
     )
     .help(format!(
-        "with this reconstruction an advected quantity is carried on the other side, for example `constraint {example};`"
+        "with this reconstruction, write for example `constraint {example};`"
     ))
 }
 
@@ -374,10 +377,12 @@ fn of_field(s: &Symbols, a: &Advected, field: &str) -> String {
     let same = s.find(field).is_some_and(|x| s.get(x).shape == q.shape);
     match same {
         true => format!(
-            "what goes along with a field is carried like `constraint next({name}) = {name} + (next({field}) - {field});`; a function of `{field}` needs no constraint: write it by `{field}` in the Lagrangian"
+            "to advect a quantity with the field, write `constraint next({name}) = {name} + (next({field}) - {field});`; if it \
+             is a function of `{field}`, write it in terms of `{field}` in the Lagrangian, without a constraint"
         ),
         false => format!(
-            "a function of `{field}` needs no constraint: write it by `{field}` in the Lagrangian, in the place of `{name}`; what stays is carried by `constraint next({name}) = {name};`"
+            "if `{name}` is a function of `{field}`, write it in terms of `{field}` in the Lagrangian, without a constraint; \
+             if it is constant, write `constraint next({name}) = {name};`"
         ),
     }
 }

@@ -543,7 +543,10 @@ fn sizes(d: &Derivation) -> TokenStream {
         .map(|(n, name)| {
             let from = Literal::u64_unsuffixed(n.from);
             let to = Literal::u64_unsuffixed(n.to);
-            let text = format!("`{}` is from {} to {} in this model", n.name, n.from, n.to);
+            let text = format!(
+                "`{}` ranges from {} to {} in this model",
+                n.name, n.from, n.to
+            );
             quote!(::core::assert!(#from <= #name && #name <= #to, #text);)
         })
         .collect();

@@ -104,9 +104,9 @@ fn refused(d: &Derivation, most: &Most) -> Option<Diagnostic> {
             return Some(
                 Diagnostic::new(
                     c.group_place,
-                    "this version emits steppers up to SO<8> and GL<5>",
+                    "this version compiles steppers up to SO<8> and GL<5>",
                 )
-                .help("take a smaller size; `clebsch derive` prints the equations for any"),
+                .help("use a smaller size; `clebsch derive` prints the equations for any size"),
             );
         }
     }
@@ -119,10 +119,10 @@ fn refused(d: &Derivation, most: &Most) -> Option<Diagnostic> {
             Diagnostic::new(
                 d.spec.name_place,
                 format!(
-                    "{combined} combinations of sizes are to be compiled, at most {MOST_SIZES} are"
+                    "the model needs {combined} combinations of sizes, and at most {MOST_SIZES} can be compiled"
                 ),
             )
-            .help("narrow the ranges of `dim`, or write numbers in their place"),
+            .help("narrow the ranges of `dim`, or write numbers instead"),
         );
     }
     if let Some(refused) = too_many_together(d, most) {
@@ -178,14 +178,14 @@ fn too_many_together(d: &Derivation, most: &Most) -> Option<Diagnostic> {
     };
     let names: Vec<String> = refused.iter().map(name).collect();
     let message = format!(
-        "{} stand in one another's equations and would be solved together: this version {made} \
-         steppers for at most {different} such bodies of different groups, and for at most \
-         {admitted} coordinates",
+        "{} depend on one another, so their equations must be solved together: this version {made} steppers for at most \
+         {different} such bodies of different groups, and for at most {admitted} coordinates",
         names.join(", ")
     );
     Some(
         Diagnostic::new(d.spec.name_place, message)
-            .help("`clebsch derive` prints the equations for any number; forces between bodies that depend on configurations, not on velocities, leave every body a block of its own"),
+            .help("`clebsch derive` prints the equations for any number of bodies; bodies whose forces depend on \
+                configurations but not on velocities are solved one by one"),
     )
 }
 

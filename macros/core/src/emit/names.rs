@@ -137,7 +137,7 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
     let spec = &d.spec;
     let model = spec.name.as_str();
     if is_a_type(model) {
-        let message = format!("`{model}` is a name that emitted steppers use for something else");
+        let message = format!("`{model}` is a name that the emitted code uses");
         return Some(
             Diagnostic::new(spec.name_place, message)
                 .help(format!("write for example `model {model}Model`")),
@@ -146,9 +146,12 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
     let functions = d.letters.symbols.functionals();
     if let Some(open) = functions.iter().find(|f| f.path == BY_CASE) {
         let name = &open.name;
-        let message = format!("what `{name}` is, the case says: a stepper needs it");
+        let message = format!(
+            "the case gives the function `{name}`, but a compiled stepper needs it in the model"
+        );
         return Some(Diagnostic::new(spec.name_place, message).help(format!(
-            "run the model from its file, with [functions] in its case, or write `given {name}(...): ... = \"EXPRESSION\";` or a path of Rust"
+            "run the model from its file, with [functions] in its case, or write `given {name}(...): ... = \"EXPRESSION\";` or \
+             the path of a Rust function"
         )));
     }
     let taken: Vec<&String> = d.invariants.iter().map(|v| &v.name).collect();

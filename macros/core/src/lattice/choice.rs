@@ -65,7 +65,7 @@ impl fmt::Display for Refusal {
             ),
             Self::NotPeriodic { label } => write!(
                 f,
-                "the line `{label}` is not stated to be periodic: add `periodic;` to the model"
+                "the chain `{label}` is not declared periodic: add `periodic;` to the model"
             ),
             Self::Few {
                 label,
@@ -212,7 +212,7 @@ impl Choice {
         let (a, b) = (name(false), name(true));
         match a == b {
             true => format!("with both ends {a}"),
-            false => format!("with the first end {a} and the last one {b}"),
+            false => format!("with the first end {a} and the last end {b}"),
         }
     }
 

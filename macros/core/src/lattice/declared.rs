@@ -207,25 +207,25 @@ impl Lattice {
                 continue;
             }
             if index.text == count.text {
-                let d = Diagnostic::new(count.place, "the index and its number have one name");
+                let d = Diagnostic::new(count.place, "the index and the count have the same name");
                 errors.push(d.help("write for example `label i in 0..N;`"));
             }
             let set = sets.contains(&index.text);
             if !set && let Some(line) = self.line_label() {
                 let message = format!(
-                    "a model has one line of nodes and segments, and `{}` is one already",
+                    "a model has at most one chain of nodes and segments, and `{}` is one already",
                     line.index.text
                 );
                 let d = Diagnostic::new(index.place, message).help(format!(
-                    "for a set of sites without neighbours write `at {}` where quantities are declared",
+                    "for a set of sites without neighbours, declare quantities `at {}`",
                     index.text
                 ));
-                errors.push(d.also(line.index.place, "the line is declared here"));
+                errors.push(d.also(line.index.place, "the chain is declared here"));
                 continue;
             }
             if let (true, Some(step)) = (set, step) {
                 let d = Diagnostic::new(step.place, "a set of sites has no spacing");
-                errors.push(d.help("leave `step ...` out"));
+                errors.push(d.help("remove `step ...`"));
             }
             if !set {
                 self.line = Some(self.labels.len());
@@ -325,7 +325,8 @@ impl Lattice {
                 }
                 let known = at.as_ref().is_none_or(|at| self.knows(at));
                 if !on_line && known {
-                    let d = Diagnostic::new(offset.place, "an offset belongs to a field on a line");
+                    let d =
+                        Diagnostic::new(offset.place, "only a field on a chain can have an offset");
                     errors.push(d.help("write for example `field X: Real at nodes offset L;`"));
                 }
             }
@@ -348,8 +349,9 @@ impl Lattice {
             }
             Statement::Periodic(place) => {
                 if self.line.is_none() {
-                    let d = Diagnostic::new(*place, "there is no line that could be periodic");
-                    errors.push(d.help("declare one: `label i in 0..N;`"));
+                    let d =
+                        Diagnostic::new(*place, "the model has no chain that could be periodic");
+                    errors.push(d.help("declare a chain: `label i in 0..N;`"));
                 }
                 if let Some(first) = self.periodic {
                     let d = Diagnostic::new(*place, "`periodic` is stated twice");
@@ -410,16 +412,16 @@ impl Lattice {
 
     fn unknown_site(&self, at: &At) -> Diagnostic {
         let Site::Set(name) = &at.site else {
-            return Diagnostic::new(at.place, "the model has no line of nodes and segments")
-                .help("declare one: `label i in 0..N;`");
+            return Diagnostic::new(at.place, "the model has no chain of nodes and segments")
+                .help("declare a chain: `label i in 0..N;`");
         };
-        let d = Diagnostic::new(at.place, format!("`{}` is no label", name.text));
+        let d = Diagnostic::new(at.place, format!("`{}` is not a label", name.text));
         let known = self.labels.iter().map(|l| l.index.text.as_str());
         let words = ["nodes", "segments"].into_iter();
         match closest(&name.text, known.chain(words)) {
             Some(near) => d.help(format!("did you mean `at {near}`?")),
             None => d.help(format!(
-                "sites are `nodes` and `segments` of a line, or a set: `label {} in 0..N;`",
+                "write `nodes` or `segments` of a chain, or the label of a set of sites: `label {} in 0..N;`",
                 name.text
             )),
         }
@@ -427,12 +429,15 @@ impl Lattice {
 
     fn end(&mut self, label: &Name, at: &Name, alternatives: &[Alternative], errors: &mut Errors) {
         let Some(line) = self.line_label() else {
-            let d = Diagnostic::new(label.place, "there is no line that could have an end");
-            errors.push(d.help("declare one: `label i in 0..N;`"));
+            let d = Diagnostic::new(label.place, "the model has no chain that could have an end");
+            errors.push(d.help("declare a chain: `label i in 0..N;`"));
             return;
         };
         if line.index.text != label.text {
-            let message = format!("the line is `{}`, not `{}`", line.index.text, label.text);
+            let message = format!(
+                "the label of the chain is `{}`, not `{}`",
+                line.index.text, label.text
+            );
             errors.push(Diagnostic::new(label.place, message));
             return;
         }
@@ -441,7 +446,7 @@ impl Lattice {
             n if n == line.count.text => true,
             _ => {
                 let (i, n) = (&line.index.text, &line.count.text);
-                let d = Diagnostic::new(at.place, format!("the line ends at 0 and at {n}"));
+                let d = Diagnostic::new(at.place, format!("the ends of the chain are 0 and {n}"));
                 errors.push(d.help(format!("write `end {i} = 0` or `end {i} = {n}`")));
                 return;
             }
@@ -455,21 +460,19 @@ impl Lattice {
             }
             if a.name.text == "periodic" {
                 let d = Diagnostic::new(a.name.place, "a ring has no end");
-                errors.push(d.help("state `periodic;` beside the ends; the case chooses"));
+                errors.push(d.help("write `periodic;` in addition to the ends; the case chooses"));
             }
             names.push(&a.name);
         }
         let list = &mut self.ends[usize::from(last)];
         if !list.is_empty() {
-            let message = "the alternatives of this end are stated twice";
+            let message = "the conditions of this end are stated twice";
             errors.push(Diagnostic::new(at.place, message).help("list them in one `end` block"));
             return;
         }
         if alternatives.is_empty() {
-            let d = Diagnostic::new(at.place, "this end has no alternative");
-            errors.push(
-                d.help("write `free;` for the natural end condition, or leave the block out"),
-            );
+            let d = Diagnostic::new(at.place, "this end has no condition");
+            errors.push(d.help("write `free;` for the natural end condition, or remove the block"));
         }
         *list = alternatives.to_vec();
     }
@@ -494,7 +497,7 @@ impl Lattice {
                 let d = Diagnostic::new(name.place, message);
                 errors.push(d.also(
                     first.place,
-                    format!("`{}` is declared here as well", name.text),
+                    format!("`{}` is also declared here", name.text),
                 ));
             }
         }
@@ -507,11 +510,11 @@ impl Lattice {
             let states = !alternative.given.is_empty() || !alternative.terms.is_empty();
             if !states && HOLDING.contains(&name.text.as_str()) {
                 let message = format!(
-                    "`{}` states nothing, and an end at which nothing is stated is free",
+                    "`{}` prescribes nothing, and such an end is free",
                     name.text
                 );
                 errors.push(Diagnostic::new(name.place, message).help(format!(
-                    "say what is given there, `{} {{ q = given; }}`, or call it `free`",
+                    "say what the case prescribes, `{} {{ q = given; }}`, or name the condition `free`",
                     name.text
                 )));
             }
@@ -520,14 +523,17 @@ impl Lattice {
                 let message = match kind {
                     Some((Kind::Configuration, Sites::Nodes | Sites::Segments)) => continue,
                     Some((Kind::Velocity, _)) => format!(
-                        "`{}` is a velocity: give the configuration, whose velocity then rests",
+                        "`{}` is a velocity: prescribe the configuration; its velocity then vanishes",
                         name.text
                     ),
                     Some((Kind::Advected, _)) => {
-                        format!("`{}` follows its configuration: give that one", name.text)
+                        format!(
+                            "`{}` follows from its configuration: prescribe the configuration",
+                            name.text
+                        )
                     }
-                    Some(_) => format!("`{}` is no configuration", name.text),
-                    None => format!("`{}` does not live on the line", name.text),
+                    Some(_) => format!("`{}` is not a configuration", name.text),
+                    None => format!("`{}` is not a quantity of the chain", name.text),
                 };
                 let known = self.quantities.iter();
                 let known = known.filter(|q| q.kind == Kind::Configuration);
@@ -539,7 +545,7 @@ impl Lattice {
                 };
                 errors.push(match known.is_empty() {
                     true => d,
-                    false => d.help(format!("configurations on the line: {}", known.join(", "))),
+                    false => d.help(format!("configurations on the chain: {}", known.join(", "))),
                 });
             }
         }

@@ -105,7 +105,10 @@ impl Lattice {
                 continue;
             };
             let Some(at) = at else {
-                let d = Diagnostic::new(name.place, "at which sites its values stand is not said");
+                let d = Diagnostic::new(
+                    name.place,
+                    "this functional does not say at which sites it has values",
+                );
                 errors.push(d.help(format!(
                     "write for example `mesh {}: Real at a = {}(X);`",
                     name.text, path.text
@@ -115,17 +118,18 @@ impl Lattice {
             if shape.name.text != "Real" {
                 let d = Diagnostic::new(
                     shape.place,
-                    "a functional of all sites has one number at each site",
+                    "a functional of all sites must have one number at each site",
                 );
                 errors.push(d.help(format!("write `mesh {}: Real at ...`", name.text)));
             }
             if let Some(line) = self.line_label() {
                 let d = Diagnostic::new(
                     name.place,
-                    "functionals of all sites stand at sets of sites and at grids, and this model has a line",
+                    "functionals of all sites need a set of sites or a grid, and this model has a chain",
                 );
-                errors.push(d.also(line.index.place, "the line is declared here").help(
-                    "along a line write the neighbours out: `2*m/(next(X, i) - prev(X, i))`; of a set write `at a` where its quantities are declared",
+                errors.push(d.also(line.index.place, "the chain is declared here").help(
+                    "along a chain write the neighbours out, `2*m/(next(X, i) - prev(X, i))`; for a set of sites, declare the \
+                     quantities `at a`",
                 ));
                 continue;
             }
@@ -157,10 +161,10 @@ impl Lattice {
                 continue;
             };
             if !model.statements.iter().any(|s| stands(&name.text, s)) {
-                let message = format!("`{}` stands in no term of the Lagrangian", name.text);
+                let message = format!("no term of the Lagrangian contains `{}`", name.text);
                 errors.push(
                     Diagnostic::new(name.place, message)
-                        .help("add the term that it is meant for, or leave the functional out"),
+                        .help("add the term that uses it, or remove the functional"),
                 );
             }
         }
@@ -173,31 +177,28 @@ impl Lattice {
         let stated = model.statements.iter().filter(is_mesh).count();
         let mut with = self.quantities.iter().filter(|q| q.domain.is_some());
         if let (Some(first), Some(second)) = (with.next(), with.next()) {
-            let d = Diagnostic::new(second.name.place, "a second field lies in a domain");
+            let d = Diagnostic::new(second.name.place, "a second field is declared in a domain");
             errors.push(
-                d.also(first.name.place, "the first is declared here")
-                    .help("a model has one domain: leave `on ...` out at the other field"),
+                d.also(first.name.place, "the first field is declared here")
+                    .help("a model has one domain: remove `on ...` from the other field"),
             );
         }
         for q in self.quantities.iter().filter(|q| q.domain.is_some()) {
             if q.sites != Sites::Members {
                 let d = Diagnostic::new(
                     q.name.place,
-                    "places in a domain are those of a set of sites",
+                    "only a field at a set of sites can have a domain",
                 );
-                errors.push(d.help("along a ring write `offset L` in the place of `on ...`"));
+                errors.push(d.help("along a ring write `offset L` instead of `on ...`"));
             } else if stated == self.meshes.len()
                 && !self
                     .meshes
                     .iter()
                     .any(|m| m.of == Source::Field(q.name.text.clone()))
             {
-                let message = format!(
-                    "no functional is made of `{}`, which lies in a domain",
-                    q.name.text
-                );
+                let message = format!("`{}` has a domain, but no functional uses it", q.name.text);
                 errors.push(Diagnostic::new(q.name.place, message).help(
-                    "declare one, `mesh A: Real at a = voronoi_area(X);`, or leave `on ...` out",
+                    "declare a functional, `mesh A: Real at a = voronoi_area(X);`, or remove `on ...`",
                 ));
             }
             if let Some(Extent::Torus(lengths)) = &q.domain
@@ -206,36 +207,36 @@ impl Lattice {
                 let message = format!("`{}` is declared twice", lengths.text);
                 errors.push(
                     Diagnostic::new(twice.name.place, message)
-                        .also(lengths.place, "it is the lengths of the torus here"),
+                        .also(lengths.place, "here it names the side lengths of the torus"),
                 );
             }
         }
         let mut grids = self.labels.iter().filter(|l| l.grid);
         if let (Some(first), Some(second)) = (grids.next(), grids.next()) {
-            let d = Diagnostic::new(second.index.place, "a model has one grid");
-            errors.push(d.also(first.index.place, "it is declared here"));
+            let d = Diagnostic::new(second.index.place, "a model can have only one grid");
+            errors.push(d.also(first.index.place, "the first grid is declared here"));
         }
         for statement in &model.statements {
             let (found, what) = match statement {
                 Statement::Hold { left, right, .. } => {
-                    ([Some(left), Some(right)], "a constraint is held")
+                    ([Some(left), Some(right)], "a `hold` constraint")
                 }
                 Statement::Assume { left, right, .. } => {
-                    ([Some(left), Some(right)], "an assumption is made")
+                    ([Some(left), Some(right)], "an assumption")
                 }
                 Statement::Constraint { value, .. } => {
-                    ([Some(value), None], "a quantity is carried")
+                    ([Some(value), None], "an evolution constraint")
                 }
                 Statement::Advected { definition, .. } => {
-                    ([definition.as_ref(), None], "a quantity is defined")
+                    ([definition.as_ref(), None], "the definition of a quantity")
                 }
                 _ => continue,
             };
             if let Some(e) = found.into_iter().flatten().find(|e| self.has_functional(e)) {
-                let message = format!("a functional of all sites stands where {what}");
+                let message = format!("{what} cannot contain a functional of all sites");
                 errors.push(
                     Diagnostic::new(e.place, message)
-                        .help("functionals stand in the Lagrangian, in terms of one node in time"),
+                        .help("use functionals in the Lagrangian, in terms at one node"),
                 );
             }
         }
@@ -254,7 +255,7 @@ impl Lattice {
         let Some(first) = arguments.first() else {
             return refused(
                 path.place,
-                "a functional is made of something".to_owned(),
+                "a functional needs an argument".to_owned(),
                 &example(&path.text),
             );
         };
@@ -265,10 +266,14 @@ impl Lattice {
                     "only the first argument may be a field or a functional, and `{}` is one",
                     data.text
                 );
-                return refused(data.place, message, "the others are parameters");
+                return refused(
+                    data.place,
+                    message,
+                    "the other arguments must be parameters",
+                );
             }
             if !parameters.iter().any(|p| p.name.text == data.text) {
-                let message = format!("`{}` is no parameter", data.text);
+                let message = format!("`{}` is not a parameter", data.text);
                 return refused(
                     data.place,
                     message,
@@ -289,7 +294,7 @@ impl Lattice {
         let Some(known) = SUPPLIED.iter().find(|s| s.name == path.text) else {
             let d = Diagnostic::new(
                 path.place,
-                format!("`{}` is no functional that is known by its name", path.text),
+                format!("`{}` is not a functional of clebsch", path.text),
             );
             let names = SUPPLIED.iter().map(|s| s.name);
             let d = match closest(&path.text, names.clone()) {
@@ -300,7 +305,7 @@ impl Lattice {
                 )),
             };
             return Err(Box::new(
-                d.help("one of your own is given by its path, `crate::area(X)`"),
+                d.help("give your own functional by its path, `crate::area(X)`"),
             ));
         };
         self.supplied(known, name, path, arguments, &of, parameters)?;
@@ -315,22 +320,26 @@ impl Lattice {
                 return Ok(Source::Field(first.text.clone()));
             }
             Some((Kind::Configuration, _)) => {
-                format!("`{}` is no place: a number or a vector is", first.text)
+                format!(
+                    "`{}` is not a position: a position is a number or a vector",
+                    first.text
+                )
             }
             Some((Kind::Functional, _)) => {
                 let known = self.meshes.iter().position(|m| m.name.text == first.text);
                 match known {
                     Some(i) => return Ok(Source::Functional(i)),
-                    None => format!("`{}` is used before it is declared", first.text),
+                    None => format!("`{}` is used before its declaration", first.text),
                 }
             }
             _ => format!(
-                "`{}` is neither a field at sites nor a functional declared before",
+                "`{}` is neither a field at sites nor a functional declared earlier",
                 first.text
             ),
         };
         Err(Box::new(Diagnostic::new(first.place, message).help(
-            "the first argument is what moves: `field X: Vec<2> at a on torus(L);`, then `mesh A: Real at a = voronoi_area(X);`",
+            "the first argument must be the field, `field X: Vec<2> at a on torus(L);`, as in `mesh A: Real at a = \
+             voronoi_area(X);`",
         )))
     }
 
@@ -355,12 +364,12 @@ impl Lattice {
         let write = || example(&path.text);
         let of_cells = known.kind == Known::Cells;
         if known.of_functional != matches!(of, Source::Functional(_)) {
-            let message = format!("`{}` is made of {what}", path.text);
+            let message = format!("the first argument of `{}` must be {what}", path.text);
             return refused(path.place, message, write());
         }
         if arguments.len() != known.data + 1 {
             let message = match known.data {
-                0 => format!("`{}` takes {what} alone", path.text),
+                0 => format!("`{}` takes only {what}", path.text),
                 1 => format!("`{}` takes {what} and one parameter", path.text),
                 n => format!("`{}` takes {what} and {n} parameters", path.text),
             };
@@ -372,12 +381,12 @@ impl Lattice {
         let (first, place) = (&arguments[0], arguments[0].place);
         match known.of_functional {
             true if !is_grid(theirs) => {
-                let message = format!("`{}` does not stand at the nodes of a grid", first.text);
+                let message = format!("`{}` is not declared at the nodes of a grid", first.text);
                 return refused(place, message, write());
             }
             true if own != theirs => {
                 let message = format!(
-                    "the values of `{}` stand where those of `{}` do",
+                    "`{}` must be declared at the same sites as `{}`",
                     path.text, first.text
                 );
                 return refused(name.place, message, write());
@@ -386,7 +395,7 @@ impl Lattice {
             false => {
                 let q = self.find(&first.text);
                 if q.is_some_and(|q| q.domain.is_none()) {
-                    let message = format!("where the places `{}` lie is not said", first.text);
+                    let message = format!("the positions `{}` have no domain", first.text);
                     let help = "write `field X: Vec<2> at a on torus(L);`, or `on box`".to_owned();
                     return refused(place, message, help);
                 }
@@ -394,11 +403,11 @@ impl Lattice {
                 if sizes != Some(2) && (of_cells || sizes != Some(1)) {
                     let message = match of_cells {
                         true => format!(
-                            "`{}` is made of places in the plane, and `{}` has another shape",
+                            "`{}` needs positions in the plane, and `{}` has another shape",
                             path.text, first.text
                         ),
                         false => format!(
-                            "`{}` is made of places on a line or in the plane, and `{}` has another shape",
+                            "`{}` needs positions on a line or in the plane, and `{}` has another shape",
                             path.text, first.text
                         ),
                     };
@@ -409,16 +418,15 @@ impl Lattice {
                     );
                 }
                 if of_cells && own != theirs {
-                    let message = format!("the values of `{}` stand at the particles", path.text);
+                    let message = format!("`{}` has its values at the particles", path.text);
                     return refused(name.place, message, write());
                 }
                 if !of_cells && !is_grid(own) {
-                    let message =
-                        format!("the values of `{}` stand at the nodes of a grid", path.text);
+                    let message = format!("`{}` has its values at the nodes of a grid", path.text);
                     return refused(
                         name.place,
                         message,
-                        format!("declare it, `grid n;`, and {}", write()),
+                        format!("declare a grid, `grid n;`, and {}", write()),
                     );
                 }
             }
@@ -427,7 +435,8 @@ impl Lattice {
             let plane = |q: &Quantity| q.shape.components() == Some(2);
             if self.places().is_some_and(|q| !plane(q)) {
                 let message =
-                    "`smooth_isotropic` is of the plane: on a line write `smooth`".to_owned();
+                    "`smooth_isotropic` works in the plane only: on a line write `smooth`"
+                        .to_owned();
                 return refused(path.place, message, write());
             }
         }
@@ -440,10 +449,10 @@ impl Lattice {
             if p.shape != "Real" || masses != at.is_some() || (masses && at != theirs) {
                 let message = match masses {
                     true => format!(
-                        "`{}` is not a number at each particle: here stand their masses",
+                        "`{}` is not one number per particle: this argument is the masses",
                         data.text
                     ),
-                    false => format!("`{}` is not one number of the model", data.text),
+                    false => format!("`{}` is not a single number", data.text),
                 };
                 return refused(data.place, message, write());
             }

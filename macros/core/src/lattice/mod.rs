@@ -63,17 +63,18 @@ pub fn not_emitted(model: &Model, why: &str) -> Diagnostic {
         Statement::Label { index, .. } => Some(index.place),
         _ => None,
     });
-    let message = format!("no stepper for every number of sites is compiled: {why}");
+    let message = format!("clebsch cannot compile a stepper for every number of sites: {why}");
     let functional = model.statements.iter().find_map(|s| match s {
         Statement::Mesh { name, .. } => Some(name.place),
         _ => None,
     });
     if let Some(place) = functional {
         return Diagnostic::new(place, message).help(
-            "a model with functionals of all sites has no other stepper: state it without this; `clebsch derive FILE` prints its equations",
+            "a model with functionals of all sites has no other stepper, so state the model without this; `clebsch derive \
+             FILE` prints its equations",
         );
     }
     Diagnostic::new(label.unwrap_or(model.name.place), message).help(
-        "put the text into a file: `clebsch derive FILE` prints its equations, `clebsch run FILE` runs it",
+        "put the model into a file: `clebsch derive FILE` prints its equations, `clebsch run FILE` runs it",
     )
 }

@@ -98,7 +98,7 @@ impl SiteSubstitution<'_> {
                 // The name exists in the expanded model, but not in the model as declared.
                 true => Err(Box::new(
                     Diagnostic::new(place, format!("`{n}` is not declared")).help(
-                        "a quantity is named as it is declared, and stands at the site of the term",
+                        "use the declared name; the quantity is taken at the site of the term",
                     ),
                 )),
                 false => Ok(e.clone()),
@@ -119,7 +119,7 @@ impl SiteSubstitution<'_> {
         let Some(site) = usize::try_from(at).ok().filter(|s| *s < count) else {
             let d = Diagnostic::new(place, format!("`{n}` does not exist at this site"));
             return Err(Box::new(d.help(
-                "at the first site there is no `prev(x, i)`, and at the last one no `next(x, i)`",
+                "the first site has no `prev(x, i)`, and the last site no `next(x, i)`",
             )));
         };
         let copy = copy_name(n, site);

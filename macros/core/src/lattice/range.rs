@@ -101,19 +101,20 @@ fn walk(lattice: &Lattice, e: &Expression, by: isize, found: &mut Reach) -> Resu
             }
             ("sum", [_, _, more, ..]) => Err(Diagnostic::new(
                 more.place,
-                "a sum over sites takes what is summed, and `nodes` or `segments`; nothing further",
+                "`sum` takes an expression, and `nodes` or `segments`",
             )
-            .help("write `sum(expr)`, or `sum(expr, nodes)`; terms are added within: `sum(a + b)`")),
-            ("sum", []) => Err(Diagnostic::new(e.place, "nothing is summed over sites here")
-                .help("write what is summed: `sum(m*x)`, or `sum(m*x, nodes)`")),
+            .help("write `sum(expr)`, or `sum(expr, nodes)`; for several terms, write `sum(a + b)`")),
+            ("sum", []) => Err(Diagnostic::new(e.place, "this sum over sites is empty")
+                .help("write the summand: `sum(m*x)`, or `sum(m*x, nodes)`")),
             ("sum", [inner]) if has_sum(inner) => {
                 Err(of_pairs("a sum over sites within another one is", e.place))
             }
             ("sum", [_]) => Err(Diagnostic::new(
                 e.place,
-                "a sum over all sites is a number or a vector of the whole line, which a held constraint alone may contain",
+                "`sum(...)` over all sites is allowed only in a `hold` constraint",
             )
-            .help("the Lagrangian is summed over labels anyway: leave `sum` out, or state the sites of a term, `sum(expr, nodes)`; of a constraint write `hold p: sum(m*x) = X;`")),
+            .help("the Lagrangian is summed over labels already: remove `sum`, or give the sites of a term, `sum(expr, \
+                nodes)`; a constraint reads `hold p: sum(m*x) = X;`")),
             _ => arguments
                 .iter()
                 .try_for_each(|a| walk(lattice, a, by, found)),
@@ -126,11 +127,12 @@ fn walk(lattice: &Lattice, e: &Expression, by: isize, found: &mut Reach) -> Resu
 pub(super) fn beside_sum(lattice: &Lattice, e: &Expression) -> Option<Diagnostic> {
     let refused = |at: &Expression, what: &str| {
         let message = format!(
-            "{what} couples every site to all others, which a Lagrangian cannot do yet: `sum(expr, nodes)` only states the \
+            "{what} couples every site to all others, which a Lagrangian cannot do yet: `sum(expr, nodes)` only gives the \
              sites of a term"
         );
         let d = Diagnostic::new(at.place, message);
-        Some(d.help("write what is summed into the sum, as in `sum(x^2, nodes)`; only a constraint may contain a function of sums, as in `hold p: dot(sum(x), sum(x)) = a^2;`"))
+        Some(d.help("move everything into the sum, as in `sum(x^2, nodes)`; only a `hold` constraint may contain a function of \
+            sums, as in `hold p: dot(sum(x), sum(x)) = a^2;`"))
     };
     let differs = |e: &Expression| reach(lattice, e).is_ok_and(|r| !r.letters.is_empty());
     if !has_sum(e) || matches!(&e.kind, Kind::Call(f, _) if f.text == "sum") {
@@ -143,7 +145,7 @@ pub(super) fn beside_sum(lattice: &Lattice, e: &Expression) -> Option<Diagnostic
         Kind::Sum(terms) => terms.iter().find_map(|(_, t)| match has_sum(t) {
             true => beside_sum(lattice, t),
             false => differs(t)
-                .then(|| refused(t, "a quantity of a site beside a sum over sites"))
+                .then(|| refused(t, "a quantity of one site added to a sum over sites"))
                 .flatten(),
         }),
         Kind::Quotient(_, b) if has_sum(b) => refused(e, "a quotient by a sum over sites"),
@@ -172,10 +174,11 @@ fn named(lattice: &Lattice, name: &str, place: Place) -> Result<(), Diagnostic> 
         None => Ok(()),
         Some(l) => Err(Diagnostic::new(
             place,
-            format!("`{name}` counts sites and is no number of the model"),
+            format!("`{name}` counts sites and is not a quantity of the model"),
         )
         .help(format!(
-            "what differs from site to site is a parameter: `param a: Real at nodes;`, and in the case `a = \"1 + {}/{}\"`",
+            "for a quantity that differs between sites, declare a parameter, `param a: Real at nodes;`, and in the case write \
+             `a = \"1 + {}/{}\"`",
             l.index.text, l.count.text
         ))),
     }
@@ -184,12 +187,12 @@ fn named(lattice: &Lattice, name: &str, place: Place) -> Result<(), Diagnostic> 
 fn mixed(lattice: &Lattice, a: usize, b: usize, place: Place) -> Diagnostic {
     let name = |i: usize| lattice.labels.get(i).map_or("", |l| l.index.text.as_str());
     let message = format!(
-        "this term holds sites of `{}` and of `{}`: which of them would meet is not said",
+        "this term contains sites of `{}` and of `{}`, so the sites to combine are ambiguous",
         name(a),
         name(b)
     );
     Diagnostic::new(place, message)
-        .help("terms of different labels are summed each over its own: write them as two terms")
+        .help("terms of different labels are summed separately: write two terms")
 }
 
 /// `next(x, i)` needs a quantity at the sites of a chain.
@@ -202,28 +205,34 @@ fn neighbour(
     let line = lattice.line_label();
     let line_name = line.map_or("", |l| l.index.text.as_str());
     let Kind::Name(name) = &label.kind else {
-        let d = Diagnostic::new(label.place, "the second argument is the label of a line");
+        let d = Diagnostic::new(
+            label.place,
+            "the second argument must be the label of a chain",
+        );
         return Err(d.help(format!("write `next(x, {line_name})`")));
     };
     if name != line_name || line.is_none() {
         let own = lattice.labels.iter().find(|l| l.index.text == *name);
         let message = match own {
-            Some(_) => format!("`{name}` is a set of sites, which have no neighbours"),
-            None => format!("`{name}` is no label"),
+            Some(_) => format!("`{name}` is a set of sites, and its sites have no neighbours"),
+            None => format!("`{name}` is not a label"),
         };
         let d = Diagnostic::new(label.place, message);
         return Err(match line {
-            Some(l) => d.help(format!("the line is `{}`", l.index.text)),
+            Some(l) => d.help(format!("the label of the chain is `{}`", l.index.text)),
             None => d.help(
-                "declare a line: `label i in 0..N;`, and quantities `at nodes` or `at segments`",
+                "declare a chain, `label i in 0..N;`, and quantities `at nodes` or `at segments`",
             ),
         });
     }
     let held = reach(lattice, inner)?;
     if held.letters.is_empty() {
-        let d = Diagnostic::new(place, "this is the same at every site: it has no neighbour");
+        let d = Diagnostic::new(
+            place,
+            "this is the same at every site, so it has no neighbour",
+        );
         return Err(d.help(format!(
-            "declare what differs from site to site `at nodes` or `at segments`, or leave `, {line_name}` out"
+            "declare quantities that differ between sites `at nodes` or `at segments`, or remove `, {line_name}`"
         )));
     }
     Ok(())
@@ -242,8 +251,8 @@ fn summed_over(sites: &Expression) -> Result<Sites, Diagnostic> {
         Kind::Name(n) if n == "segments" => Ok(Sites::Segments),
         Kind::Name(n) if n == "pairs" => Err(of_pairs("this is", sites.place)),
         _ => Err(
-            Diagnostic::new(sites.place, "a sum goes over `nodes` or over `segments`")
-                .help("write `sum(expr, segments)`; the Lagrangian is summed over labels anyway"),
+            Diagnostic::new(sites.place, "a sum runs over `nodes` or over `segments`")
+                .help("write `sum(expr, segments)`; the Lagrangian is summed over labels already"),
         ),
     }
 }

@@ -157,7 +157,7 @@ fn mistakes_are_told_in_the_words_of_the_statement() {
     let kinetic = "lagrangian = m*(next(q) - q)^2/(2*h)";
     assert_eq!(refused(&format!("{kinetic};")), "derived");
     let cases = [
-        (format!("{kinetic} - h*next(q, j)^2;"), "`j` is no label"),
+        (format!("{kinetic} - h*next(q, j)^2;"), "`j` is not a label"),
         (
             format!("{kinetic} - h*next(u, a)^2;"),
             "`a` is a set of sites",
@@ -174,11 +174,11 @@ fn mistakes_are_told_in_the_words_of_the_statement() {
         ),
         (
             format!("{kinetic}; end i = 1 {{ free; }}"),
-            "ends at 0 and at N",
+            "ends of the chain are 0 and N",
         ),
         (
             format!("{kinetic}; end j = 0 {{ free; }}"),
-            "the line is `i`",
+            "the label of the chain is `i`",
         ),
         (
             format!("{kinetic}; end i = 0 {{ free; free; }}"),
@@ -186,7 +186,7 @@ fn mistakes_are_told_in_the_words_of_the_statement() {
         ),
         (
             format!("{kinetic}; end i = 0 {{ held {{ m = given; }} }}"),
-            "does not live on the line",
+            "is not a quantity of the chain",
         ),
         (
             format!("{kinetic}; end i = 0 {{ held {{ term prev(q, i); }} }}"),
@@ -194,13 +194,16 @@ fn mistakes_are_told_in_the_words_of_the_statement() {
         ),
         (
             format!("{kinetic}; label l in 0..K; field X: Real at nodes;"),
-            "one line",
+            "at most one chain",
         ),
-        (format!("{kinetic}; field X: Real offset L;"), "on a line"),
-        (format!("{kinetic}; scale q;"), "stands once"),
+        (
+            format!("{kinetic}; field X: Real offset L;"),
+            "field on a chain",
+        ),
+        (format!("{kinetic}; scale q;"), "is not repeated at sites"),
         (
             format!("{kinetic}; end i = 0 {{ q = given; }}"),
-            "an end condition has a name",
+            "name the end condition",
         ),
         (format!("{kinetic}; periodic; periodic;"), "stated twice"),
         (format!("{kinetic} - h*q_1*q;"), "`q_1` is not declared"),
@@ -395,24 +398,27 @@ fn a_constraint_with_the_site_before_is_counted_from_that_one() {
 #[test]
 fn sums_are_refused_where_they_mean_nothing() {
     for (hold, wanted) in [
-        ("hold c: sum(φ) = φ;", "stands beside a sum over sites"),
-        ("hold c: sum(sum(φ)) = X;", "stands within another one"),
-        ("hold c: sum(X) = X;", "there is nothing to sum over"),
+        ("hold c: sum(φ) = φ;", "differs between sites"),
+        (
+            "hold c: sum(sum(φ)) = X;",
+            "contains another sum over sites",
+        ),
+        ("hold c: sum(X) = X;", "it cannot be summed over sites"),
         ("hold c: sum(φ) = R;", "a vector of length 3 is needed here"),
         ("hold c: sum(m) = R;", "contains no configuration"),
         (
             "hold c: sum(φ, edges) = X;",
             "over `nodes` or over `segments`",
         ),
-        ("hold c: sum(next(φ)) = X;", "leave `next` out"),
+        ("hold c: sum(next(φ)) = X;", "remove `next`"),
         (
             "hold c: sum(φ) = X; hold d: sum(2*φ) = X;",
             "follows from the others",
         ),
-        ("scale sum(m);", "which a held constraint alone may contain"),
+        ("scale sum(m);", "is allowed only in a `hold` constraint"),
         ("hold c: sum(y) = X;", "`y`"),
-        ("hold c: sum(φ, nodes, 3) = X;", "nothing further"),
-        ("hold c: sum() = X;", "nothing is summed"),
+        ("hold c: sum(φ, nodes, 3) = X;", "`sum` takes an expression"),
+        ("hold c: sum() = X;", "this sum over sites is empty"),
     ] {
         let source = beads(hold);
         let model = parse_source(&source).unwrap();
@@ -454,7 +460,7 @@ fn a_sum_over_stated_sites_is_a_term_of_the_lagrangian_and_no_number_in_it() {
             "sum(m*x^2, pairs)",
             "a sum over pairs of sites, which is not supported yet",
         ),
-        ("sum(x, nodes, 3)", "nothing further"),
+        ("sum(x, nodes, 3)", "`sum` takes an expression"),
     ] {
         let found = told(term).map(|_| ()).expect_err(term).to_string();
         assert!(found.contains(wanted), "{term}: {found}");
@@ -540,7 +546,7 @@ fn an_offset_is_warned_of_where_the_line_is_no_ring() {
         let choice = representative(&model, &lattice).unwrap();
         let (unfolded, _) = derive_lattice(&model, &lattice, &choice).unwrap();
         let told = unfolded.warnings.iter().map(|w| w.diagnostic.text());
-        told.filter(|t| t.contains("is not said to be periodic"))
+        told.filter(|t| t.contains("the chain is not periodic"))
             .count()
     };
     assert_eq!(warned(CHAIN), 0);

@@ -102,11 +102,11 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Expan
     let copies = sites.fold(0, usize::saturating_add);
     if copies > MOST_COPIES {
         let message = format!(
-            "this lattice is too large to be written out: with {} it has {copies} quantities at sites, and at most {MOST_COPIES} are taken",
+            "this model is too large to be expanded: with {} it has {copies} quantities at sites, at most {MOST_COPIES}",
             choice.words(lattice)
         );
         return Err(Diagnostic::new(model.name.place, message)
-            .help("take fewer sites")
+            .help("use fewer sites")
             .into());
     }
     let lets = definitions(model)?;
@@ -140,11 +140,11 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Expan
     let nothing_left = !writer.out.model.statements.iter().any(moves);
     if nothing_left && model.statements.iter().any(moves) {
         let words = choice.words(lattice);
-        let message = format!("every configuration is given ({words}): nothing moves");
+        let message = format!("every configuration is prescribed ({words}), so nothing moves");
         let d = Diagnostic::new(model.name.place, message);
         writer
             .errors
-            .push(d.help("take more sites, or another end condition"));
+            .push(d.help("use more sites, or another end condition"));
     }
     writer
         .errors
@@ -480,10 +480,10 @@ impl<'a> Writer<'a> {
             Ok(r) if !r.letters.is_empty() => {
                 let d = Diagnostic::new(
                     e.place,
-                    "this stands once, and holds what differs from site to site",
+                    "this statement is not repeated at sites, but contains a quantity that differs between sites",
                 );
                 self.errors.push(d.help(
-                    "declare what it belongs to at the same sites, for example `advected Γ: Vec<3> at nodes`",
+                    "declare its quantity at the same sites, for example `advected Γ: Vec<3> at nodes`",
                 ));
             }
             Ok(_) => {}

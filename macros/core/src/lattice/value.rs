@@ -40,7 +40,7 @@ impl SiteData {
         let expression = read.map_err(|errors| {
             let first = errors.iter().next();
             first.map_or_else(
-                || "it is no expression".to_owned(),
+                || "it is not an expression".to_owned(),
                 |d| match d.help.first() {
                     Some(help) => format!("{}; {help}", d.message),
                     None => d.message.clone(),
@@ -111,12 +111,12 @@ struct Given<'a> {
 /// The name and the direction of a slope.
 fn slope_of(arguments: &[Expression]) -> Result<(&str, u64), String> {
     let [name, direction] = arguments else {
-        return Err("a slope is that of a mesh along a direction, as in slope(S, 1)".to_owned());
+        return Err("`slope` takes a mesh and a direction, as in slope(S, 1)".to_owned());
     };
     let Kind::Name(name) = &name.kind else {
         return Err(
-            "a slope is that of a mesh by its name, as in slope(S, 1): write out what it is of sums, products and \
-             functions, as 2*S*slope(S, 1) of S^2"
+            "`slope` takes the name of a mesh, as in slope(S, 1): apply the product and chain rules yourself, as in \
+             2*S*slope(S, 1) for S^2"
                 .to_owned(),
         );
     };
@@ -125,7 +125,7 @@ fn slope_of(arguments: &[Expression]) -> Result<(&str, u64), String> {
         _ => None,
     };
     let along = along.ok_or_else(|| {
-        format!("the direction of a slope is a whole number, as in slope({name}, 1)")
+        format!("the direction of a slope must be a whole number, as in slope({name}, 1)")
     })?;
     Ok((name, along))
 }
@@ -136,7 +136,7 @@ fn value(e: &Expression, of: &Given<'_>) -> Result<f64, String> {
         Kind::Constant(c) => c.value(),
         Kind::Name(n) if crate::syntax::is_circle(n) => std::f64::consts::PI,
         Kind::Name(n) => (of.of)(n).ok_or_else(|| match n.as_str() {
-            "t" => "`t` has no value here: data are of the start, and what an end holds stays as it is there".to_owned(),
+            "t" => "`t` has no value here: the case gives initial values, and values at an end are constant in time".to_owned(),
             n => format!("`{n}` has no value here"),
         })?,
         Kind::Shaped(a, _) => value(a, of)?,
@@ -168,8 +168,8 @@ fn value(e: &Expression, of: &Given<'_>) -> Result<f64, String> {
             let (name, along) = slope_of(arguments)?;
             (of.slope)(name, along).ok_or_else(|| {
                 format!(
-                    "slope({name}, {along}) has no value here: slopes are those of meshes on the grid of a fluid, in values of \
-                     [initial] at its particles"
+                    "slope({name}, {along}) has no value here: use it for meshes on the grid of a fluid, in [initial] values \
+                     at its particles"
                 )
             })?
         }
@@ -184,7 +184,7 @@ fn value(e: &Expression, of: &Given<'_>) -> Result<f64, String> {
                     (None, None) => "there".to_owned(),
                 };
                 return Err(format!(
-                    "`{}` is no function of site data; {help} are {}, and for fluids on a grid slope",
+                    "`{}` is not a function of site data; {help} are {}, and for fluids on a grid slope",
                     f.text,
                     known.join(" ")
                 ));
@@ -196,7 +196,7 @@ fn value(e: &Expression, of: &Given<'_>) -> Result<f64, String> {
         }
         Kind::Transpose(_) | Kind::Component(..) => {
             return Err(
-                "site data are numbers: components and transposes have no place".to_owned(),
+                "site data must be numbers: components and transposes are not supported".to_owned(),
             );
         }
     })

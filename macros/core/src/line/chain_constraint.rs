@@ -147,8 +147,8 @@ pub(super) fn held(
     });
     if let (Some(m), false) = (turning.next(), part.unfolded.holds.is_empty()) {
         return refused(format!(
-            "a constraint is held, and the velocity of `{}` is found by Newton's method: beside constraints loops over \
-             sites take rotations whose kinetic energy is `-tr(J*Ω)` with `J` of parameters",
+            "the model has a `hold` constraint, and the velocity of `{}` is found by Newton's method: in constrained chains, \
+             loops over sites support rotations with the kinetic energy `-tr(J*Ω)`, `J` a function of parameters",
             m.name
         ));
     }
@@ -158,7 +158,7 @@ pub(super) fn held(
             && first.label != found.label
         {
             return refused(format!(
-                "`{}` and `{}` hold sites of two labels",
+                "`{}` and `{}` constrain sites of two labels",
                 first.name, found.name
             ));
         }
@@ -169,7 +169,7 @@ pub(super) fn held(
     }
     if let (Some(sum), Some(site)) = (part.unfolded.totals.first(), out.first()) {
         return refused(format!(
-            "`{}` holds a sum over sites and `{}` holds something at each: their multipliers are found together",
+            "`{}` constrains a sum over sites and `{}` constrains each site, so their multipliers must be solved together",
             sum.name, site.name
         ));
     }
@@ -181,7 +181,7 @@ pub(super) fn held(
         out.push(found);
     }
     match out.is_empty() && !part.d.spec.holds.is_empty() {
-        true => refused("a constraint is held that belongs to no site".to_owned()),
+        true => refused("a `hold` constraint belongs to no site".to_owned()),
         false => Ok(out),
     }
 }
@@ -196,7 +196,7 @@ fn admitted(
     let name = &held.name;
     if lattice.find(&reach.on).map(|q| q.label) != Some(held.label) {
         return refused(format!(
-            "`{name}` holds what belongs to no site of its line"
+            "`{name}` constrains a quantity that is not at the sites of its label"
         ));
     }
     let mut movers = lone
@@ -204,7 +204,7 @@ fn admitted(
         .flat_map(|l| l.movers.iter().map(move |m| (l, m)));
     let Some((own, mover)) = movers.find(|(_, m)| m.name == reach.on) else {
         return refused(format!(
-            "`{name}` holds `{}`, which does not move",
+            "`{name}` constrains `{}`, which does not move",
             reach.on
         ));
     };
@@ -213,7 +213,7 @@ fn admitted(
         Kept::Rotation => Ok(()),
         Kept::Field(shape) if shape.is_scalar() || shape.is_vector() => Ok(()),
         _ => refused(format!(
-            "`{name}` holds `{}`: along lines numbers, vectors and rotations are held",
+            "`{name}` constrains `{}`: chains support constraints on numbers, vectors and rotations",
             reach.on
         )),
     }
@@ -226,12 +226,12 @@ fn width(name: &str, from: isize, letters: &[(Sites, isize)]) -> Result<usize, R
     let last = letters.iter().map(|(_, o)| *o).max().unwrap_or(0);
     if first != 0 || from != 0 {
         return refused(format!(
-            "`{name}` is held from a site on that it does not hold: count it from that one, with `next(x, i)`"
+            "`{name}` does not constrain its first site: shift its index, so that it contains `x` and `next(x, i)`"
         ));
     }
     match usize::try_from(last).unwrap_or(0) {
         width @ 0..=1 => Ok(width),
-        _ => refused(format!("`{name}` holds sites that are no neighbours")),
+        _ => refused(format!("`{name}` constrains sites that are not neighbours")),
     }
 }
 
@@ -246,7 +246,7 @@ fn one(
     let mut holds = d.spec.holds.iter();
     let Some(hold) = holds.find(|h| Some(h.multiplier) == multiplier) else {
         return refused(format!(
-            "`{name}` is held at no site with all its neighbours"
+            "`{name}` applies to no site with all its neighbours"
         ));
     };
     let mut symbols = d.letters.symbols.clone();
@@ -282,22 +282,26 @@ fn total(
 ) -> Result<ChainConstraint, Refused> {
     let (d, name) = (&part.d, &stated.name);
     let Some(summed) = &stated.summed else {
-        return refused(format!("`{name}` is not linear in the sums that it holds"));
+        return refused(format!(
+            "`{name}` is not linear in the sums that it contains"
+        ));
     };
     let Some(first) = summed.first() else {
-        return refused(format!("`{name}` holds no sum"));
+        return refused(format!("`{name}` contains no sum"));
     };
     let mut largest = 0;
     for term in summed {
         if term.range != first.range || term.site != first.site {
-            return refused(format!("`{name}` holds sums over several ranges of sites"));
+            return refused(format!(
+                "`{name}` contains sums over different ranges of sites"
+            ));
         }
         largest = largest.max(width(name, term.range.from, &term.letters)?);
     }
     let mut holds = d.spec.holds.iter();
     let own = |h: &&Hold| d.letters.symbols.get(h.multiplier).name == *name;
     let Some(hold) = holds.find(own) else {
-        return refused(format!("`{name}` is not held"));
+        return refused(format!("`{name}` is not a `hold` constraint"));
     };
     let place = stated.rest.place;
     let terms = summed.iter().map(|t| (false, t.shown.clone()));
@@ -305,15 +309,17 @@ fn total(
     let terms = Expression { kind, place };
     let found = check::sides(&part.unfolded.model, &terms, &stated.rest);
     let Some((summand, beside)) = found.filter(|(a, _)| a.shape() == hold.value.shape()) else {
-        return refused(format!("the summand of `{name}` is not read"));
+        return refused(format!("clebsch cannot read the summand of `{name}`"));
     };
     let by = isize::try_from(BASE).unwrap_or(0) - isize::try_from(first.site).unwrap_or(0);
     let Some(value) = part.moved(&summand, by) else {
-        return refused(format!("`{name}` reaches beyond the sites shown"));
+        return refused(format!("`{name}` reaches too far along the chain"));
     };
     let is_constant = |l: &Letter| d.letters.symbols.get(l.symbol).role == Role::Parameter;
     if !expr::letters(&beside).iter().all(is_constant) {
-        return refused(format!("`{name}` holds a sum and what belongs to no site"));
+        return refused(format!(
+            "`{name}` contains a sum and a quantity that is not at sites"
+        ));
     }
     let mut symbols = d.letters.symbols.clone();
     let (index, count) = match lattice.labels.get(first.range.label) {
@@ -389,7 +395,7 @@ fn with_derivatives(
         shift: Shift::HERE,
     };
     if expr::contains(&value, step) {
-        return refused(format!("`{name}` holds something that depends on the step"));
+        return refused(format!("`{name}` depends on the step"));
     }
     let axes = expr::axes(shape).unwrap_or_default();
     let in_sum = held.beside.is_some();
@@ -406,7 +412,7 @@ fn with_derivatives(
     });
     let reaches: Vec<Reach> = reaches.collect();
     if reaches.iter().any(|r| r.site > 1) {
-        return refused(format!("`{name}` holds sites that are no neighbours"));
+        return refused(format!("`{name}` constrains sites that are not neighbours"));
     }
     let by_definition = Hold {
         value: value.clone(),
@@ -450,7 +456,7 @@ fn unit(
     let name = movers.first().map_or("", |m| m.name.as_str());
     let Ok(limit) = &d.limit else {
         return refused(format!(
-            "`{name}` is held, and its momentum is that of no limit of small steps"
+            "`{name}` is constrained, but its momentum has no limit of small steps"
         ));
     };
     let variation = |i: usize| Letter {
@@ -470,7 +476,7 @@ fn unit(
             .any(|j| expr::contains(&momentum, variation(j)))
         {
             return refused(format!(
-                "`{name}` is held, and shares its kinetic energy with what is found apart from it"
+                "`{name}` is constrained, but shares its kinetic energy with a velocity that is solved separately"
             ));
         }
         let columns = members.iter().flat_map(|j| {

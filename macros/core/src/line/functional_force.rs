@@ -30,7 +30,7 @@ pub(super) fn meshed(
         let Some(range) = summand.range else { continue };
         let term = elaborated(part, summand).map_err(|refused| match refused {
             Refused::Form(_) => {
-                Refused::Form("a functional of all sites stands beside a velocity".to_owned())
+                Refused::Form("a term contains a functional of all sites and a velocity".to_owned())
             }
             wrong => wrong,
         })?;
@@ -44,7 +44,7 @@ pub(super) fn meshed(
     }
     if lattice.places().is_none() {
         return Err(Refused::Form(
-            "no field of places is stated `on torus(L)` or `on box`".to_owned(),
+            "no field of positions is declared `on torus(L)` or `on box`".to_owned(),
         ));
     }
     let whole = terms.iter().map(|(_, e)| e.clone()).reduce(expr::add);

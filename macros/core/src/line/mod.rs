@@ -182,7 +182,10 @@ impl Line {
         };
         let mut acted = self.ends.iter().flat_map(|e| &e.forces);
         if let Some(alone) = acted.find(|f| !pulled(&f.on)) {
-            let words = format!("an end acts on `{}`, and no neighbour does", alone.on);
+            let words = format!(
+                "a term of an end acts on `{}`, but no term between neighbours does",
+                alone.on
+            );
             return Err(Refused::Form(words));
         }
         for alternative in self.lattice.ends.iter().flatten() {
@@ -198,7 +201,8 @@ impl Line {
                     && let Some(other) = others.next()
                 {
                     let words = format!(
-                        "an end holds `{}`, whose velocity is found together with that of `{}`, which it does not hold",
+                        "an end condition prescribes `{}`, whose velocity is solved together with the velocity of `{}`, which \
+                         it does not prescribe",
                         mover.name, other.name
                     );
                     return Err(Refused::Form(words));
@@ -216,16 +220,15 @@ impl Line {
         }
         if !self.ties.is_empty() {
             return refused(
-                "a constraint is held, and velocities of neighbours stand in one term: which are found together \
-                 with all multipliers",
+                "the model combines a `hold` constraint with a term that contains velocities of neighbours",
             );
         }
         if self.meshed.is_some() {
-            return refused("a constraint is held beside functionals of all sites");
+            return refused("the model combines a `hold` constraint with functionals of all sites");
         }
         let domains = self.lattice.quantities.iter();
         match domains.into_iter().any(|q| q.domain.is_some()) {
-            true => refused("a constraint is held of particles in a domain"),
+            true => refused("a `hold` constraint applies to particles in a domain"),
             false => Ok(()),
         }
     }
@@ -286,19 +289,19 @@ fn stands_alone(model: &Model, lattice: &Lattice) -> Result<(), Refused> {
             Statement::Field { names, .. } | Statement::Advected { names, .. } => {
                 names.iter().any(|n| lattice.find(&n.text).is_none())
             }
-            Statement::Scale(_) => return refused("the action is scaled"),
+            Statement::Scale(_) => return refused("the model has a `scale` statement"),
             Statement::Assume { left, right, .. } => {
                 let sited = |n: &str| lattice.find(n).is_some();
                 if any_name(left, &sited) || any_name(right, &sited) {
-                    return refused("an assumption holds what differs from site to site");
+                    return refused("an assumption contains a quantity that differs between sites");
                 }
                 false
             }
-            Statement::Dim { .. } => return refused("shapes have sizes that are named"),
+            Statement::Dim { .. } => return refused("the size of a shape is a name"),
             _ => false,
         };
         if without_site {
-            return refused("something that moves belongs to no site");
+            return refused("a moving quantity is not declared at sites");
         }
     }
     Ok(())
@@ -310,7 +313,7 @@ fn without_clocks(representative: &RepresentativeChain) -> Result<(), Refused> {
     match spec.clocks().first() {
         None => Ok(()),
         Some(clock) => Err(Refused::Form(format!(
-            "`{}` goes on with the step by itself",
+            "`{}` advances with the step by itself",
             spec.symbols.get(*clock).name
         ))),
     }

@@ -104,16 +104,16 @@ fn placed(
     let by = isize::try_from(BASE).unwrap_or(0) - at;
     let Some(term) = part.moved(term, by) else {
         return Err(Refused::Form(
-            "a term reaches beyond the sites shown".to_owned(),
+            "a term reaches too far along the chain".to_owned(),
         ));
     };
     if first != 0 && lattice.periodic.is_some() && !keeps(lattice, part, &term) {
         return Err(Refused::Form(
-            "a term of the site before changes when fields grow by their offsets".to_owned(),
+            "a term with the previous site changes when fields grow by their offsets".to_owned(),
         ));
     }
     let from = usize::try_from(range.from + first)
-        .map_err(|_| Refused::Form("a term begins before the line".to_owned()))?;
+        .map_err(|_| Refused::Form("a term begins before the chain".to_owned()))?;
     Ok(Some(Placed {
         label: range.label,
         from,
@@ -222,7 +222,9 @@ fn read(part: &RepresentativeChain, summand: &Summand) -> Result<Expr, Refused> 
     let found = check::numbers(&part.unfolded.model, &[&summand.shown]);
     match found.into_iter().next() {
         Some(Some(term)) => Ok(term),
-        _ => Err(Refused::Form("a term of neighbours is not read".to_owned())),
+        _ => Err(Refused::Form(
+            "clebsch cannot read a term of neighbours".to_owned(),
+        )),
     }
 }
 
@@ -263,8 +265,7 @@ pub(super) fn elaborated(part: &RepresentativeChain, summand: &Summand) -> Resul
     match edge.is_zero() {
         true => Ok(nodal),
         false => Err(Refused::Form(
-            "a kinetic term stands in an end condition: let it stand at all sites, with masses that are given at \
-             each"
+            "an end condition contains a kinetic term: write it at all sites, with a mass at each site"
                 .to_owned(),
         )),
     }
@@ -287,7 +288,7 @@ pub(super) fn defined(part: &RepresentativeChain, term: &Expr) -> Result<Expr, R
             AdvectionRule::Defined(e) => list.push((here, e.clone())),
             AdvectionRule::Carried { .. } | AdvectionRule::Advanced => {
                 return Err(Refused::Form(format!(
-                    "`{}` is carried from its value at the start, and neighbours see it",
+                    "`{}` has a constraint but no definition, and a term with neighbours contains it",
                     s.get(a.quantity).name
                 )));
             }

@@ -24,9 +24,9 @@ impl Line {
     fn prove_one(&self, lone: &SiteModel, mover: &SiteUnknown) -> Result<(), Refused> {
         let refused = || {
             Refused::Form(format!(
-                "the equation of `{name}` at a site was not shown to be what the site alone and its neighbours give: of terms that \
-                 join both ends of a step to places, some forms only are recognised, such as those written by the velocity in \
-                 the middle of the step",
+                "clebsch cannot prove that the parts of a site and of its neighbours add up to the equation of `{name}`: it \
+                 recognises only some terms that contain both ends of a step, such as terms in the velocity at the middle \
+                 of the step",
                 name = mover.name
             ))
         };

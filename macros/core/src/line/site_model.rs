@@ -198,7 +198,7 @@ fn without_carried(d: &Derivation) -> Result<(), Refused> {
         let is_used = stated.iter().any(|l| l.symbol == a.quantity);
         if is_used && !matches!(transport, AdvectionRule::Defined(_)) {
             return Err(Refused::Form(format!(
-                "`{}` is carried from its value at the start: loops over sites take what its definition gives",
+                "`{}` has a constraint but no definition: loops over sites need a definition",
                 s.get(a.quantity).name
             )));
         }
@@ -348,15 +348,15 @@ fn how(
         let group = c.group.name(&|n| s.dim_text(n));
         Err(Refused::Form(match (c.group.kept(), c.side) {
             (Kept::Rotation | Kept::Quaternion, Side::Spatial) => format!(
-                "`{name}` turns seen from space, `next({name}) = ω*{name}`: loops over sites take rotations seen from the body"
+                "`{name}` is spatial, `next({name}) = ω*{name}`: loops over sites support rotations on the body side"
             ),
             (Kept::Quaternion, Side::Body) => format!(
-                "the velocity of `{name}` is found by Newton's method: loops over sites take unit quaternions whose kinetic \
-                 energy is a quadratic form of im and a multiple of re, made of parameters"
+                "the velocity of `{name}` is found by Newton's method: loops over sites support unit quaternions whose kinetic \
+                 energy is a quadratic form of im and a multiple of re, with parameters as coefficients"
             ),
             _ => format!(
-                "`{name}` is in {group}: loops over sites take fields, rotations of SO<3> and unit quaternions of SU<2> seen \
-                 from the body, and SO<2>, {} in coordinates of these",
+                "`{name}` is in {group}: loops over sites support fields, rotations of SO<3> and unit quaternions of SU<2> on \
+                 the body side, and SO<2>, {} in coordinates of these",
                 groups::listed("and", |_, g| g.chart().is_some())
             ),
         }))
@@ -472,14 +472,14 @@ pub(super) fn momentum(
         let Some(own) = velocity::columns(s, &momentum, c) else {
             if c.group.is_additive() {
                 return Err(Refused::Form(format!(
-                    "the momentum of the matrix `{}` is not one product `L*(next(X) - X)*R` with known factors: loops over sites take \
-                     matrices whose kinetic energy is `tr(A*(next(X) - X)*B*(next(X) - X)^T)/(2*h)`",
+                    "the momentum of the matrix `{}` is not a product `L*(next(X) - X)*R` with known factors: loops over sites \
+                     support matrices with the kinetic energy `tr(A*(next(X) - X)*B*(next(X) - X)^T)/(2*h)`",
                     s.get(c.element).name
                 )));
             }
             return Err(Refused::Form(format!(
-                "the velocity of `{}` is found together with that of `{}`: loops over sites take fields and rotations of \
-                 SO<3> seen from the body so",
+                "the velocities of `{}` and `{}` are solved together: loops over sites support this for fields and rotations \
+                 of SO<3> on the body side",
                 s.get(d.spec.configurations[i].element).name,
                 s.get(c.element).name
             )));

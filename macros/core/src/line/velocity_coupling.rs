@@ -121,7 +121,7 @@ pub(super) fn finish(
     for tie in ties.iter_mut() {
         if tie.width > 1 {
             return Err(Refused::Form(
-                "velocities of sites that are no neighbours stand in one term".to_owned(),
+                "a term contains velocities of sites that are not neighbours".to_owned(),
             ));
         }
         tie.terms = defined(part, &tie.terms)?;
@@ -153,8 +153,8 @@ pub(super) fn finish(
             }
             if !velocity::is_free(c) {
                 return Err(Refused::Form(format!(
-                    "the velocity of `{}` stands in one term with that of a neighbour: loops over sites take \
-                     fields and rotations of SO<3> seen from the body so",
+                    "a term contains the velocity of `{}` and that of a neighbour: loops over sites support this for fields \
+                     and rotations of SO<3> on the body side",
                     at.of
                 )));
             }
@@ -195,7 +195,7 @@ pub(super) fn finish(
         && let Some(other) = kinds.find(|p| kind(&p.on) != kind(&first.on))
     {
         return Err(Refused::Form(format!(
-            "velocities of sites of two kinds stand in one term: those of `{}` and of `{}`",
+            "a term contains velocities at two kinds of sites, of `{}` and of `{}`",
             first.on, other.on
         )));
     }

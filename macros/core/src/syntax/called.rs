@@ -84,9 +84,9 @@ pub(super) fn written_out(mut model: Model) -> Result<Model, Errors> {
         Some(_) => Ok(model),
         None => Err(Diagnostic::new(
             model.name.place,
-            "what functions stand for is too large where they are called",
+            "the model is too large once its functions are substituted",
         )
-        .help("a function is counted wherever it is called, and its argument wherever that stands in it")
+        .help("every call inserts the expression of the function, and its argument wherever the expression contains it")
         .into()),
     }
 }
@@ -119,12 +119,12 @@ fn formulas(model: &Model) -> Result<Vec<Formula>, Errors> {
         };
         if n != components.len() {
             let message = format!(
-                "{n} components are declared and {} written",
+                "the function declares {n} components and gives {}",
                 components.len()
             );
             errors.push(
                 Diagnostic::new(name.place, message)
-                    .help("write a list, an expression in quotes for each component"),
+                    .help("write a list with an expression in quotes for each component"),
             );
         }
         let known = |n: &str| constants.contains(&n);
@@ -179,10 +179,10 @@ fn by_others(mut open: Vec<Formula>, room: &Cell<Option<usize>>) -> Result<Vec<F
         let (waiting, ready): (Vec<Formula>, Vec<Formula>) = open.into_iter().partition(waits);
         if ready.is_empty() {
             for f in &waiting {
-                let message = format!("`{}` is made of itself", f.name.text);
+                let message = format!("`{}` calls itself", f.name.text);
                 errors.push(
                     Diagnostic::new(f.name.place, message)
-                        .help("a function that is written out calls others only, in no circle"),
+                        .help("functions may call other functions, but not in a circle"),
                 );
             }
             return Err(errors);
@@ -205,7 +205,7 @@ fn misused(e: &Expression, formulas: &[Formula], errors: &mut Errors) {
     e.each(&mut |e| match &e.kind {
         Kind::Name(n) => {
             let wrong = of(n).map(|f| {
-                let message = format!("`{n}` is a function, which stands with its argument");
+                let message = format!("`{n}` is a function and needs an argument");
                 let places = Diagnostic::new(e.place, message).help(format!("write `{n}(...)`"));
                 places.also(f.name.place, "it is declared here")
             });

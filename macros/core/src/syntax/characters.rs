@@ -15,9 +15,9 @@ fn written(c: char) -> Option<&'static str> {
         '−' | '–' | '—' | '‐' => "write the minus of the keyboard, `-`",
         '\'' | '′' | '’' => PRIME,
         '·' | '⋅' | '×' | '∙' | '∗' | '∧' | '⊗' => {
-            "write `a*b` for a product, `dot(a, b)` and `cross(a, b)` for those of vectors"
+            "write `a*b` for a product, `dot(a, b)` and `cross(a, b)` for products of vectors"
         }
-        '⟨' | '⟩' | '〈' | '〉' => "write `dot(a, b)`, of matrices `tr(a^T*b)`",
+        '⟨' | '⟩' | '〈' | '〉' => "write `dot(a, b)` for vectors, `tr(a^T*b)` for matrices",
         '₀'..='₉' => "write an index as `w_0` or `w0`",
         '²' | '³' | '¹' | '⁰' | '⁴'..='⁹' | '⁻' | 'ᵀ' => {
             "write `a^2` for a power, `A^T` for a transpose, `A^-1` for an inverse"
@@ -25,13 +25,15 @@ fn written(c: char) -> Option<&'static str> {
         '°' => RADIANS,
         '÷' => "write `a/b`",
         '√' => "write `sqrt(a)`",
-        '≤' | '≥' | '≠' => "write `<=`, `>=`; a condition is stated by `assume`",
+        '≤' | '≥' | '≠' => "write `<=` or `>=`, in an `assume` statement",
         '½' | '¼' | '¾' | '⅓' | '⅔' => "write `1/2`",
-        '∇' | '∂' => "derivatives are the engine's: state the Lagrangian",
-        '∫' | '∑' | '∏' => "sums over a label are meant by `at nodes` and `at segments`",
+        '∇' | '∂' => "state the Lagrangian; clebsch takes the derivatives",
+        '∫' | '∑' | '∏' => {
+            "terms `at nodes` and `at segments` are summed over the label automatically"
+        }
         '“' | '”' | '„' => "write straight quotes, `\"`",
         '\\' => {
-            "names are written in Unicode or in letters, `Λ` or `Lambda`; LaTeX stands in quotes after `as`"
+            "write names in Unicode or spelt out, `Λ` or `Lambda`; put LaTeX in quotes after `as`"
         }
         _ => return None,
     })
@@ -60,7 +62,7 @@ pub(super) fn foreign(source: &str) -> Option<Diagnostic> {
     );
     Some(match written(c) {
         Some(remedy) => d.help(remedy),
-        None => d.help("names are made of letters, digits and `_`"),
+        None => d.help("names consist of letters, digits and `_`"),
     })
 }
 

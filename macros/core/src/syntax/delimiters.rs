@@ -12,7 +12,8 @@ pub(super) fn not_closed(opening: char, place: Place, before: Option<(&str, Plac
         Some((found, _)) => format!("this `{opening}` is not closed before `{found}`"),
         None => format!("this `{opening}` is not closed"),
     };
-    let mut d = Diagnostic::new(place, message).help(format!("add `{closing}` where it ends"));
+    let mut d =
+        Diagnostic::new(place, message).help(format!("add `{closing}` where the group ends"));
     if let Some((found, place)) = before {
         d = d.also(
             place,
@@ -86,11 +87,11 @@ pub(super) fn unmatched(source: &str) -> Option<Diagnostic> {
             Some(not_closed(o.delimiter, place(&text, o.at)?, before))
         }
         Unmatched::Closing(at, c) => {
-            let message = format!(
-                "this `{c}` closes nothing: no `{}` is open here",
-                partner(c)
-            );
-            Some(Diagnostic::new(place(&text, at)?, message).help("drop it, or add its partner"))
+            let message = format!("this `{c}` has no matching `{}`", partner(c));
+            Some(
+                Diagnostic::new(place(&text, at)?, message)
+                    .help("remove it, or add the missing one"),
+            )
         }
     }
 }
@@ -156,13 +157,13 @@ mod tests {
                 "model M {\n  let a = b);\n}",
                 2,
                 12,
-                "this `)` closes nothing: no `(` is open here",
+                "this `)` has no matching `(`",
             ),
             (
                 "model M {\n  let a = b;\n}\n}",
                 4,
                 1,
-                "this `}` closes nothing: no `{` is open here",
+                "this `}` has no matching `{`",
             ),
             // Delimiters in comments and literals do not count, also where backslashes are replaced.
             (

@@ -164,11 +164,10 @@ fn postfix(c: &mut Cursor) -> Parsed {
     }
     let remedy = match c.peek() {
         Some(Token::Open('{')) => {
-            "indices are not written out: at the next node in time `next(q)`, at the next site along a label `i` `next(q, i)`"
+            "indices are not written out: write `next(q)` for the next node in time, `next(q, i)` for the next site along a \
+             label `i`"
         }
-        Some(Token::Punct('%', _)) => {
-            "remarks begin with `//`; there is no remainder of a division"
-        }
+        Some(Token::Punct('%', _)) => "write a comment after `//`; the language has no remainder",
         _ => return Ok(e),
     };
     Err(c.unexpected("an operator").help(remedy))
@@ -176,7 +175,7 @@ fn postfix(c: &mut Cursor) -> Parsed {
 
 /// After `[`: one or two indices, counted from 1.
 fn indices(c: &mut Cursor) -> Result<Vec<u64>, Diagnostic> {
-    let remedy = "components are counted from 1: `v[1]` of a vector, `A[1, 2]` of a matrix";
+    let remedy = "components are counted from 1: write `v[1]` for a vector, `A[1, 2]` for a matrix";
     let mut list = Vec::new();
     loop {
         let label = match c.peek() {
@@ -185,10 +184,13 @@ fn indices(c: &mut Cursor) -> Result<Vec<u64>, Diagnostic> {
         };
         list.push(c.whole_number().map_err(|e| match label {
             Some(i) if c.is_indexed_otherwise(&i) => {
-                let message = "a sum over pairs of sites is not supported yet";
+                let message = "sums over pairs of sites are not supported yet";
                 Diagnostic::new(e.place, message).help(unknown::PAIRS)
             }
-            Some(_) => e.help(remedy).help("a neighbour along a label `i` is `next(q, i)` or `prev(q, i)`, at the site itself `q`; the next node in time is `next(q)`"),
+            Some(_) => e.help(remedy).help(
+                "write `q` at the site itself, `next(q, i)` or `prev(q, i)` at a neighbour along a \
+                label `i`, and `next(q)` at the next node in time",
+            ),
             None => e.help(remedy),
         })?);
         if !c.take_punct(',') {
@@ -208,8 +210,9 @@ fn exponent(c: &mut Cursor) -> Result<Rational, Diagnostic> {
         false => value,
     };
     if size > Rational::integer(LARGEST_EXPONENT) {
-        let message = format!("exponents go from -{LARGEST_EXPONENT} to {LARGEST_EXPONENT}");
-        let remedy = "of a positive number write `exp(p*log(x))`, where `p` may be a parameter; of any other a product of smaller powers";
+        let message = format!("exponents range from -{LARGEST_EXPONENT} to {LARGEST_EXPONENT}");
+        let remedy = "write `exp(p*log(x))` for positive x, where `p` may be a parameter; otherwise write a product of smaller \
+            powers";
         return Err(Diagnostic::new(start.to(c.last_place()), message).help(remedy));
     }
     Ok(value)
@@ -227,7 +230,8 @@ fn signed_exponent(c: &mut Cursor) -> Result<Rational, Diagnostic> {
         Some(Token::Glued(number, name)) => return Err(ambiguous::glued(c, number, name)),
         _ => {
             return Err(c.unexpected("`T`, `-1` or a number after `^`").help(
-                "`x^T` is the transpose, `x^-1` the inverse, `x^2` and `x^(1/2)` are powers; others are `exp(a*log(x))`, and `exp(x)`",
+                "write `x^T` for the transpose, `x^-1` for the inverse, `x^2` and `x^(1/2)` for powers, `exp(a*log(x))` for \
+                 other powers, and `exp(x)`",
             ));
         }
     };
@@ -246,7 +250,7 @@ fn signed_exponent(c: &mut Cursor) -> Result<Rational, Diagnostic> {
             c.advance();
         }
         c.delimiter(')').map_err(|e| {
-            e.help("an exponent is a number: of a positive x write `exp(p*log(x))` for the power p")
+            e.help("an exponent is a number: for positive x write `exp(p*log(x))` for the power p")
         })?;
     }
     Ok(value)
@@ -257,7 +261,7 @@ fn too_large(c: &Cursor) -> Diagnostic {
         c.place(),
         "this exponent is too large or has too many digits for exact arithmetic",
     )
-    .help("write the power by `exp` and `log`")
+    .help("write the power with `exp` and `log`")
 }
 
 /// Numbers with at most this numerator and denominator are exact; products and powers of them fit into 37 digits.
@@ -298,8 +302,9 @@ fn operand(c: &mut Cursor) -> Parsed {
     match c.peek().cloned() {
         Some(Token::Number(text)) => {
             let kind = number(&text).ok_or_else(|| {
-                let message = "a number is between 5e-324 and 1.8e308, as double precision is";
-                Diagnostic::new(c.place(), message).help("take other units")
+                let message =
+                    "a number must be between 5e-324 and 1.8e308, the range of double precision";
+                Diagnostic::new(c.place(), message).help("change the units")
             })?;
             c.advance();
             Ok(Expression { kind, place: start })

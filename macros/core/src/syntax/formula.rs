@@ -5,8 +5,9 @@ use super::token::{Cursor, Token};
 use crate::diagnostic::{Diagnostic, Place};
 
 const ONLY: &str =
-    "a function that is written out takes one number or vector of known size, and gives one";
-const OTHERWISE: &str = "give functions of matrices or of several arguments by a path of Rust; x, y, z are the components of the argument in `given b(Vec<2>): Real = \"x*y\";`";
+    "a function with an expression takes one number or a vector of known size, and returns one";
+const OTHERWISE: &str = "for functions of matrices or of several arguments, give the path of a Rust function; in `given \
+    b(Vec<2>): Real = \"x*y\";`, x, y, z are the components of the argument";
 
 /// The component names of a position vector.
 const LETTERS: [&str; 3] = ["x", "y", "z"];
@@ -34,7 +35,7 @@ fn quoted(c: &mut Cursor) -> Result<(String, Expression), Diagnostic> {
     let Some(Token::Literal(text)) = c.peek() else {
         return Err(c
             .unexpected("an expression in quotes")
-            .help("a component is written in quotes, for example `[\"-f*y/2\", \"f*x/2\"]`"));
+            .help("put each component in quotes, for example `[\"-f*y/2\", \"f*x/2\"]`"));
     };
     let text = super::statement::unquoted(text);
     c.advance();
@@ -174,7 +175,7 @@ pub fn check(text: &str, argument: &Kindred, known: &dyn Fn(&str) -> bool) -> Re
     let parsed = read(text).map_err(|wrong| wrong.text())?;
     if let Some(name) = parsed.call_that(&|n| !super::FUNCTIONS.contains(&n)) {
         return Err(format!(
-            "`{name}` is no function that stands here; functions: {}",
+            "`{name}` cannot be called here; functions: {}",
             super::AVAILABLE
         ));
     }
@@ -192,7 +193,7 @@ pub(super) fn foreign(
 ) -> Option<String> {
     if let Some(shift) = e.call_of(&["next", "prev"]) {
         return Some(format!(
-            "a function sees no other node than its argument: put `{shift}(...)` where it is called"
+            "a function cannot contain `{shift}(...)`: write it where the function is called"
         ));
     }
     let names = names(argument);
@@ -204,7 +205,7 @@ pub(super) fn foreign(
     let own = names.iter().filter_map(|n| n.first().map(String::as_str));
     let own: Vec<&str> = own.collect();
     Some(format!(
-        "`{n}` is not known here: the argument is {}, and parameters of the model and `pi` may stand beside",
+        "`{n}` is unknown here: the expression may contain the argument {}, parameters of the model and `pi`",
         own.join(", ")
     ))
 }

@@ -8,15 +8,14 @@ use crate::diagnostic::Diagnostic;
 
 /// `i in 0..N step s`.
 pub(super) fn label(c: &mut Cursor) -> Result<Statement, Diagnostic> {
-    let remedy = "a label reads `label i in 0..N;` or, with its spacing, `label i in 0..N step s;`";
+    let remedy = "write `label i in 0..N;` or, with a spacing, `label i in 0..N step s;`";
     let index = c.name("the name of the label")?;
     c.word("in").map_err(|e| e.help(remedy))?;
     let place = c.place();
     let zero = c.whole_number().map_err(|e| e.help(remedy))?;
     if zero != 0 {
         return Err(
-            Diagnostic::new(place, format!("a label is counted from 0, not from {zero}"))
-                .help(remedy),
+            Diagnostic::new(place, format!("a label starts at 0, not at {zero}")).help(remedy),
         );
     }
     for _ in 0..2 {
@@ -24,7 +23,9 @@ pub(super) fn label(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     }
     if c.take_punct('=') || matches!(c.peek(), Some(Token::Number(_))) {
         let d = c.unexpected("the name of the number of segments");
-        return Err(d.help("how many there are comes with the case: write `0..N`, and in the case `[labels]` with `i = 50`"));
+        return Err(d.help(
+            "the case gives the number: write `0..N`, and in the case `[labels]` with `i = 50`",
+        ));
     }
     let count = c
         .name("the name of the number of segments")
@@ -41,7 +42,7 @@ pub(super) fn at(c: &mut Cursor) -> Result<Option<At>, Diagnostic> {
     if !c.take_word("at") {
         return Ok(None);
     }
-    let name = c.name("`nodes`, `segments` or the label of a set")?;
+    let name = c.name("`nodes`, `segments` or the label of a set of sites")?;
     let place = name.place;
     let site = match name.text.as_str() {
         "nodes" => Site::Nodes,
@@ -53,9 +54,9 @@ pub(super) fn at(c: &mut Cursor) -> Result<Option<At>, Diagnostic> {
 
 /// `i = 0 { ... }`, which ends at its brace without `;`.
 pub(super) fn end(c: &mut Cursor) -> Result<Statement, Diagnostic> {
-    let remedy = "an end reads `end i = 0 { free; pinned { φ = given; } }`, and `end i = N { ... }` at the other one";
+    let remedy = "write `end i = 0 { free; pinned { φ = given; } }`, and `end i = N { ... }` for the other end";
     let label = c
-        .name("the label of the line")
+        .name("the label of the chain")
         .map_err(|e| e.help(remedy))?;
     c.punct('=').map_err(|e| e.help(remedy))?;
     let at = match c.peek() {
@@ -108,20 +109,20 @@ fn alternative(c: &mut Cursor) -> Result<Alternative, Diagnostic> {
         return Ok(out);
     }
     if c.is_punct('=') {
-        let d = c.unexpected("`;` or `{` behind the name of an end condition");
+        let d = c.unexpected("`;` or `{` after the name of an end condition");
         let given = &out.name.text;
         return Err(d.help(format!(
-            "an end condition has a name: write for example `pinned {{ {given} = given; }}`"
+            "name the end condition, for example `pinned {{ {given} = given; }}`"
         )));
     }
     c.delimiter('{').map_err(|e| {
         let given = &out.name.text;
         e.help(format!(
-            "an end condition reads `{given};` or `{given} {{ φ = given; }}`"
+            "write an end condition as `{given};` or `{given} {{ φ = given; }}`"
         ))
     })?;
     while !c.take_delimiter('}') {
-        let word = c.name("`param`, `term` or the name of what is given")?;
+        let word = c.name("`param`, `term` or the name of a prescribed quantity")?;
         match word.text.as_str() {
             "param" => {
                 let names = names(c)?;
@@ -130,13 +131,13 @@ fn alternative(c: &mut Cursor) -> Result<Alternative, Diagnostic> {
             }
             "term" => out.terms.push(expression(c)?),
             _ => {
-                let remedy = "an end condition holds `param F: Vec<3>;`, `φ = given;` and `term h*dot(F, φ);`";
+                let remedy = "an end condition contains `param F: Vec<3>;`, `φ = given;` or `term h*dot(F, φ);`";
                 c.punct('=').map_err(|e| e.help(remedy))?;
                 c.word("given").map_err(|e| {
                     e.help(
-                        "what is given at an end is a value of the case, constant in time: write `φ = given;`. An end that \
-                         is driven is pulled by a term, as `term -h*(K/2)*(φ - A*sin(w*τ))^2;`, where a clock goes along at \
-                         its site: `advected τ: Real at nodes; constraint next(τ) = τ + h;`",
+                        "write `φ = given;`: the case gives the value, which is constant in time. To drive an end, use a term, \
+                         `term -h*(K/2)*(φ - A*sin(w*τ))^2;`, and a clock at the nodes: `advected τ: Real at nodes; \
+                         constraint next(τ) = τ + h;`",
                     )
                 })?;
                 out.given.push(word);

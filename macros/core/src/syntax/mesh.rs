@@ -9,26 +9,27 @@ use crate::diagnostic::Diagnostic;
 
 /// `A: Real at a = voronoi_area(X)`.
 pub(super) fn mesh(c: &mut Cursor) -> Result<Statement, Diagnostic> {
-    let remedy = "a functional of all sites reads `mesh A: Real at a = voronoi_area(X);`: its values, where they stand, what computes it, and of what";
+    let remedy = "write a functional of all sites as `mesh A: Real at a = voronoi_area(X);`: its name, its sites, its function \
+        and the arguments";
     let name = c
-        .name("the name of the values")
+        .name("the name of the functional")
         .map_err(|e| e.help(remedy))?;
     c.punct(':').map_err(|e| e.help(remedy))?;
     let shape = kindred(c)?;
     let at = label::at(c)?;
     c.punct('=').map_err(|e| e.help(remedy))?;
     let mut path = c
-        .name("the name of what computes it")
+        .name("the name or path of a function, such as `voronoi_area`")
         .map_err(|e| e.help(remedy))?;
     path_goes_on(c, &mut path)?;
     c.delimiter('(').map_err(|e| e.help(remedy))?;
-    let what = "a field, another functional or a parameter, by its name";
+    let what = "the name of a field, a functional or a parameter";
     let mut arguments = vec![c.name(what).map_err(|e| e.help(remedy))?];
     while c.take_punct(',') {
         arguments.push(c.name(what).map_err(|e| e.help(remedy))?);
     }
     c.delimiter(')')
-        .map_err(|e| e.help("arguments are names: name an expression by a parameter of its own"))?;
+        .map_err(|e| e.help("arguments are names: declare a parameter for an expression"))?;
     Ok(Statement::Mesh {
         name,
         shape,
@@ -87,7 +88,8 @@ pub(super) fn extent(c: &mut Cursor) -> Result<Option<Extent>, Diagnostic> {
     if !c.take_word("on") {
         return Ok(None);
     }
-    let remedy = "places lie on `torus(L)`, L its lengths, or on `box`, whose lengths and walls the case gives";
+    let remedy = "write `on torus(L)`, where `L` is the vector of its side lengths, or `on box`, whose lengths and walls the \
+        case gives";
     let place = c.place();
     if c.take_word("box") {
         return Ok(Some(Extent::Box(place)));
@@ -95,7 +97,7 @@ pub(super) fn extent(c: &mut Cursor) -> Result<Option<Extent>, Diagnostic> {
     c.word("torus").map_err(|e| e.help(remedy))?;
     c.delimiter('(').map_err(|e| e.help(remedy))?;
     let lengths = c
-        .name("the name of the lengths of the torus")
+        .name("the name of the side lengths of the torus")
         .map_err(|e| e.help(remedy))?;
     c.delimiter(')').map_err(|e| e.help(remedy))?;
     Ok(Some(Extent::Torus(lengths)))

@@ -65,7 +65,7 @@ const LONGEST_TEXT: usize = 250_000;
 pub fn tokens(source: &str) -> Result<TokenStream, Errors> {
     if source.len() > LONGEST_TEXT {
         let message = format!(
-            "this text has {} bytes; one of more than {LONGEST_TEXT} is refused, and a model of more than {}",
+            "this text has {} bytes; clebsch reads at most {LONGEST_TEXT}, and models of at most {}",
             source.len(),
             token::LONGEST
         );

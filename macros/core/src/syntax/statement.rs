@@ -18,7 +18,7 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
     let docs = attributes(c)?;
     let public = visibility(c);
     c.word("model").map_err(|e| {
-        e.help("a model starts with `model NAME {`, or `pub model NAME {` to export it")
+        e.help("start with `model NAME {`, or with `pub model NAME {` to export the model")
     })?;
     let name = c
         .name("the name of the model")
@@ -50,11 +50,9 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
         }
     }
     if !c.is_at_end() {
-        errors.push(
-            c.unexpected("the end of the model").help(
-                "a file or a `model! { ... }` holds one model: put the other one into its own",
-            ),
-        );
+        errors.push(c.unexpected("the end of the model").help(
+            "a file or a `model! { ... }` contains one model: put the other model into its own",
+        ));
     }
     errors.propagate()?;
     let stated = Model {
@@ -75,11 +73,11 @@ fn attributes(c: &mut Cursor) -> Result<Vec<String>, Diagnostic> {
         let start = c.place();
         c.advance();
         c.delimiter('[')
-            .map_err(|e| e.help("remarks begin with `//`, documentation with `///`"))?;
+            .map_err(|e| e.help("write a comment after `//`, documentation after `///`"))?;
         if !c.take_word("doc") {
             return Err(Diagnostic::new(
                 start.to(c.place()),
-                "only documentation (`/// ...`) may stand before a model or a statement",
+                "only documentation (`/// ...`) may precede a model or a statement",
             )
             .help("put other attributes on the items of your own crate"));
         }
@@ -171,11 +169,13 @@ fn statement(c: &mut Cursor) -> Result<Statement, Diagnostic> {
             return Err(Diagnostic::new(
                 keyword.place,
                 format!(
-                    "`{}` is no statement: kinetic terms are written with `next(X) - X`, and linear functionals are `mesh` statements",
+                    "`{}` is not a statement: write kinetic terms with `next(X) - X`, and linear functionals as `mesh` \
+                     statements",
                     keyword.text
                 ),
             )
-            .help("models with `label`, `grid`, `group`, `field`, `mesh`, `advected`, `constraint`, `hold` and `lagrangian` are derived"));
+            .help("clebsch derives models with `label`, `grid`, `group`, `field`, `mesh`, `advected`, `constraint`, `hold` and \
+                `lagrangian`"));
         }
         _ => return Err(unknown::statement(c, &keyword)),
     };
@@ -195,7 +195,7 @@ fn dim(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     if from < 2 || to > 64 || from > to {
         return Err(Diagnostic::new(
             start.to(c.last_place()),
-            format!("a dimension runs between 2 and 64, not {from}..={to}"),
+            format!("a dimension ranges between 2 and 64, not {from}..={to}"),
         )
         .help("write for example `dim n in 3..=8;`"));
     }
@@ -242,7 +242,7 @@ pub(super) fn kindred(c: &mut Cursor) -> Result<Kindred, Diagnostic> {
 fn shape_follows(c: &mut Cursor) -> Result<(), Diagnostic> {
     c.punct(':').map_err(|e| match c.peek() {
         Some(Token::Name(_)) => {
-            e.help("commas separate names, and `:` precedes their shape: `param a, b: Real;`")
+            e.help("separate names by commas, and put `:` before their shape: `param a, b: Real;`")
         }
         _ => e,
     })
@@ -264,7 +264,7 @@ fn field(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     typeset(c, &mut names)?;
     let at = label::at(c)?;
     let offset = match c.take_word("offset") {
-        true => Some(c.name("the name of the offset, by which the field grows around a ring")?),
+        true => Some(c.name("the name of the offset that the field gains once around a ring")?),
         false => None,
     };
     let domain = mesh::extent(c)?;
@@ -272,9 +272,10 @@ fn field(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     if c.take_word("velocity") {
         return Err(Diagnostic::new(
             place,
-            "a field has no velocity of its own name: it is the increment, `next(X) - X`",
+            "the velocity of a field has no name: it is the increment `next(X) - X`",
         )
-        .help("leave `velocity ...` out, and write the kinetic term with `next`, for example `m*dot(next(X) - X, next(X) - X)/(2*h)`"));
+        .help("remove `velocity ...`, and write the kinetic term with `next`, for example `m*dot(next(X) - X, next(X) - \
+            X)/(2*h)`"));
     }
     Ok(Statement::Field {
         names,
@@ -311,7 +312,7 @@ fn assume(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     let right = expression(c)?;
     if c.is_punct('<') || c.is_punct('>') {
         return Err(c.unexpected("`;`").help(
-            "an assumption compares two expressions: write two of them, `assume 0 < m; assume m < 1;`",
+            "an assumption compares two expressions; split it: `assume 0 < m; assume m < 1;`",
         ));
     }
     let place = left.place.to(right.place);
@@ -363,10 +364,10 @@ fn advected(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     if let ([first, .., last], Some(_)) = (names.as_slice(), &definition) {
         return Err(Diagnostic::new(
             place,
-            "a definition belongs to one quantity, and several are declared here",
+            "only one quantity can have a definition, and this statement declares several",
         )
-        .help("write a statement for each, as `advected Γ: Vec<3> = Λ^T*z;`")
-        .also(first.place.to(last.place), "declared together here"));
+        .help("write one statement for each quantity, such as `advected Γ: Vec<3> = Λ^T*z;`")
+        .also(first.place.to(last.place), "declared in one statement here"));
     }
     Ok(Statement::Advected {
         names,
@@ -377,16 +378,18 @@ fn advected(c: &mut Cursor) -> Result<Statement, Diagnostic> {
 }
 
 fn constraint(c: &mut Cursor, keyword: &Name) -> Result<Statement, Diagnostic> {
-    let remedy = "a constraint reads `constraint next(Γ) = Ω^T * Γ;`: it carries a quantity from node to node";
+    let remedy =
+        "write `constraint next(Γ) = Ω^T * Γ;`: a constraint gives the quantity at the next node";
     c.word("next").map_err(|e| {
         e.help(remedy)
-            .help("a constraint on configurations is stated by `hold λ: dot(x, x) = L^2;`")
+            .help("to constrain configurations, write `hold λ: dot(x, x) = L^2;`")
     })?;
     c.delimiter('(')?;
-    let name = c.name("the quantity that the constraint carries")?;
+    let name = c.name("the quantity of the constraint")?;
     if c.is_punct(',') {
         return Err(c.unexpected("`)`").help(
-            "a constraint carries a quantity in time; along a label write the neighbour out, for example `Λ^T*next(Λ, i)` in the Lagrangian",
+            "a constraint advances a quantity in time; for a neighbour along a label, write for example `Λ^T*next(Λ, i)` in \
+             the Lagrangian",
         ));
     }
     c.delimiter(')')?;
@@ -398,7 +401,7 @@ fn constraint(c: &mut Cursor, keyword: &Name) -> Result<Statement, Diagnostic> {
 
 /// `hold λ: a = b;`
 fn hold(c: &mut Cursor) -> Result<Statement, Diagnostic> {
-    let remedy = "a held constraint reads `hold λ: dot(x, x) = L^2;`: the name of its multiplier, then the equation";
+    let remedy = "write `hold λ: dot(x, x) = L^2;`: the name of the multiplier, then the equation";
     let name = c
         .name("the name of the multiplier")
         .map_err(|e| e.help(remedy))?;
@@ -408,7 +411,7 @@ fn hold(c: &mut Cursor) -> Result<Statement, Diagnostic> {
         let message =
             "`hold` states an equation: inequalities, such as contact, are not supported yet";
         return Err(Diagnostic::new(c.place(), message).help(
-            "a stiff spring keeps a distance d from falling below 0: the term `-h*K*(d - abs(d))^2/8` is zero where d > 0",
+            "to keep a distance d above 0, use a stiff spring: the term `-h*K*(d - abs(d))^2/8` is zero where d > 0",
         ));
     }
     c.punct('=').map_err(|e| e.help(remedy))?;
@@ -425,7 +428,7 @@ fn hold(c: &mut Cursor) -> Result<Statement, Diagnostic> {
 
 /// `given f(Sym<3>): Real = clebsch::functions::carlson_rf;`
 fn given(c: &mut Cursor) -> Result<Statement, Diagnostic> {
-    let remedy = "a function is given by its path, for example `given RF(Sym<3>): Real = clebsch::functions::carlson_rf;`";
+    let remedy = "give the path of the function, for example `given RF(Sym<3>): Real = clebsch::functions::carlson_rf;`";
     let name = c
         .name("the name of the function")
         .map_err(|e| e.help(remedy))?;
@@ -452,9 +455,10 @@ fn given(c: &mut Cursor) -> Result<Statement, Diagnostic> {
             is_copy: false,
         },
         (true, None) => {
-            let mut path = c.name("the path of what computes it").map_err(|e| {
+            let mut path = c.name("the path of the function").map_err(|e| {
                 e.help(remedy).help(
-                    "or by an expression in quotes, `\"A*cos(2*pi*x)\"`, where x, y, z are the components of its argument; or by `case`, where the case has the expression",
+                    "or give an expression in quotes, `\"A*cos(2*pi*x)\"`, where x, y, z are the components of the argument; \
+                     or write `case`, and the case gives the expression",
                 )
             })?;
             path_goes_on(c, &mut path)?;
@@ -476,7 +480,7 @@ fn given(c: &mut Cursor) -> Result<Statement, Diagnostic> {
 pub(super) fn path_goes_on(c: &mut Cursor, path: &mut Name) -> Result<(), Diagnostic> {
     while c.take_punct(':') {
         c.punct(':')?;
-        let next = c.name("the next name of the path")?;
+        let next = c.name("the next part of the path")?;
         path.text = format!("{}::{}", path.text, next.text);
         path.place = path.place.to(next.place);
     }
@@ -487,7 +491,8 @@ fn binding(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     let name = c.name("a name")?;
     c.punct('=').map_err(|e| match c.peek() {
         Some(Token::Open('(')) => e.help(format!(
-            "a `let` takes no argument: write `let {n} = k*q^2/2;`, or state a function by `given {n}(Real): Real = \"k*x^2/2\";`",
+            "`let` takes no arguments: write `let {n} = k*q^2/2;`, or declare a function, `given {n}(Real): Real = \
+             \"k*x^2/2\";`",
             n = name.text
         )),
         _ => e,

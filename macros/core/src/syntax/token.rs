@@ -112,7 +112,7 @@ fn split_number(text: &str) -> usize {
 }
 
 /// The notation for the size of a shape or a group.
-pub const SIZES: &str = "sizes stand in angle brackets, `Vec<3>`, `SO<3>`";
+pub const SIZES: &str = "write sizes in angle brackets: `Vec<3>`, `SO<3>`";
 
 impl Cursor {
     /// Flattens a token stream.
@@ -134,7 +134,7 @@ impl Cursor {
             let span = tree.span();
             if bytes > LONGEST {
                 let message = format!(
-                    "a model of more than {LONGEST} bytes is refused, blanks, comments and documentation not counted"
+                    "this model has more than {LONGEST} bytes, not counting blanks, comments and documentation"
                 );
                 return Err(Diagnostic::new(Place::token(span), message)
                     .help("shorten it with `let`, make parts of it parameters, or split it into several models")
@@ -143,8 +143,7 @@ impl Cursor {
             match tree {
                 TokenTree::Group(group) => {
                     if stack.len() > DEEPEST {
-                        let message =
-                            format!("parentheses nested deeper than {DEEPEST} are refused");
+                        let message = format!("parentheses are nested deeper than {DEEPEST}");
                         return Err(Diagnostic::new(Place::token(span), message)
                             .help("name parts of the expression with `let`")
                             .into());
@@ -202,8 +201,7 @@ impl Cursor {
                 _ => {}
             }
             if divisions > MOST_DIVISIONS {
-                let message =
-                    format!("more than {MOST_DIVISIONS} divisions in one statement are refused");
+                let message = format!("this statement has more than {MOST_DIVISIONS} divisions");
                 return Err(Diagnostic::new(Place::token(*span), message)
                     .help("divide by products, or name parts of the expression with `let`")
                     .into());
@@ -330,7 +328,7 @@ impl Cursor {
     pub fn unexpected(&self, expected: &str) -> Diagnostic {
         let found = match self.peek() {
             Some(t) => format!("found `{}`", t.text()),
-            None => "the text ends here".to_owned(),
+            None => "reached the end of the text".to_owned(),
         };
         Diagnostic::new(self.place(), format!("expected {expected}, {found}"))
     }
@@ -344,7 +342,7 @@ impl Cursor {
             let error = self.unexpected(&format!("`{c}`"));
             return Err(match (c, self.peek()) {
                 (':', Some(Token::Punct('=' | ';', _))) => error.help(
-                    "say what it is, for example `param m: Real;`; values stand in the case, not in the model",
+                    "give the shape, for example `param m: Real;`; values belong in the case, not in the model",
                 ),
                 ('=', Some(Token::Punct(':', _))) => error.help("write `=` before an expression"),
                 _ => error,

@@ -14,19 +14,24 @@ pub(super) fn typeset(c: &mut Cursor, names: &mut [Name]) -> Result<(), Diagnost
     for (i, name) in names.iter_mut().enumerate() {
         if i > 0 && !c.take_punct(',') {
             return Err(c
-                .unexpected(&format!("`,` and how `{}` is typeset", name.text))
-                .help("each of the names takes one text: `param a, b: Real as \"\\alpha\", \"\\beta\";`"));
+                .unexpected(&format!("`,` and the LaTeX of `{}`", name.text))
+                .help(
+                    "write one text for each name: `param a, b: Real as \"\\alpha\", \"\\beta\";`",
+                ));
         }
         let Some(Token::Literal(literal)) = c.peek() else {
             return Err(c
-                .unexpected("a name in LaTeX between quotes")
+                .unexpected("a symbol of LaTeX in quotes")
                 .help("write for example `param gU: Vec<3> as \"m g \\chi\";`, in Rust `as r\"m g \\chi\"`"));
         };
         match latex(literal) {
             Ok(text) => name.typeset = Some((text, c.place())),
             Err(why) => {
-                let d = Diagnostic::new(c.place(), format!("this is no name in LaTeX: {why}"));
-                return Err(d.help("write what stands between two dollars, such as `m g \\chi` or `J_{\\mathrm{eff}}`"));
+                let d = Diagnostic::new(c.place(), format!("this is not a symbol in LaTeX: {why}"));
+                return Err(d.help(
+                    "write what you would put between two dollar signs, such as `m g \\chi` or \
+                    `J_{\\mathrm{eff}}`",
+                ));
             }
         }
         c.advance();
@@ -45,7 +50,7 @@ fn latex(literal: &str) -> Result<String, String> {
         .trim_matches('#')
         .strip_prefix('"')
         .and_then(|s| s.strip_suffix('"'))
-        .ok_or("it stands between quotes")?;
+        .ok_or("it must be in quotes")?;
     let inside = inside.replace(super::text::BACKSLASH, "\\");
     let text = match raw {
         true => inside,
@@ -53,7 +58,7 @@ fn latex(literal: &str) -> Result<String, String> {
     };
     let text = text.trim().to_owned();
     if text.is_empty() || text.chars().count() > LONGEST_NAME {
-        return Err(format!("it has between 1 and {LONGEST_NAME} characters"));
+        return Err(format!("it must have 1 to {LONGEST_NAME} characters"));
     }
     let mut rest = text.chars().peekable();
     row(&mut rest, 0)?;
@@ -82,7 +87,7 @@ const DEEPEST: usize = 8;
 /// Parses a row of pieces with scripts, up to its closing brace or the end. It accepts what may replace a letter in a
 /// formula, and rejects commands that affect the rest of the document.
 fn row(rest: &mut Rest, depth: usize) -> Result<(), String> {
-    let unpaired = || "its braces are not paired, or something is missing at its end".to_owned();
+    let unpaired = || "its braces do not match, or it is incomplete".to_owned();
     if depth > DEEPEST {
         return Err(format!("its braces are nested deeper than {DEEPEST}"));
     }
@@ -95,7 +100,7 @@ fn row(rest: &mut Rest, depth: usize) -> Result<(), String> {
                 let taken = if c == '_' { &mut below } else { &mut above };
                 if std::mem::replace(taken, true) {
                     return Err(format!(
-                        "two scripts by `{c}` stand on one letter: write them as one, `x{c}{{1 2}}`"
+                        "one symbol has two scripts `{c}`: combine them, `x{c}{{1 2}}`"
                     ));
                 }
                 argument(rest, depth)?;
@@ -118,7 +123,7 @@ fn argument(rest: &mut Rest, depth: usize) -> Result<(), String> {
     while rest.next_if(|c| c.is_whitespace()).is_some() {}
     match rest.next() {
         None | Some('}' | '_' | '^') => {
-            Err("its braces are not paired, or something is missing at its end".to_owned())
+            Err("its braces do not match, or it is incomplete".to_owned())
         }
         Some(c) => piece(c, rest, depth),
     }
@@ -129,11 +134,11 @@ fn piece(c: char, rest: &mut Rest, depth: usize) -> Result<(), String> {
         '{' => row(rest, depth + 1),
         '\\' => command(rest, depth),
         c if c.is_control() || "$%#&~\"".contains(c) => {
-            Err(format!("it holds `{}`", c.escape_default()))
+            Err(format!("it contains `{}`", c.escape_default()))
         }
         c if !c.is_ascii() => Err(match GREEK.iter().find(|(letter, _)| *letter == c) {
-            Some((_, name)) => format!("it holds `{c}`, in LaTeX `{}`", greek_command(name)),
-            None => format!("it holds `{c}`, which is no letter of LaTeX"),
+            Some((_, name)) => format!("it contains `{c}`; write `{}`", greek_command(name)),
+            None => format!("it contains `{c}`, which LaTeX cannot print"),
         }),
         _ => Ok(()),
     }
@@ -148,10 +153,10 @@ fn command(rest: &mut Rest, depth: usize) -> Result<(), String> {
         return match rest.next() {
             Some(',' | ';' | ':' | '!' | ' ') => Ok(()),
             Some(c) => Err(format!(
-                "`\\{}` is no letter and no space",
+                "`\\{}` is neither a symbol nor a space",
                 c.escape_default()
             )),
-            None => Err("something is missing at its end".to_owned()),
+            None => Err("it is incomplete".to_owned()),
         };
     }
     let among = |list: &str| list.split_whitespace().any(|w| w == word);
@@ -169,7 +174,7 @@ fn command(rest: &mut Rest, depth: usize) -> Result<(), String> {
             let known = known.chain(GREEK.iter().map(|(_, name)| *name));
             let near = closest(&word, known).map(|near| format!(", did you mean `\\{near}`?"));
             return Err(format!(
-                "`\\{word}` is no letter, sign, accent or font of a name{}",
+                "`\\{word}` is not a symbol, an accent or a font that clebsch accepts{}",
                 near.unwrap_or_default()
             ));
         }

@@ -189,7 +189,7 @@ fn what_is_too_large_is_said_with_the_number_and_the_limit() {
            let u = w*w*w*w + exp(w*w*w);";
     let message = refusal(&potential(&nested, "u"));
     assert!(
-        beyond(&message, 1_000) && message.contains("a `let` stands for"),
+        beyond(&message, 1_000) && message.contains("a `let` counts in full"),
         "{message}"
     );
     let power = "*(1 + dot(a, J*g) + tr(S) + det(S))".repeat(30);
@@ -205,8 +205,8 @@ fn longer_texts_are_refused_with_the_limit() {
     assert!(message.contains("more than 10000 bytes"), "{message}");
     // A megabyte of text is rejected before it is split into tokens.
     let message = refusal(&terms(300_000));
-    assert!(message.contains("more than 250000"), "{message}");
-    // Comments and documentation do not count.
+    assert!(message.contains("at most 250000"), "{message}");
+    // What is no part of the model does not count.
     let remark = format!("// {}\n", "x".repeat(20_000));
     let documentation = "/// a line\n".repeat(2_000);
     assert!(derive_source(&(remark + &documentation + &free(1))).is_ok());

@@ -26,7 +26,7 @@ impl<E: fmt::Display> fmt::Display for EnsembleError<E> {
             0 | 1 => write!(f, "body at index {}: {}", self.body, self.cause)?,
             n => write!(
                 f,
-                "bodies at indices {} to {}, side by side: {}",
+                "bodies at indices {} to {}, stepped together: {}",
                 self.body,
                 self.body + n - 1,
                 self.cause

@@ -27,18 +27,14 @@ pub enum Unknown {
 impl fmt::Display for Unknown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Kind => "a configuration has no momentum of its own",
-            Self::Start => "from the start, at rest, no short step can be taken",
-            Self::Refused => "a state near the start, at rest, is refused",
-            Self::Kinetic => {
-                "the kinetic energy is not positive for every velocity that the model admits"
-            }
-            Self::Still => "at rest nothing resists a disturbance of the start",
-            Self::Far => "from the start, at rest, no step of about 2/ω can be taken",
-            Self::OtherSteps => {
-                "the step does not move the fastest one as steps with the potential at the nodes do"
-            }
-            Self::Unfinished => "the search was given up before its end",
+            Self::Kind => "a configuration has no momentum in the initial values",
+            Self::Start => "no short step from the initial configuration at rest succeeds",
+            Self::Refused => "a step from a state near the initial configuration fails",
+            Self::Kinetic => "the kinetic energy is not positive for all admissible velocities",
+            Self::Still => "the stiffness at the initial configuration is zero",
+            Self::Far => "no step of about 2/ω from the initial configuration at rest succeeds",
+            Self::OtherSteps => "the scheme does not treat the fastest mode like Störmer-Verlet",
+            Self::Unfinished => "the search was stopped early",
         })
     }
 }

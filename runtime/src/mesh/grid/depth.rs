@@ -47,7 +47,7 @@ where
         if mass.len() != setting.particles || mass.len() > MOST {
             return Err(refused(
                 Problem::AssumptionFails {
-                    text: "one mass for each particle, of fewer than 2^32",
+                    text: "there is one mass for each particle, and fewer than 2^32 particles",
                 },
                 "give one mass for each particle",
             ));
@@ -64,9 +64,9 @@ where
         if T::LANES > 1 {
             return Err(refused(
                 Problem::AssumptionFails {
-                    text: "a scalar is one number",
+                    text: "the scalar has one lane",
                 },
-                "run the members of an ensemble one after another: in each, a particle is in a cell of its own",
+                "run the members of an ensemble one after another",
             ));
         }
         Ok(Self {

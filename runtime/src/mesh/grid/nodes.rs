@@ -37,7 +37,7 @@ impl<const D: usize> Nodes<D> {
         }
         match count <= 4_294_967_296.0 {
             true => Ok(Self { axes }),
-            false => Err(refused("nodes <= 2^32", "take a coarser grid")),
+            false => Err(refused("nodes <= 2^32", "use a coarser grid")),
         }
     }
 

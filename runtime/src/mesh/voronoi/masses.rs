@@ -11,7 +11,7 @@ pub(super) fn check_masses<T: Real>(masses: &[T], particles: usize) -> Result<()
     };
     if masses.len() != particles {
         let text = "there is one mass for each particle";
-        let remedy = "give as many masses as places";
+        let remedy = "give as many masses as particles";
         return Err(refused(Problem::AssumptionFails { text }, remedy));
     }
     for (index, mass) in masses.iter().enumerate() {

@@ -80,7 +80,7 @@ impl<T: Real> Voronoi<T> {
         };
         if domain.walls != [Wall::Periodic; 2] {
             let text = "the domain is periodic in both directions";
-            let remedy = "Voronoi meshes have no walls: place the particles on a torus";
+            let remedy = "place the particles on a torus: Voronoi meshes do not support walls";
             return Err(refused(Problem::AssumptionFails { text }, remedy));
         }
         for (index, &value) in domain.lengths.iter().enumerate() {
@@ -113,8 +113,8 @@ impl<T: Real> Voronoi<T> {
             });
         }
         if T::LANES > 1 {
-            let text = "one mesh stands in a scalar";
-            let remedy = "run the members of an ensemble of meshes one by one";
+            let text = "the scalar has one lane";
+            let remedy = "run the members of an ensemble one after another";
             return Err(refused(Problem::AssumptionFails { text }, remedy));
         }
         let torus = Torus::new(domain.lengths);

@@ -94,9 +94,9 @@ pub fn scattered(
     relax(&mut mesh, &mut places, sweeps).map_err(|_| ParameterError {
         field: "seed",
         problem: Problem::AssumptionFails {
-            text: "no two particles start at one place",
+            text: "no two particles start at the same position",
         },
-        remedy: "take another seed",
+        remedy: "use another seed",
     })?;
     Ok(places)
 }

@@ -67,23 +67,22 @@ impl<T: Real> Functional<T, 2> for pair_core<T> {
         let value = radius.value();
         let shortest = setting.domain.lengths[0].min(setting.domain.lengths[1]);
         if !(radius.is_finite() && value > 0.0) {
-            let remedy =
-                "give the distance at which particles begin to repel, about 0.7 of that at rest";
+            let remedy = "give the distance at which particles begin to repel, about 0.7 of their distance in equilibrium";
             return Err(refused("rc", Problem::NotPositive { value }, remedy));
         }
         if value > 0.5 * shortest {
             let text = "the radius is at most half of either period";
-            let remedy = "give a smaller radius: a particle would meet two copies of another";
+            let remedy = "give a smaller radius, so that no particle meets two copies of another";
             return Err(refused("rc", Problem::AssumptionFails { text }, remedy));
         }
         if setting.domain.walls != [Wall::Periodic; 2] || T::LANES > 1 {
-            let text = "the domain is periodic in both directions, and one set of particles stands in a scalar";
+            let text = "the domain is periodic in both directions, and the scalar has one lane";
             let remedy = "place the particles on a torus";
             return Err(refused("domain", Problem::AssumptionFails { text }, remedy));
         }
         if !(strength.is_finite() && strength.value() >= 0.0) {
             let value = strength.value();
-            let remedy = "give the square of a velocity, about a tenth of that of waves";
+            let remedy = "give the square of a velocity, about a tenth of the squared wave speed";
             return Err(refused("kappa", Problem::NotPositive { value }, remedy));
         }
         let sum = masses.iter().fold(T::zero(), |sum, m| sum + *m);

@@ -54,7 +54,7 @@ impl Values {
         match count.checked_mul(self.components) == Some(self.numbers.len()) {
             true => Ok(()),
             false => Err(unfit(&format!(
-                "`{}` has {} numbers, and {count} times {} are due",
+                "`{}` has {} numbers, but {count} times {} are needed",
                 self.name,
                 self.numbers.len(),
                 self.components

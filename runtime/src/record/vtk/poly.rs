@@ -44,7 +44,7 @@ impl PolyData {
         let mut corners = self.vertices.iter().chain(of_lines);
         if let Some(wrong) = corners.find(|corner| **corner >= count as u64) {
             return Err(unfit(&format!(
-                "a cell has the corner {wrong}, and there are {count} points"
+                "a cell has the corner {wrong}, but there are {count} points"
             )));
         }
         let [vertices, lines, polygons] = cells;

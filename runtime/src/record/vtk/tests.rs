@@ -113,14 +113,14 @@ fn values_of_another_number_are_refused() {
     let refused = data.write(&mut Vec::new()).expect_err("one is missing");
     assert_eq!(
         refused.to_string(),
-        "`a` has 1 numbers, and 2 times 1 are due"
+        "`a` has 1 numbers, but 2 times 1 are needed"
     );
     let mut data = PolyData::of_points(vec![[0.0; 3]; 2]);
     data.lines = vec![vec![0, 2]];
     let refused = data.write(&mut Vec::new()).expect_err("there is no third");
     assert_eq!(
         refused.to_string(),
-        "a cell has the corner 2, and there are 2 points"
+        "a cell has the corner 2, but there are 2 points"
     );
 }
 

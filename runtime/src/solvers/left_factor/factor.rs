@@ -83,12 +83,11 @@ impl fmt::Display for LeftFactorError {
             Self::NotFinite => write!(f, "an entry is NaN or infinite"),
             Self::Reflected { determinant } => write!(
                 f,
-                "the determinant is {determinant:e}, and a left factor needs a positive one"
+                "the determinant is {determinant:e}, but a left factor needs a positive one"
             ),
             Self::NotPositive { smallest, second } => write!(
                 f,
-                "its smallest eigenvalues are {smallest:e} and {second:e}: none may be negative, \
-                 and at most one zero"
+                "its smallest eigenvalues are {smallest:e} and {second:e}: none may be negative, and at most one may be zero"
             ),
         }
     }
@@ -102,11 +101,11 @@ impl LeftFactorError {
     pub fn in_field(self, field: &'static str) -> ParameterError {
         let remedy = match self {
             Self::NotPositive { .. } => {
-                "give second moments that are positive in all directions but one: a turn in a plane \
-                 without any has no inertia, and momenta do not determine it"
+                "give second moments that are positive in all directions but one: a rotation in a plane without second moments \
+                 has no inertia"
             }
             Self::NotFinite | Self::Reflected { .. } => {
-                "give the second moments of a real mass distribution, turned if need be"
+                "give the second moments of a real mass distribution, rotated if necessary"
             }
         };
         ParameterError {
@@ -146,7 +145,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
     /// # Errors
     /// [`LeftFactorError`] with the numbers that are wrong.
     pub fn new(c: SMatrix<T, N, N>) -> Result<Self, LeftFactorError> {
-        const { assert!(2 <= N && N <= LARGEST, "left factors are of sizes 2 to 8") };
+        const { assert!(2 <= N && N <= LARGEST, "left factors have sizes 2 to 8") };
         if !c.iter().all(|x| x.is_finite()) {
             return Err(LeftFactorError::NotFinite);
         }

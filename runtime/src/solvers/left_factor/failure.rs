@@ -85,7 +85,7 @@ impl fmt::Display for Unsolved {
             Refusal::DoesNotApply => {
                 return write!(
                     f,
-                    "solver {} does not serve this size, factor or scalar; take lie-newton",
+                    "solver {} does not support this size, factor or scalar; use lie-newton",
                     self.method
                 );
             }

@@ -208,16 +208,15 @@ impl fmt::Display for MoserVeselovError {
         if self.solver != Method::Kappa && self.ratio <= 1.0 {
             return write!(
                 f,
-                "solver {} found no solution, although the momentum is only {:.6} of its bound, or \
-                 does not serve this scalar; take kappa",
+                "solver {} found no solution although the momentum is only {:.6} of its bound, or does not support this \
+                 scalar; use kappa",
                 self.solver, self.ratio
             );
         }
         if self.ratio.is_infinite() {
             write!(
                 f,
-                "the body turns too far in one step for order {}: its modified moments are no \
-                 longer positive",
+                "the body rotates too far in one step for order {}: its modified moments are no longer positive",
                 self.order
             )?;
         } else {

@@ -145,13 +145,13 @@ impl fmt::Display for PoinsotError {
                 sum_of_others,
             } => write!(
                 f,
-                "negative second moment {smallest}: the moment of inertia {largest_moment} exceeds \
-                 the sum {sum_of_others} of the two others, which no body can have"
+                "negative second moment {smallest}: the moment of inertia {largest_moment} exceeds the sum {sum_of_others} of \
+                 the other two, which is impossible for a body"
             ),
             Self::NoInertia { smallest_moment } => write!(
                 f,
-                "the smallest moment of inertia is {smallest_moment}: all mass lies on a line, and \
-                 momenta do not determine the spin about it"
+                "the smallest moment of inertia is {smallest_moment}: all mass lies on a line, so momenta do not determine the \
+                 spin about it"
             ),
         }
     }

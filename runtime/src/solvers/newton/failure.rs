@@ -213,19 +213,19 @@ impl fmt::Display for NewtonError {
             )?,
             NewtonFailure::Fold { share } => write!(
                 f,
-                "no velocity that follows from rest: the tangent becomes singular when {share:.6} \
-                 of the momentum is reached"
+                "the equation of the step has no solution connected to h = 0: its tangent becomes singular at {share:.6} of \
+                 the momentum"
             )?,
         }
         match self.configuration() {
             Some(name) => write!(
                 f,
-                "; the worst is {} of the momentum of `{name}`",
+                "; the largest residual is {} of the momentum of `{name}`",
                 worst.part
             )?,
             None => write!(
                 f,
-                "; the worst is {} of factor {}",
+                "; the largest residual is {} of factor {}",
                 worst.part,
                 u16::from(worst.factor) + 1
             )?,
@@ -233,12 +233,11 @@ impl fmt::Display for NewtonError {
         match (self.h, self.largest_step) {
             (Some(h), Some(largest)) if largest == h => write!(
                 f,
-                "; a fresh workspace takes this step: start again from this state"
+                "; a new workspace takes this step: start again from this state"
             ),
             (Some(h), Some(largest)) if largest != 0.0 => write!(
                 f,
-                "; the step is {} times the largest that can be solved from this state: reduce it \
-                 from {} to at most {}",
+                "; the step is {} times the largest step that can be solved from this state: reduce it from {} to at most {}",
                 Times(h / largest),
                 Plain(h),
                 AtMost(largest)

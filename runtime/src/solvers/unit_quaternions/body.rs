@@ -109,7 +109,7 @@ impl<T: Real> QuaternionBody<T> {
             let positive = small > ROUNDINGS * f64::EPSILON * large.abs();
             if !positive {
                 let remedy =
-                    "the inertia of small steps must be positive definite: give larger moments";
+                    "give larger moments: for small steps the inertia must be positive definite";
                 return Err(refused(Problem::NotPositive { value: small }, remedy));
             }
             largest = largest.max(large);

@@ -16,9 +16,9 @@ impl Elaborator<'_> {
         let shape = value.shape();
         let symbols = &self.names.symbols;
         let remedy = match (shape.is_scalar(), shape.is_vector()) {
-            (true, _) => "drop the brackets: a number has no components",
-            (_, true) => "components of a vector are `v[1]`, `v[2]`, ...",
-            _ => "components of a matrix are `A[1, 1]`, `A[1, 2]`, ...: row, then column",
+            (true, _) => "remove the brackets: a number has no components",
+            (_, true) => "write components of a vector as `v[1]`, `v[2]`, ...",
+            _ => "write components of a matrix as `A[1, 1]`, `A[1, 2]`, ...: row, then column",
         };
         match (shape.is_scalar(), shape.is_vector(), indices) {
             (false, true, [i]) => {
@@ -58,7 +58,7 @@ impl Elaborator<'_> {
             ),
         };
         fail(
-            Diagnostic::new(place, format!("there is no component {index} here"))
+            Diagnostic::new(place, format!("this quantity has no component {index}"))
                 .help(format!("components are counted {bound}")),
         )
     }
@@ -72,7 +72,7 @@ impl Elaborator<'_> {
             let named = matches!(value.shape().rows, Dim::Named(_));
             if named && expr::contains_role(symbols, &value, Role::Advected) {
                 let message = format!(
-                    "a moving diagonal needs a size that is a number, and `{}` has only a name",
+                    "`diag` of an advected quantity needs a size that is a number, and `{}` is a name",
                     symbols.dim_text(value.shape().rows)
                 );
                 return fail(

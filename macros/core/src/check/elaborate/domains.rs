@@ -22,16 +22,16 @@ impl Elaborator<'_> {
     /// A power of a scalar or square matrix.
     pub(super) fn power(&self, base: Expr, q: Rational, at: Place, place: Place) -> Elaborated {
         if q.is_negative() && self.vanishes(&base) {
-            let message = "a negative power of what is identically zero";
+            let message = "this is a negative power of an expression that is identically zero";
             return fail(Diagnostic::new(at, message).help("its base must not be zero"));
         }
         if q.as_integer().is_none()
             && !base.is_zero()
             && let Some(always) = never_positive(&base, false)
         {
-            let message = format!("the base of a root is {always} here for all values");
+            let message = format!("the base of this root is {always} for all values");
             return fail(Diagnostic::new(at, message).help(
-                "roots and powers with a fraction are real for positive numbers only: is the sign wrong?",
+                "roots and fractional powers are real only for positive numbers: is the sign wrong?",
             ));
         }
         self.finite(expr::power(base, q), place)
@@ -42,10 +42,10 @@ impl Elaborator<'_> {
         if f == Function::Log
             && let Some(always) = never_positive(&a, self.vanishes(&a))
         {
-            let message = format!("the argument of `log` is {always} here for all values");
+            let message = format!("the argument of `log` is {always} for all values");
             return fail(
                 Diagnostic::new(at, message)
-                    .help("the logarithm is real for positive numbers only: is the sign wrong?"),
+                    .help("the logarithm is real only for positive numbers: is the sign wrong?"),
             );
         }
         self.finite(expr::call(f, a), place)
@@ -54,8 +54,8 @@ impl Elaborator<'_> {
     /// The expression, unless it is a number that overflows a double.
     pub(super) fn finite(&self, e: Expr, place: Place) -> Elaborated {
         if range(&e).overflows() {
-            let message = "this number is beyond the largest, 1.8e308";
-            return fail(Diagnostic::new(place, message).help("state the model in other units"));
+            let message = "this number exceeds the largest double, 1.8e308";
+            return fail(Diagnostic::new(place, message).help("use other units"));
         }
         Ok(e)
     }

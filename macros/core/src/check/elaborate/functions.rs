@@ -41,7 +41,7 @@ impl Elaborator<'_> {
         let function = FUNCTIONS.contains(&n);
         if self.is_quantity(n) && (!function || HIDEABLE.contains(&n)) {
             let message = match function {
-                true => format!("`{n}` is declared here as a quantity, which hides the function"),
+                true => format!("`{n}` is declared here as a quantity, which shadows the function"),
                 false => format!("`{n}` is a quantity, not a function"),
             };
             let d = Diagnostic::new(name.place, message);
@@ -52,7 +52,7 @@ impl Elaborator<'_> {
             return Some(match (function, moves) {
                 (true, _) => d
                     .help(format!("write `{n}*(...)` for the product"))
-                    .help(format!("rename the quantity to use the function `{n}`")),
+                    .help(format!("rename the quantity to call the function `{n}`")),
                 (false, true) => d.help(format!(
                     "write `{n}*(...)` for the product, `next({n})` for its value at the next node"
                 )),
@@ -88,8 +88,8 @@ impl Elaborator<'_> {
         (velocity.role == Role::Velocity && velocity.structure == Structure::Orthogonal).then(|| {
             let (w, h) = (&velocity.name, &symbols.get(self.names.step).name);
             format!(
-                "the velocity `{w}` is the rotation of one step, a matrix: the kinetic energy of a body with second moments J \
-                 is stated by `-tr(J*{w})/{h}`"
+                "the velocity `{w}` is the rotation of one step, a matrix: for a body with second moments J, write the kinetic \
+                 energy as `-tr(J*{w})/{h}`"
             )
         })
     }
@@ -132,7 +132,7 @@ impl Elaborator<'_> {
         };
         let message = match a.shape().is_square() {
             true => {
-                format!("`{f}` needs an element of {groups}: products and inverses of such letters")
+                format!("`{f}` needs an element of {groups}, or products and inverses of elements")
             }
             false => format!("`{f}` needs an element of {groups}, and this is {what}"),
         };
@@ -226,7 +226,7 @@ impl Elaborator<'_> {
                 self.power(a, Rational::HALF, first.place, place)
             }
             "abs" if self.hint(first).is_some_and(Shape::is_vector) => {
-                let d = Diagnostic::new(first.place, "`abs` is of a number, and this is a vector");
+                let d = Diagnostic::new(first.place, "`abs` takes a number, and this is a vector");
                 fail(d.help("the length of a vector x is `sqrt(dot(x, x))`"))
             }
             _ if let Some(function) = Function::named(f) => {
@@ -246,9 +246,9 @@ impl Elaborator<'_> {
                 let a = argument(Some(plane))?;
                 if a.shape() != plane {
                     let what = shape_text(symbols, a.shape());
-                    let message = format!("`perp` turns a vector of the plane, and this is {what}");
+                    let message = format!("`perp` rotates a vector in the plane, and this is {what}");
                     let d = Diagnostic::new(first.place, message);
-                    return fail(d.help("perp(x) = (-x[2], x[1]), of a `Vec<2>`"));
+                    return fail(d.help("perp(x) = (-x[2], x[1]) takes a `Vec<2>`"));
                 }
                 Ok(expr::mul(expr::quarter_turn(symbols), a))
             }
@@ -278,9 +278,9 @@ impl Elaborator<'_> {
                             format!("`dot` pairs two vectors, and this is {what}"),
                         )
                         .help(match a.shape().is_scalar() {
-                            true => "numbers are multiplied, `a*b`, and squared, `a^2`".to_owned(),
+                            true => "multiply numbers as `a*b`, and square them as `a^2`".to_owned(),
                             false => self.kinetic_of_body(&a).unwrap_or_else(|| {
-                                "the pairing of two matrices is `tr(A^T * B)`".to_owned()
+                                "for two matrices, write `tr(A^T * B)`".to_owned()
                             }),
                         }),
                     );
@@ -299,7 +299,7 @@ impl Elaborator<'_> {
                     return fail(
                         Diagnostic::new(
                             place,
-                            format!("`{f}` of a constant is the constant itself"),
+                            format!("`{f}` of a constant is the constant"),
                         )
                         .help(format!("drop `{f}`")),
                     );
@@ -327,13 +327,14 @@ impl Elaborator<'_> {
                 self.of_group(f, a, first.place)
             }
             "sum" => fail(
-                Diagnostic::new(name.place, "`sum` goes over the sites of a label, and here is none")
-                    .help("declare one, `label i in 0..N;`, and quantities `at nodes` or `at segments`: `hold p: sum(m*x) = X;` then holds their sum"),
+                Diagnostic::new(name.place, "`sum` runs over the sites of a label, and this model has no label")
+                    .help("declare a label, `label i in 0..N;`, and quantities `at nodes` or `at segments`; then `hold p: \
+                        sum(m*x) = X;` constrains their sum"),
             ),
             _ => fail(
                 Diagnostic::new(
                     name.place,
-                    format!("`{f}` belongs to models that this version does not derive yet"),
+                    format!("this version does not derive models with `{f}` yet"),
                 )
                 .help(format!("functions: {AVAILABLE}")),
             ),

@@ -19,14 +19,14 @@ impl Elaborator<'_> {
         let known = symbols.functional(function);
         if args.len() != known.arguments.len() {
             let message = format!(
-                "`{}` is given with {} arguments, and {} stand here",
+                "`{}` takes {} arguments, and this call has {}",
                 known.name,
                 known.arguments.len(),
                 args.len()
             );
             return fail(
                 Diagnostic::new(place, message)
-                    .help("write as many as its `given` statement declares"),
+                    .help("write as many arguments as the `given` statement declares"),
             );
         }
         let mut arguments = Vec::new();
@@ -34,12 +34,12 @@ impl Elaborator<'_> {
             let value = self.of_shape(e, kind.shape)?;
             if !self.obeys(&value, kind.structure) {
                 let (what, remedy) = match kind.structure {
-                    Structure::Symmetric => ("a symmetric matrix", "take `Q*Q^T`, or `sym(A)`"),
-                    Structure::Skew => ("a skew matrix", "take `skew(A)`, or `hat(v)`"),
+                    Structure::Symmetric => ("a symmetric matrix", "write `Q*Q^T`, or `sym(A)`"),
+                    Structure::Skew => ("a skew matrix", "write `skew(A)`, or `hat(v)`"),
                     _ => ("a diagonal matrix", "take `diag(A)`"),
                 };
                 let message = format!(
-                    "`{}` takes {what} here, and this is not one whatever its letters are",
+                    "`{}` takes {what} here, and this expression is not one for all values",
                     known.name
                 );
                 return fail(Diagnostic::new(e.place, message).help(remedy));

@@ -103,8 +103,11 @@ impl Elaborator<'_> {
             2 => "`E1` and `E2`".to_owned(),
             n => format!("`E1` to `E{n}`"),
         };
-        let message = format!("there is no `{}` {bound}", UNITS.get(axis).unwrap_or(&"En"));
-        fail(Diagnostic::new(place, message).help(format!("the unit vectors are {there} here")))
+        let message = format!(
+            "`{}` does not exist {bound}",
+            UNITS.get(axis).unwrap_or(&"En")
+        );
+        fail(Diagnostic::new(place, message).help(format!("the unit vectors here are {there}")))
     }
 
     pub(super) fn name(&self, n: &str, place: Place, expected: Option<Shape>) -> Elaborated {
@@ -156,46 +159,48 @@ impl Elaborator<'_> {
         let velocity = field.map(|c| &self.names.symbols.get(c.element).name);
         let mut d = Diagnostic::new(place, format!("`{n}` is not declared"));
         if self.names.was_declared(n) || self.unbound.contains(&(n.to_owned(), true)) {
-            d = Diagnostic::following(place, format!("`{n}` has a faulty declaration"));
+            d = Diagnostic::following(place, format!("the declaration of `{n}` has an error"));
         } else if let Some(other) = alike {
             d = d.help(format!(
-                "`{other}` is declared, which looks like it and is written with other characters: copy it from there"
+                "`{other}` is declared; it looks the same, but consists of other characters: copy it from there"
             ));
         } else if n == "T" {
-            d = d.help("`T` stands for the transpose, as in `A^T`; give a kinetic energy another name, for example `K`");
+            d = d.help("`T` means the transpose, as in `A^T`; give a kinetic energy another name, for example `K`");
         } else if self.unbound.contains(&(n.to_owned(), false)) {
             d = Diagnostic::new(place, format!("`{n}` is used before its `let`"))
                 .help(format!("move `let {n} = ...;` up, before its first use"));
         } else if let Some(moving) = rate_of(n, &self.names.symbols) {
             d = d.help(format!(
-                "a rate of change is a difference over the step: `(next({moving}) - {moving})/{h}`"
+                "write a rate of change as a difference over the step: `(next({moving}) - {moving})/{h}`"
             ));
         } else if let Some(moving) = next_of(n, &self.names.symbols) {
-            d = d.help(format!("the value at the next node is `next({moving})`"));
+            d = d.help(format!(
+                "write the value at the next node as `next({moving})`"
+            ));
         } else if let Some((moving, end)) = end_of(n, &self.names.symbols) {
             d = d.help(match end {
-                true => format!("the value at the end of the step is `next({moving})`"),
-                false => format!("the value at the start of the step is `{moving}`"),
+                true => format!("write the value at the end of the step as `next({moving})`"),
+                false => format!("write the value at the start of the step as `{moving}`"),
             });
         } else if let Some(component) = component_of(n, &self.names.symbols) {
-            d = d.help(format!("a component is written `{component}`"));
+            d = d.help(format!("write a component as `{component}`"));
         } else if FUNCTIONS.contains(&n) {
             d = Diagnostic::new(place, format!("`{n}` is a function of the language"))
                 .help(format!("write `{n}(...)`"));
         } else if unknown::STEPS.contains(&n) {
             d = d.help(format!(
-                "the time step is `{h}` here; `time k step {n};` at the top calls it `{n}`"
+                "the time step is named `{h}` here; to name it `{n}`, write `time k step {n};` at the top"
             ));
         } else if unknown::TIMES.contains(&n) {
             // The files of a run already have a column `time`.
             let clock = if n == "time" { "clock" } else { n };
             d = Diagnostic::new(
                 place,
-                format!("the Lagrangian cannot depend on the time `{n}` unless a clock is declared"),
+                format!("the Lagrangian cannot depend on the time `{n}` unless you declare a clock"),
             )
             .help(format!(
-                "declare one, `advected {clock}: Real; constraint next({clock}) = {clock} + {h};`, and write `{clock}`; the case gives \
-                 its value at the start"
+                "declare a clock, `advected {clock}: Real; constraint next({clock}) = {clock} + {h};`, and write `{clock}`; \
+                 the case gives its initial value"
             ));
         } else if let Some(near) = closest(n, declared.into_iter().chain(bound).map(String::as_str))
         {
@@ -203,20 +208,21 @@ impl Elaborator<'_> {
         } else if unknown::ANGLES.contains(&n) {
             d = d.help(unknown::RADIANS);
         } else if let Some(written) = unknown::name(n) {
-            d = d.help(format!("the language writes `{written}`"));
+            d = d.help(format!("write `{written}`"));
         } else if let Some(moving) = velocity {
             d = d.help(format!(
-                "a velocity is a difference over the step: `let {n} = (next({moving}) - {moving})/{h};`"
+                "write a velocity as a difference over the step: `let {n} = (next({moving}) - {moving})/{h};`"
             ));
         } else if let Some(near) = closest(n, FUNCTIONS) {
             d = d.help(format!("did you mean the function `{near}`?"));
         } else if n == self.names.time_index {
             d = d.help(format!(
-                "`{n}` is the time index; `next(x)` is `x` at the node after"
+                "`{n}` is the time index; write `next(x)` for `x` at the next node"
             ));
         } else if n.strip_prefix('E').is_some_and(|i| i.parse::<u8>().is_ok()) {
             d = d.help(format!(
-                "the unit vectors with a name are `E1` to `E{}`, as far as the size goes; `v[2]` and `A[1, 2]` are components",
+                "the named unit vectors are `E1` to `E{}`, up to the size of the vector; write components as `v[2]` and `A[1, \
+                 2]`",
                 UNITS.len()
             ));
         } else {

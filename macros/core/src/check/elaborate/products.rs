@@ -28,7 +28,7 @@ impl Elaborator<'_> {
                 );
                 let place = terms[0].1.place.to(t.place);
                 return fail(Diagnostic::new(place, message).help(
-                    "every term of a sum has one shape; `Id` and `0` take that of the others",
+                    "all terms of a sum must have the same shape; `Id` and `0` take the shape of the other terms",
                 ));
             }
             out.push(if *minus { expr::neg(value) } else { value });
@@ -40,8 +40,8 @@ impl Elaborator<'_> {
     pub(super) fn product(&self, factors: &[Expression], expected: Option<Shape>) -> Elaborated {
         if factors.len() > LONGEST_PRODUCT {
             let place = factors[0].place.to(factors[factors.len() - 1].place);
-            let message = format!("a product of more than {LONGEST_PRODUCT} factors is refused");
-            return fail(Diagnostic::new(place, message).help("make parts of it parameters"));
+            let message = format!("this product has more than {LONGEST_PRODUCT} factors");
+            return fail(Diagnostic::new(place, message).help("turn parts of it into parameters"));
         }
         let mut left: Option<(Expr, Place)> = None;
         let mut numbers = Vec::new();
@@ -98,7 +98,7 @@ impl Elaborator<'_> {
         } else if a.shape().is_vector() {
             d.help("a vector is a column: write the matrix first, `A * v`, or transpose, `v^T * A`")
         } else {
-            d.help("columns of the left factor and rows of the right one must agree")
+            d.help("the left factor needs as many columns as the right factor has rows")
         }
     }
 
@@ -106,13 +106,14 @@ impl Elaborator<'_> {
         if self.vanishes(&a) {
             return fail(Diagnostic::new(
                 place,
-                "this is identically zero and has no inverse",
+                "this is identically zero, so it has no inverse",
             ));
         }
         if !expr::is_invertible(&self.names.symbols, &a) && self.vanishes(&expr::det(a.clone())) {
-            let message = "this matrix has no inverse: its determinant is zero for all values";
+            let message = "this matrix has no inverse: its determinant is identically zero";
             return fail(Diagnostic::new(place, message).help(
-                "a skew matrix of odd size is singular, such as `hat(v)`, and so is `a*b^T`; add a regular matrix, for example `Id`",
+                "a skew matrix of odd size, such as `hat(v)`, is singular, and so is `a*b^T`; add a regular matrix, for \
+                 example `Id`",
             ));
         }
         Ok(expr::inverse(&self.names.symbols, a))

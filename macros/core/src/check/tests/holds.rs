@@ -54,21 +54,30 @@ fn constraints_that_cannot_be_held_are_told_on_their_tokens() {
             "hold λ: dot(x, next(x)) = L^2;",
             "nonholonomic constraints are not supported yet",
         ),
-        ("hold λ: dot(next(x), next(x)) = L^2;", "leave `next` out"),
+        ("hold λ: dot(next(x), next(x)) = L^2;", "remove `next`"),
         (
             "hold λ: dot(x, x) = dot(x, x);",
-            "both sides of the constraint of `λ` are the same",
+            "both sides of the constraint of `λ` are equal",
         ),
         ("hold m: dot(x, x) = L^2;", "`m` is declared twice"),
-        ("hold λ: x*x^T = Id;", "6 equations hold 3 directions"),
+        (
+            "hold λ: x*x^T = Id;",
+            "6 equations constrain only 3 directions",
+        ),
         ("hold λ: dot(x, x) = x;", "this is"),
-        ("hold λ dot(x, x) = L^2;", "a held constraint reads"),
-        ("hold λ: dot(x, x);", "a held constraint reads"),
+        (
+            "hold λ dot(x, x) = L^2;",
+            "the name of the multiplier, then the equation",
+        ),
+        (
+            "hold λ: dot(x, x);",
+            "the name of the multiplier, then the equation",
+        ),
         (
             "hold λ: dot(x, x) = L^2; hold ν: 2*dot(x, x) = m;",
             "the constraint of `ν` follows from the others",
         ),
-        ("hold λ: cross(E3, x) = 0;", "hold 2 directions"),
+        ("hold λ: cross(E3, x) = 0;", "constrain only 2 directions"),
     ] {
         let told = held(hold);
         assert!(told.contains(wanted), "{hold}\n{told}");
@@ -82,7 +91,10 @@ fn constraints_that_cannot_be_held_are_told_on_their_tokens() {
     );
     let two = two.replace("-tr(J*W)/h", "-tr(J*W)/h - tr(J*V)/h");
     let told = refused(&format!("{two} hold l: R*a = S*b;"));
-    assert!(told.contains("3 equations hold 2 directions"), "{told}");
+    assert!(
+        told.contains("3 equations constrain only 2 directions"),
+        "{told}"
+    );
     assert!(told.contains("`dot(R*c, S*b) = 0`"), "{told}");
     let told = refused(&format!("{two} hold l: dot(R*a, S*b) = 0;"));
     assert!(told.starts_with("derives"), "{told}");
@@ -106,13 +118,13 @@ fn functions_are_given_by_paths() {
         (
             statement,
             "f(Q*Q^T, Q)",
-            "is given with 1 arguments, and 2 stand here",
+            "takes 1 arguments, and this call has 2",
         ),
         (statement, "f(det(Q))", "this is"),
         (
             "given f(Sym<3>): Real;",
             "f(Q*Q^T)",
-            "a function is given by its path",
+            "give the path of the function",
         ),
     ] {
         let told = given(statement, potential);
@@ -198,7 +210,7 @@ fn matrices_are_held_by_their_independent_entries() {
     let turning = "param J: Sym<3>; param A: SO<3>; group Λ: SO<3> velocity W; \
         constraint next(Λ) = Λ*W; lagrangian = -tr(J*W)/h;";
     let told = refused(&format!("{turning} hold l: Λ = A;"));
-    for wanted in ["9 equations hold 3 directions", "vee(A^T*B) = 0"] {
+    for wanted in ["9 equations constrain only 3 directions", "vee(A^T*B) = 0"] {
         assert!(told.contains(wanted), "{told}");
     }
 }
@@ -206,7 +218,7 @@ fn matrices_are_held_by_their_independent_entries() {
 #[test]
 fn a_sum_needs_sites() {
     let told = held("hold λ: sum(x) = E1;");
-    assert!(told.contains("goes over the sites of a label"), "{told}");
+    assert!(told.contains("runs over the sites of a label"), "{told}");
 }
 
 #[test]
@@ -214,8 +226,8 @@ fn constraints_know_no_time() {
     let clock = "advected τ: Real; constraint next(τ) = τ + h;";
     let message = held(&format!("{clock} hold λ: dot(x, x) = (L + m*τ)^2;"));
     for part in [
-        "`τ` goes on with the step by itself",
-        "by a stiff spring to where it should be",
+        "`τ` advances with the step by itself",
+        "drive the configuration by a stiff spring",
     ] {
         assert!(message.contains(part), "{message}");
     }

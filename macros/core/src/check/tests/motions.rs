@@ -19,13 +19,16 @@ fn sizes_that_the_table_has_not_are_told_with_those_it_has() {
     let all = "the groups are SO<n>, GL<n>, SU<2>, SE<2> and SE<3>";
     for group in ["SE<4>", "SE<1>", "SE<0>", "SE<33>"] {
         let said = refused(group, "tr(V)");
-        let wanted = format!("`{group}` is not in this version's table of groups");
+        let wanted = format!("this version does not support the group `{group}`");
         assert!(said.contains(&wanted), "{said}");
-        let own = format!("of this family there are `SE<2>` and `SE<3>`; {all}");
+        let own = format!("of this family it supports `SE<2>` and `SE<3>`; {all}");
         assert!(said.contains(&own), "{said}");
     }
     let said = refused("SU<3>", "tr(V)");
-    assert!(said.contains("of this family there is `SU<2>`;"), "{said}");
+    assert!(
+        said.contains("of this family it supports `SU<2>`;"),
+        "{said}"
+    );
     let said = refused("SE<2, 2>", "tr(V)");
     assert!(said.contains("`SE` takes one size, 2 given"), "{said}");
     let said = refused("Group<2>", "tr(V)");
@@ -46,11 +49,11 @@ fn parts_are_taken_of_motions_alone() {
         ),
         (
             "tr(rot(K))",
-            format!("`rot` needs an element of {both}: products and inverses of such letters"),
+            format!("`rot` needs an element of {both}, or products and inverses of elements"),
         ),
         (
             "tr(rot(V - Id))",
-            format!("`rot` needs an element of {both}:"),
+            format!("`rot` needs an element of {both}, or products"),
         ),
         (
             "re(V)",

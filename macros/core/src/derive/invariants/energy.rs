@@ -105,7 +105,8 @@ pub(super) fn discrete(x: &Inputs, passages: &[RandomStep], lax: Option<&Lax>) -
         value,
         exact,
         reason: if exact {
-            "it holds the sum of the eigenvalues of the velocity times the left factor, the half of those of the Lax matrix that the principal solution takes".to_owned()
+            "it contains the trace of the left factor times the velocity, whose eigenvalues are half of the eigenvalues of the \
+                Lax matrix, selected by the principal solution".to_owned()
         } else {
             "the stepper is symplectic".to_owned()
         },

@@ -152,7 +152,7 @@ fn velocities_remain(spec: &Spec) -> Result<(), Errors> {
             errors.push(
                 Diagnostic::new(
                     spec.lagrangian_place,
-                    format!("after reduction nothing is left that the velocity of `{name}` moves"),
+                    format!("after reduction, no term contains the velocity of `{name}`"),
                 )
                 .help(format!("add a kinetic term, for example `{example}`")),
             );
@@ -164,8 +164,9 @@ fn velocities_remain(spec: &Spec) -> Result<(), Errors> {
 fn too_large(spec: &Spec, algebra: &Algebra) -> Diagnostic {
     let message = match algebra.excess() {
         Some(excess) => format!("the reduction of this Lagrangian is too large: {excess}"),
-        None => "the reduction of this Lagrangian cannot be proved".to_owned(),
+        None => "clebsch cannot prove the reduction of this Lagrangian".to_owned(),
     };
-    Diagnostic::new(crate::derive::place_of_most(spec), message)
-        .help("state the reduced model: velocities and advected quantities in place of `next(...)`")
+    Diagnostic::new(crate::derive::place_of_most(spec), message).help(
+        "write the reduced model, with velocities and advected quantities instead of `next(...)`",
+    )
 }

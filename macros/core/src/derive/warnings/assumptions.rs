@@ -30,16 +30,16 @@ pub(super) fn assumptions(x: &Inputs) -> Vec<Warning> {
         let text = shown(x, a);
         if always(s, a, &budget) {
             let d = Diagnostic::new(a.place, format!("the assumption {text} always holds"));
-            let d = d.help("leave it out, or state the condition on the parameters that is meant");
+            let d = d.help("remove it, or state the condition that you mean");
             out.push(Warning::new(Topic::Assumption, d));
         } else if never(s, &[a], &budget) {
             let d = Diagnostic::new(
                 a.place,
                 format!(
-                    "the assumption {text} never holds: every choice of the parameters will be refused"
+                    "the assumption {text} never holds: every choice of the parameters will be rejected"
                 ),
             );
-            let d = d.help("state a condition that some parameters meet");
+            let d = d.help("state a condition that some parameters satisfy");
             out.push(Warning::new(Topic::Assumption, d));
         } else {
             sound.push(a);
@@ -51,12 +51,12 @@ pub(super) fn assumptions(x: &Inputs) -> Vec<Warning> {
             let d = Diagnostic::new(
                 last.place,
                 format!(
-                    "the assumption {} never holds together with those before it: every choice of \
-                     the parameters will be refused",
+                    "the assumption {} never holds together with the assumptions before it: every choice of the parameters \
+                     will be rejected",
                     shown(x, last)
                 ),
             )
-            .help("drop or change one of them");
+            .help("remove or change one of them");
             out.push(Warning::new(Topic::Assumption, d));
             break;
         }

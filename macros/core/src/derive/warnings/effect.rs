@@ -33,11 +33,11 @@ pub(super) fn parameters(x: &Inputs) -> Vec<Warning> {
         .map(|(p, place)| {
             let name = &spec.symbols.get(*p).name;
             let message = match stands(&assumed, *p) {
-                true => format!("the parameter `{name}` is used in an assumption only: the motion does not depend on it"),
+                true => format!("the parameter `{name}` occurs only in assumptions: the motion does not depend on it"),
                 false => format!("the parameter `{name}` is never used"),
             };
             let d = Diagnostic::new(*place, message)
-                .help(format!("use `{name}` in the Lagrangian, or leave it out"));
+                .help(format!("use `{name}` in the Lagrangian, or remove it"));
             Warning::new(Topic::UnusedParameter, d)
         })
         .collect()
@@ -45,10 +45,11 @@ pub(super) fn parameters(x: &Inputs) -> Vec<Warning> {
 
 /// The warning about an unused abbreviation.
 pub(crate) fn unused_let(name: &str, place: Place) -> Warning {
-    let message = format!("`{name}` is named by `let` and never used: it has no effect");
+    let message = format!("`{name}` is defined by `let` but never used: it has no effect");
     let help = match unknown::is_force(name) {
-        true => "forces without a potential are not supported yet, and a name states none; a potential is a term of the Lagrangian".to_owned(),
-        false => format!("use `{name}` in the Lagrangian, or leave it out"),
+        true => "forces without a potential are not supported yet, and defining a force does not apply it; add a potential as \
+            a term of the Lagrangian".to_owned(),
+        false => format!("use `{name}` in the Lagrangian, or remove it"),
     };
     Warning::new(Topic::UnusedLet, Diagnostic::new(place, message).help(help))
 }
@@ -79,12 +80,11 @@ pub(super) fn kinks(x: &Inputs) -> Vec<Warning> {
             let at = x.spec.terms.iter().find(|(term, _)| holds(term, e));
             let place = at.map_or(x.spec.lagrangian_place, |(_, place)| *place);
             let message = format!(
-                "{} is not smooth where its argument vanishes: a step across has no order, and \
-                 the energy may jump",
+                "{} is not smooth where its argument vanishes: a step across that point loses its order, and the energy may \
+                 jump",
                 x.text(e)
             );
-            let help = "where the motion gets there, use a smooth function, such as \
-                        `sqrt(x^2 + eps^2)` for `abs(x)`";
+            let help = "if the motion gets there, use a smooth function, such as `sqrt(x^2 + eps^2)` for `abs(x)`";
             Warning::new(Topic::NotSmooth, Diagnostic::new(place, message).help(help))
         })
         .collect()

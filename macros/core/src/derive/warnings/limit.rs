@@ -26,11 +26,11 @@ pub(super) fn limit(x: &Inputs) -> Option<Warning> {
     if *why == limit::INSIDE {
         let d = Diagnostic::new(
             x.spec.lagrangian_place,
-            format!("no limit of small steps is seen: {why}, and what stands there is not expanded"),
+            format!("clebsch finds no limit of small steps: {why}, which it does not expand"),
         )
         .help(
-            "take the step out, as of `sqrt(c^2*h^2 - x)` by `c*h*sqrt(1 - x/(c*h)^2)`: what is left \
-             inside must be free of `h` for the velocity `(next(X) - X)/h`",
+            "take the step out of it, for example write `c*h*sqrt(1 - x/(c*h)^2)` for `sqrt(c^2*h^2 - x)`: apart from \
+             velocities `(next(X) - X)/h`, the rest must not contain `h`",
         );
         return Some(Warning::new(Topic::NoLimit, d));
     }
@@ -42,8 +42,8 @@ pub(super) fn limit(x: &Inputs) -> Option<Warning> {
         format!("the discrete Lagrangian has no limit of small steps: {why}"),
     )
     .help(format!(
-        "the Lagrangian states (kinetic - potential energy) times the step: kinetic terms are \
-         divided by `h`, potentials multiplied by `h`, as in `{kinetic} - {potential}`"
+        "the Lagrangian is (kinetic - potential energy) times the step: divide kinetic terms by `h` and multiply potentials by \
+         `h`, as in `{kinetic} - {potential}`"
     ));
     Some(Warning::new(Topic::NoLimit, d))
 }
@@ -71,10 +71,10 @@ pub(super) fn per_unit_time(x: &Inputs) -> Option<Warning> {
     let d = Diagnostic::new(
         x.spec.lagrangian_place,
         format!(
-            "this is a Lagrangian per unit time: the discrete Lagrangian of a step is that times `{h}`"
+            "this Lagrangian is per unit time: the discrete Lagrangian of a step is `{h}` times it"
         ),
     );
-    let help = format!("multiply it by the step: `lagrangian = {h}*(...);`");
+    let help = format!("multiply by the step: `lagrangian = {h}*(...);`");
     Some(Warning::new(Topic::NoLimit, d.help(help)))
 }
 

@@ -60,8 +60,8 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
     let terms = one_of_each(&all);
     let alike = match (all.len() - terms.len(), terms.len()) {
         (0, _) => "",
-        (_, 1) => " and of those like it at other sites",
-        _ => " and of those like them at other sites",
+        (_, 1) => " and of the same term at other sites",
+        _ => " and of the same terms at other sites",
     };
     let left = match all.is_empty() {
         true => left,
@@ -92,14 +92,13 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
     let d = Diagnostic::new(
         place(x, blamed.first().map(|(term, _)| term)),
         format!(
-            "the scheme is of first order only: its discrete Lagrangian L is not self-adjoint, \
-             L(q0, q1, h) and -L(q1, q0, -h) are not equal up to a total difference{because}"
+            "the scheme is of first order only: its discrete Lagrangian L is not self-adjoint, since L(q0, q1, h) and -L(q1, \
+             q0, -h) differ by more than a total difference{because}"
         ),
     )
     .help(
-        "treat both ends of the step alike, as in `(X + next(X))/2*(next(Y) - Y)`, and use odd \
-         powers of `h` only; `node incoming;` and `node outgoing;` speak of terms at one node and \
-         change none that holds both ends; a scheme that is meant to be of first order may stand so",
+        "write both ends of the step alike, as in `(X + next(X))/2*(next(Y) - Y)`, with odd powers of `h` only; `node \
+         incoming;` and `node outgoing;` affect only terms at one node. If you want a scheme of first order, keep it",
     );
     let clocks = x.spec.clocks();
     let of_clock = |term: &&Expr| {
@@ -109,7 +108,7 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
     let clock = suspects.iter().any(of_clock);
     let d = match clock {
         true => d.help(
-            "write a clock that multiplies a velocity at the middle of the step, `t + h/2`, or as the mean of both ends",
+            "evaluate a clock that multiplies a velocity at the middle of the step, `t + h/2`, or average both ends",
         ),
         false => d,
     };

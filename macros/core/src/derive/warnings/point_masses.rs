@@ -20,7 +20,7 @@ fn text(d: &Derivation) -> String {
     all.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-const REFUSED: &str = "every choice of the parameters is refused at the start";
+const REFUSED: &str = "every choice of the parameters is rejected at the start";
 
 /// Stated by second moments, by positions in the body and in space, with spatial velocities, in four dimensions with
 /// two masses, forced and free.
@@ -74,7 +74,10 @@ fn what_is_emitted_says_so_too() {
     let emitted = |body: &str| crate::emit::emit(&derived(body), false).to_string();
     for body in STATED {
         let code = emitted(body);
-        assert!(code.contains("all are refused at the start"), "{code}");
+        assert!(
+            code.contains("every choice of the parameters is rejected at the start"),
+            "{code}"
+        );
         assert!(!code.contains(": bounded, since"), "{code}");
     }
 }

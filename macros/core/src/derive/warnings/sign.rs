@@ -14,13 +14,13 @@ use crate::interpret::{Assignment, evaluate};
 use std::collections::BTreeSet;
 
 /// The convention of signs, for every warning about a wrong sign.
-const CONVENTION: &str = "the Lagrangian states kinetic minus potential energy: of a body with \
-     second moments J write `-tr(J*Ω)/h`, which is +½ ω·Iω times the step with I = tr(J) Id - J; \
-     if what is typed is another multiple of the action, say which by `scale`";
+const CONVENTION: &str = "the Lagrangian is kinetic minus potential energy: for a body with second moments J write \
+    `-tr(J*Ω)/h`, which is +½ ω·Iω times the step with I = tr(J) Id - J; if you wrote another multiple of the action, give it \
+    with `scale`";
 
 /// The convention of signs for fields.
-const OF_FIELDS: &str = "the Lagrangian states kinetic minus potential energy, times the step; if what is \
-     typed is another multiple of the action, say which by `scale`";
+const OF_FIELDS: &str = "the Lagrangian is kinetic minus potential energy, times the step; if you wrote another multiple of \
+    the action, give it with `scale`";
 
 /// The warning that the kinetic energy does not depend on every velocity.
 pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
@@ -30,8 +30,8 @@ pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
     let is_alone = x.spec.configurations.len() == 1;
     let refused = match is_alone && x.solve.needs_second_moments() {
         true => {
-            ". The Moser-Veselov equation does not determine the velocity: no step can be made, and \
-             every choice of the parameters is refused at the start"
+            ". The Moser-Veselov equation then does not determine the velocity, and every choice of the parameters is rejected \
+             at the start"
         }
         false => "",
     };
@@ -40,17 +40,16 @@ pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
               divided by `h`"
             .to_owned(),
         _ => format!(
-            "the kinetic energy is degenerate: its Hessian in all velocities has rank {rank} of \
-             {n} whatever the parameters, so that momenta do not determine velocities and there \
-             is no energy{refused}"
+            "the kinetic energy is degenerate: its Hessian in all velocities has rank {rank} of {n} for all parameters, so \
+             momenta do not determine velocities and the energy is undefined{refused}"
         ),
     };
     let [kinetic, _] = x.examples();
     let fields = x.spec.has_only_fields();
     let help = match rank {
         0 => format!(
-            "did you forget `/h`, or the factor `h` before the square of a velocity that is divided by \
-             the step? Kinetic terms are divided by it once, as in `{kinetic}`"
+            "divide kinetic terms by the step once, as in `{kinetic}`; did you forget `/h`, or the factor `h` before the \
+             square of a velocity that is already divided by the step?"
         ),
         _ if fields => "give every velocity a kinetic energy; did you forget `/h` in one of the terms, or write `/2*h` for `/(2*h)`?".to_owned(),
         _ if !is_alone => {
@@ -59,11 +58,10 @@ pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
                 .to_owned()
         }
         _ => {
-            "give every velocity a kinetic energy; did you forget `/h` in one of the terms? A body \
-             needs I = tr(J) Id - J > 0: second moments of rank one, as m a a^T of a single point \
-             mass, leave the spin about their line without inertia. Give the mass an extent: with \
-             `param S: Sym<3>`, its second moments about its own centre, write `m*a*a^T + S` for \
-             `m*a*a^T`, so that J has rank two or three; a hundredth of m |a|^2 will do"
+            "give every velocity a kinetic energy; did you forget `/h` in one of the terms? A body needs I = tr(J) Id - J > 0, \
+             and a point mass with J = m a a^T has no inertia about the line of a: declare `param S: Sym<3>`, its second \
+             moments about its own centre, and write `m*a*a^T + S` for `m*a*a^T`, so that J has rank two or three; a \
+             hundredth of m |a|^2 is enough"
                 .to_owned()
         }
     };
@@ -117,8 +115,8 @@ pub(super) fn sign(x: &Inputs) -> Option<Warning> {
     let d = Diagnostic::new(
         x.spec.lagrangian_place,
         format!(
-            "the kinetic energy, {}, is {how} definite: so it came out for all of {tried} random \
-             parameters with positive numbers and positive definite matrices",
+            "the kinetic energy, {}, is {how} definite for all of {tried} random choices of positive numbers and positive \
+             definite matrices as parameters",
             x.text(&kinetic.energy)
         ),
     )

@@ -20,10 +20,10 @@ const EVALUATED: u64 = 50_000;
 /// The advice for a term that is constant along every motion.
 fn constant(x: &Inputs) -> &'static str {
     match x.spec.has_only_fields() {
-        true => "let it depend on the configuration, or leave it out",
+        true => "let it depend on the configuration, or remove it",
         false => {
-            "the group leaves such terms unchanged, as it does the length of a carried vector: \
-             let the potential depend on the configuration, or leave it out"
+            "the group leaves such terms unchanged, like the length of an advected vector: let the potential depend on the \
+             configuration, or remove it"
         }
     }
 }
@@ -31,7 +31,7 @@ fn constant(x: &Inputs) -> &'static str {
 /// The advice for a term without a moving quantity.
 fn moved(x: &Inputs) -> String {
     let [_, potential] = x.examples();
-    format!("multiply it by a quantity that moves, as in `{potential}`, or leave it out")
+    format!("multiply it by a quantity that moves, as in `{potential}`, or remove it")
 }
 
 /// Whether an expression contains letters other than parameters and the step size.
@@ -68,8 +68,10 @@ pub(super) fn without_effect(x: &Inputs) -> Vec<Warning> {
     if !nodal.is_zero() && is_kept(x, nodal) {
         let term = all.iter().find(|t| moves(x, t) && split(s, t).0.is_zero());
         let message = match x.vanishes(nodal) {
-            true => "the terms at nodes are a total difference, which has no effect on the motion"
-                .to_owned(),
+            true => {
+                "the terms at nodes add up to a total difference, which has no effect on the motion"
+                    .to_owned()
+            }
             false => format!(
                 "the potential is constant along every motion: {} exerts no force",
                 x.text(nodal)
@@ -93,7 +95,8 @@ pub(super) fn without_effect(x: &Inputs) -> Vec<Warning> {
     }
     for (last, first) in pairs(x, &addends) {
         let message = format!(
-            "the terms {} and {} are a total difference, F(end of the step) - F(start): together they have no effect on the motion",
+            "the terms {} and {} add up to a total difference, F(end of the step) - F(start): together they have no effect on \
+             the motion",
             x.text(last),
             x.text(first)
         );
@@ -114,7 +117,7 @@ pub(super) fn without_effect(x: &Inputs) -> Vec<Warning> {
     if let (Some(term), true) = (lone, nodal.is_zero()) {
         told.extend(expr::letters(term));
         let message = format!(
-            "the potential is constant: {} holds no configuration and exerts no force",
+            "the potential is constant: {} contains no configuration and exerts no force",
             x.text(term)
         );
         out.push(warn(place(x, Some(term)), message, &moved(x)));
@@ -134,7 +137,7 @@ pub(super) fn without_effect(x: &Inputs) -> Vec<Warning> {
         );
         let terms: Vec<String> = holding.iter().map(|t| x.text(t)).collect();
         let message = format!(
-            "the motion does not depend on `{}`: what holds it, {}, adds up to a constant or to a total difference",
+            "the motion does not depend on `{}`: its terms, {}, add up to a constant or to a total difference",
             s.get(p).name,
             terms.join(" and ")
         );
@@ -252,14 +255,13 @@ pub(super) fn vanishing(x: &Inputs) -> Option<Warning> {
     let d = Diagnostic::new(
         place(x, Some(term)),
         format!(
-            "the term {} vanishes in the limit of small steps: the action of a step is proportional \
-             to `h`, and this is to `h^{n}`",
+            "the term {} vanishes in the limit of small steps: the action of a step is proportional to `h`, and this term to \
+             `h^{n}`",
             x.text(term)
         ),
     )
     .help(format!(
-        "the Lagrangian states (kinetic - potential energy) times the step: multiply a potential by \
-         `h` once, as in `-{potential}`"
+        "the Lagrangian is (kinetic - potential energy) times the step: multiply a potential by `h` once, as in `-{potential}`"
     ));
     Some(Warning::new(Topic::NoLimit, d))
 }

@@ -234,7 +234,7 @@ fn what_has_no_effect_is_said() {
     );
     let assumed = format!("{BODY} param a: Real; assume a > 0; lagrangian = -tr(J*Ω)/h;");
     assert_eq!(topics(&assumed), [UnusedParameter]);
-    assert!(words(&assumed).contains("an assumption only"));
+    assert!(words(&assumed).contains("only in assumptions"));
     let hidden = format!("{BODY} param a: Real; let w = a*a; lagrangian = -tr(J*Ω)/h;");
     assert_eq!(topics(&hidden), [UnusedLet]);
     // Used in a scale, or in the definition of an advected quantity.
@@ -349,7 +349,7 @@ fn a_potential_with_a_wrong_power_of_the_step_is_said() {
     assert_eq!(scaled("tr(J*Ω) + h^2*dot(gU, Γ)"), []);
     assert_eq!(scaled("tr(J*Ω) + h^4*dot(gU, Γ)"), [NoLimit]);
     let text = words(&format!("{TOP} lagrangian = -tr(J*Ω)/h - h^3*dot(gU, Γ);"));
-    assert!(text.contains("and this is to `h^3`"), "{text}");
+    assert!(text.contains("and this term to `h^3`"), "{text}");
 }
 
 #[test]

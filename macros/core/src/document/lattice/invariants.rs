@@ -50,7 +50,7 @@ pub(super) fn invariants(
                 folded
                     .derived(part, &hold.value, From::Site(stated.site))
                     .into(),
-                " and its rate of change, at every site (exact: held by the multiplier)".into(),
+                " and its rate of change, at every site (exact: enforced by the multiplier)".into(),
             ]);
         }
         if !folded.lattice.meshes.is_empty() {

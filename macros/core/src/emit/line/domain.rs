@@ -35,7 +35,7 @@ pub(in crate::emit) fn refusal(line: &Line) -> Option<String> {
         .map(|p| asked_of(part, std::slice::from_ref(&p.terms)));
     let mut all = lone.chain(pulls);
     if all.any(|found| found.is_none()) {
-        return Some("a function of velocities has a domain".to_owned());
+        return Some("a function of velocities is not defined everywhere".to_owned());
     }
     let tied = |terms: &Expr| {
         let asked = asked_of(part, std::slice::from_ref(terms));
@@ -43,7 +43,7 @@ pub(in crate::emit) fn refusal(line: &Line) -> Option<String> {
     };
     if line.ties.iter().any(|t| tied(&t.terms)) {
         return Some(
-            "a function with a domain stands in one term with velocities of neighbours".to_owned(),
+            "a term with velocities of neighbours contains a function that is not defined everywhere".to_owned(),
         );
     }
     let at_end = |e: &EndTerm| {
@@ -52,7 +52,8 @@ pub(in crate::emit) fn refusal(line: &Line) -> Option<String> {
         asked.is_none_or(|list| list.iter().any(|t| !t.constant))
     };
     let refused = line.ends.iter().any(at_end);
-    refused.then(|| "a function in a term of an end has a domain".to_owned())
+    refused
+        .then(|| "a term of an end contains a function that is not defined everywhere".to_owned())
 }
 
 fn lone_terms(lone: &SiteModel) -> Vec<Expr> {

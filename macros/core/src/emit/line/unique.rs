@@ -86,23 +86,23 @@ pub(super) fn refusal(line: &Line) -> Option<String> {
     let step = &part.d.letters.symbols.get(part.d.spec.step).name;
     if KERNEL.contains(&step.as_str()) && step != "h" {
         return Some(format!(
-            "the step is called `{step}`, which is a name of emitted code: call it `h` or `dt`"
+            "the step is named `{step}`, which the emitted code uses: name it `h` or `dt`"
         ));
     }
     let counts = line.lattice.labels.iter().map(|l| &l.count.text);
     let mut taken = counts.filter(|n| ["domain", "scalar", "ends"].contains(&n.as_str()));
     if let Some(name) = taken.next() {
         return Some(format!(
-            "`{name}` is a name of emitted code: call the number of sites `N`"
+            "the emitted code uses the name `{name}`: name the number of sites `N`"
         ));
     }
     if line.holds.iter().any(|h| h.name == "node") {
         return Some(
-            "`node` is a name of emitted code: give the multiplier another name".to_owned(),
+            "the emitted code uses the name `node`: give the multiplier another name".to_owned(),
         );
     }
     let scalar = line.model.name.text == "T";
-    scalar.then(|| "`T` is the scalar of emitted code: give the model another name".to_owned())
+    scalar.then(|| "the emitted code uses the name `T`: give the model another name".to_owned())
 }
 
 impl<'a> Lines<'a> {

@@ -49,15 +49,19 @@ pub(super) fn refusal(line: &Line) -> Option<String> {
     let m = boxes.next()?;
     if line.is_tied(&m.mover.name) {
         return Some(
-            "walls turn momenta of one site, and velocities of neighbours stand in them".to_owned(),
+            "walls reflect the momentum of one site, and this momentum contains velocities of neighbours".to_owned(),
         );
     }
     if at_rest(&m).is_none() {
-        return Some("walls turn a kinetic momentum, which is not known where there is no limit of small steps".to_owned());
+        return Some(
+            "walls reflect a kinetic momentum, which is unknown without a limit of small steps"
+                .to_owned(),
+        );
     }
     (!is_turned_by_itself(&m)).then(|| {
         format!(
-            "the kinetic energy couples the components of `{}` with one another or with other velocities, and a wall turns one of them",
+            "the kinetic energy couples the components of `{}` with one another or with other velocities, and a wall reflects \
+             one component",
             m.mover.name
         )
     })

@@ -162,7 +162,7 @@ fn mistakes_in_functionals_are_told() {
         (
             "mesh A: Real at a = voronoi_area(X, m);",
             "- h*k/A",
-            "takes a field alone",
+            "takes only a field",
         ),
         (
             "mesh A: Real at a = helmholtz_depth(X, m);",
@@ -192,12 +192,12 @@ fn mistakes_in_functionals_are_told() {
         (
             "mesh A: Real at b = voronoi_area(X);",
             "- h*k/A",
-            "`b` is no label",
+            "`b` is not a label",
         ),
         (
             "mesh A: Real at a = voronoi_area(2*X);",
             "- h*k/A",
-            "a field, another functional or a parameter",
+            "the name of a field, a functional or a parameter",
         ),
         (
             "mesh B: Real at a = crate::f(A); mesh A: Real at a = voronoi_area(X);",
@@ -212,62 +212,62 @@ fn mistakes_in_functionals_are_told() {
         (
             area,
             "- k*dot(next(X) - X, next(X) - X)/A",
-            "beside a velocity",
+            "a functional of all sites and a velocity",
         ),
         (
             "field Y: Vec<2> at a on torus(M); mesh A: Real at a = voronoi_area(X);",
             "+ m*dot(next(Y) - Y, next(Y) - Y)/h - h*k/A",
-            "a second field lies in a domain",
+            "a second field is declared in a domain",
         ),
         (
             "grid n; param w: Real at n; mesh H: Real at n = deposit(X, m);",
             "- h*w*H*m",
-            "which of them would meet",
+            "the sites to combine are ambiguous",
         ),
         (
             "param e: Real; mesh A: Real at a = helmholtz_depth(X, e, m);",
             "- h*k/A",
-            "here stand their masses",
+            "this argument is the masses",
         ),
         (
             "param e: Real; mesh A: Real at a = helmholtz_depth(X, m, h);",
             "- h*k/A",
-            "`h` is no parameter",
+            "`h` is not a parameter",
         ),
         (
             "param e: Real; mesh A: Real at a = helmholtz_depth(X, m, z);",
             "- h*k/A",
-            "`z` is no parameter",
+            "`z` is not a parameter",
         ),
         (
             "grid n; mesh A: Real at n = voronoi_area(X);",
             "- h*k",
-            "stand at the particles",
+            "its values at the particles",
         ),
         (
             "mesh A: Real at a = deposit(X, m);",
             "- h*k/A",
-            "stand at the nodes of a grid",
+            "its values at the nodes of a grid",
         ),
         (
             "grid n; mesh A: Real at a = voronoi_area(X); mesh S: Real at n = smooth(A, k);",
             "- h*k/A",
-            "does not stand at the nodes",
+            "is not declared at the nodes",
         ),
         (
             "grid n; param w: Real at n; mesh H: Real at n = deposit(X, w);",
             "- h*w*H",
-            "here stand their masses",
+            "this argument is the masses",
         ),
         (
             "field Z: Vec<3> at a; mesh A: Real at a = voronoi_area(Z);",
             "- h*k/A",
-            "where the places `Z` lie is not said",
+            "the positions `Z` have no domain",
         ),
         (
             "mesh A: Real at a = voronoi_area(X); hold u: A = m;",
             "- h*k/A",
-            "stands where a constraint is held",
+            "a `hold` constraint cannot contain a functional",
         ),
         (
             "param L: Vec<2>; mesh A: Real at a = voronoi_area(X);",
@@ -277,18 +277,18 @@ fn mistakes_in_functionals_are_told() {
         (
             "grid n; grid l; mesh A: Real at a = voronoi_area(X);",
             "- h*k/A",
-            "a model has one grid",
+            "a model can have only one grid",
         ),
-        ("", "- h*k*m", "no functional is made of `X`"),
+        ("", "- h*k*m", "`X` has a domain, but no functional uses it"),
         (
             "mesh A: Real at a = voronoi_area(X); mesh B: Real at a = second_moment(X);",
             "- h*k/A",
-            "`B` stands in no term",
+            "no term of the Lagrangian contains `B`",
         ),
         (
             "label i in 0..K; field q: Real at nodes; mesh A: Real at a = voronoi_area(X);",
             "- h*k/A + k*(next(q) - q)^2/h",
-            "this model has a line",
+            "this model has a chain",
         ),
         ("mesh A: Real at a = voronoi_area(X) of;", "", "expected"),
     ];
@@ -303,12 +303,12 @@ fn mistakes_in_functionals_are_told() {
         .map(|_| ())
         .expect_err("no domain")
         .to_string();
-    assert!(told.contains("where the places `X` lie"), "{told}");
+    assert!(told.contains("the positions `X` have no domain"), "{told}");
     for domain in ["on tours(L)", "on torus", "on torus(2)", "on sphere"] {
         let text = without.replace("Vec<2> at a;", &format!("Vec<2> at a {domain};"));
         let told = parse_source(&text).expect_err("no such domain").to_string();
         assert!(
-            told.contains("torus(L)") || told.contains("the lengths of the torus"),
+            told.contains("torus(L)") || told.contains("the side lengths of the torus"),
             "{domain}: {told}"
         );
     }

@@ -22,11 +22,9 @@ pub(crate) fn definitions(model: &Model) -> Result<BTreeMap<String, Expression>,
         for (name, value) in &stated {
             let put = inlined(value, &out);
             if put.size() > LARGEST {
-                let message = format!("what `{}` stands for is too large", name.text);
+                let message = format!("the expression of `{}` is too large", name.text);
                 let d = Diagnostic::new(name.place, message);
-                return Err(d
-                    .help("what a `let` stands for is counted wherever it is used")
-                    .into());
+                return Err(d.help("a `let` counts in full wherever it is used").into());
             }
             out.insert(name.text.clone(), put);
         }

@@ -48,10 +48,10 @@ impl Writer<'_> {
             large += copies.iter().map(Expression::size).sum::<usize>();
             if large > LARGEST {
                 let words = self.choice.words(self.lattice);
-                let message = format!("this lattice is too large to be written out: {words}");
+                let message = format!("this model is too large to be expanded: {words}");
                 let d = Diagnostic::new(value.place, message);
                 self.errors.push(d.help(format!(
-                    "its Lagrangian may have {LARGEST} quantities, numbers and operations: take fewer sites"
+                    "the expanded Lagrangian may have {LARGEST} quantities, numbers and operations: use fewer sites"
                 )));
                 return;
             }

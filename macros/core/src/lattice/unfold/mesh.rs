@@ -23,11 +23,11 @@ impl Writer<'_> {
         let sets = self.lattice.labels.iter().zip(&self.choice.counts);
         if let Some((label, _)) = sets.into_iter().find(|(l, n)| l.set && **n != 1) {
             let message = format!(
-                "`{}` is made of all sites of `{}` at once: the model is not written out site by site",
+                "`{}` depends on all sites of `{}` at once, so clebsch cannot expand the model site by site",
                 name.text, label.index.text
             );
             let d = Diagnostic::new(name.place, message)
-                .help("`model! { ... }` compiles it for every number of sites");
+                .help("use `model! { ... }`, which compiles the model for every number of sites");
             return self.errors.push(d);
         }
         let own = |n: &Name| match self.lattice.find(&n.text) {

@@ -85,7 +85,8 @@ impl ExpandedModel {
         });
         d.help(match segment.filter(|q| quantity.sites == Sites::Nodes && q.name.text != own.of) {
             Some(q) => format!(
-                "the kinetic term contains `{0}`, which is declared at segments, and a line has one segment fewer than nodes: declare `{0}` at nodes",
+                "the kinetic term contains `{0}`, which is declared at segments, and a chain has one segment fewer than nodes: \
+                 declare `{0}` at nodes",
                 q.name.text
             ),
             None => format!("add a kinetic term that every site has, for example `{example}`"),

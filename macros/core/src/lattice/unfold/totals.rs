@@ -179,10 +179,12 @@ impl Writer<'_> {
         if let Kind::Name(n) = &e.kind
             && self.lattice.find(n).is_some()
         {
-            let message =
-                format!("`{n}` differs from site to site, and stands beside a sum over sites");
+            let message = format!(
+                "`{n}` differs between sites, and a term with a sum over sites cannot contain it"
+            );
             return refused(Diagnostic::new(e.place, message).help(
-                "a constraint on a sum is one for all sites: put the quantity into the sum, `sum(m*x)`; or hold it site by site, without a sum",
+                "a constraint on a sum applies to all sites together: move the quantity into the sum, `sum(m*x)`, or write a \
+                 constraint at each site, without a sum",
             ));
         }
         let Some(inner) = summand(e) else {
@@ -191,7 +193,7 @@ impl Writer<'_> {
             return Ok(with_parts(e, new.into_iter()));
         };
         if has_sum(inner) {
-            let d = Diagnostic::new(e.place, "a sum over sites stands within another one");
+            let d = Diagnostic::new(e.place, "a sum over sites contains another sum over sites");
             return refused(d.help("write one sum, over nodes or over segments"));
         }
         let found = over(self.lattice, e).map_err(Box::new)?;
@@ -207,9 +209,10 @@ impl Writer<'_> {
         let Some(range) = range.filter(|_| !found.letters.is_empty()) else {
             let d = Diagnostic::new(
                 e.place,
-                "this is the same at every site: there is nothing to sum over",
+                "this is the same at every site, so it cannot be summed over sites",
             );
-            return refused(d.help("a sum is of what is declared `at nodes` or `at segments`: `sum(m*x)`; leave `sum` out of what stands once"));
+            return refused(d.help("sum quantities declared `at nodes` or `at segments`, `sum(m*x)`; remove `sum` from other \
+                terms"));
         };
         let mut all = Vec::new();
         let mut large = 0;
@@ -218,9 +221,9 @@ impl Writer<'_> {
             large += copy.size();
             if large > LARGEST {
                 let words = self.choice.words(self.lattice);
-                let message = format!("this lattice is too large to be written out: {words}");
+                let message = format!("this model is too large to be expanded: {words}");
                 return refused(Diagnostic::new(e.place, message).help(format!(
-                    "a sum that is held may have {LARGEST} quantities, numbers and operations: take fewer sites"
+                    "a constrained sum may have {LARGEST} quantities, numbers and operations: use fewer sites"
                 )));
             }
             all.push((false, copy));

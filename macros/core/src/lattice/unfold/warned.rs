@@ -11,9 +11,10 @@ use std::collections::BTreeSet;
 /// Warns about a term of one neighbour only. Its sum starts or ends one site later than the sum of the same term at
 /// the site itself.
 pub(super) fn one_neighbour(stated: &Expression) -> Warning {
-    let message = "this term holds a neighbour and not the site itself: it is summed over the sites that have this neighbour, all but the one at the end";
+    let message =
+        "this term contains a neighbour but not the site itself: its sum omits the site at one end";
     let d = Diagnostic::new(stated.place, message).help(
-        "write it at the site itself, or in one bracket with what it is compared with, as in `a*(next(q, i) - q)`",
+        "write the term at the site itself, or together with the value there, as in `a*(next(q, i) - q)`",
     );
     Warning::new(Topic::OneNeighbour, d)
 }
@@ -29,13 +30,13 @@ pub(super) fn without_use(model: &Model) -> Vec<Warning> {
 /// Warns about an offset on an open chain; an offset only acts across the seam of a ring.
 pub(super) fn without_a_ring(offset: &Name) -> Warning {
     let message = format!(
-        "`{}` is what a field grows by around a ring, and the line is not said to be periodic",
+        "`{}` is the offset of a field around a ring, but the chain is not periodic",
         offset.text
     );
     let d = Diagnostic::new(offset.place, message);
     Warning::new(
         Topic::UnusedParameter,
-        d.help("add `periodic;`, or leave the offset out"),
+        d.help("add `periodic;`, or remove the offset"),
     )
 }
 

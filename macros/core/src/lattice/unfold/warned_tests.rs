@@ -157,7 +157,7 @@ fn a_definition_that_nothing_uses_is_said_once() {
     };
     assert_eq!(
         unused(source),
-        ["`f` is named by `let` and never used: it has no effect"]
+        ["`f` is defined by `let` but never used: it has no effect"]
     );
     // An end condition that is not chosen uses it.
     assert!(unused(&source.replace("h*F*q", "h*F*f")).is_empty());

@@ -88,8 +88,8 @@ fn without_carried(model: &Model, all: &[Stated]) -> Result<Model, Refused> {
             && let Some(by) = value.name_that(&|n| moved.contains(n))
         {
             return Err(Refused::Form(format!(
-                "`{of}` goes on with `{by}` from its value at the start: loops over sites take what a linear map, a rotation \
-                 of the plane or a rigid motion carries by its definition, `advected {of}: ... = ...;`",
+                "the constraint of `{of}` contains `{by}`: for loops over sites, define a quantity that a linear map, a \
+                 rotation of the plane or a rigid motion advects, `advected {of}: ... = ...;`",
                 of = name.text
             )));
         }
@@ -193,8 +193,8 @@ fn in_coordinates(
     let out = motions.apart(e);
     if let Some(left) = out.name_that(&|n| motions.moves(n)) {
         return Err(Refused::Form(format!(
-            "a term holds the homogeneous matrix of `{left}` otherwise than by `rot`, `pos` or a vector that it carries: along a \
-             line a rigid motion is known by its rotation and its place; write the term by `rot` and `pos`"
+            "a term contains the homogeneous matrix of `{left}` outside of `rot`, `pos` and products with vectors: a chain \
+             represents a rigid motion by its rotation and position, so write the term with `rot` and `pos`"
         )));
     }
     let mut by: BTreeMap<String, Expression> = BTreeMap::new();

@@ -111,7 +111,7 @@ fn what_goes_on_by_itself_or_stands_otherwise_is_refused() {
     let Err(Refused::Form(why)) = line(&carried) else {
         panic!("it is taken");
     };
-    assert!(why.contains("`v` goes on with `G`"), "{why}");
+    assert!(why.contains("the constraint of `v` contains `G`"), "{why}");
     let whole = line(
         "model Frames { label i in 0..N; param Q: Sym<4>; param c: Real; group Φ: SE<3> at nodes velocity V;
          constraint next(Φ) = Φ*V;

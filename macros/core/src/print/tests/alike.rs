@@ -95,23 +95,23 @@ fn a_parameter_stands_in_the_document_where_it_stands_by_another_name() {
 #[test]
 fn names_that_print_as_another_are_refused() {
     for (names, said) in [
-        ("x1, x_1", "print alike"),
-        ("M, Mu", "print alike"),
-        ("E_1", "prints as `E1`"),
-        ("E4", "prints as `E4`"),
-        ("ℓ", "prints as `ℓ`"),
+        ("x1, x_1", "look the same in print"),
+        ("M, Mu", "look the same in print"),
+        ("E_1", "prints like `E1`"),
+        ("E4", "prints like `E4`"),
+        ("ℓ", "prints like `ℓ`"),
         ("µ, μ", "U+00B5"),
         ("μ, µ", "U+00B5"),
-        ("mu, µ", "print alike"),
+        ("mu, µ", "look the same in print"),
         ("a, а", "U+0430"),
         ("аb, ab", "U+0430"),
         ("\u{2126}, Ω", "U+2126"),
-        ("x, 𝑥", "print alike"),
-        ("é, e\u{301}", "print alike"),
-        ("һ", "prints as the time step `h`"),
-        ("W_k", "print alike"),
-        ("a, a_k", "index of what moves"),
-        ("Е1", "prints as `E1`"),
+        ("x, 𝑥", "look the same in print"),
+        ("é, e\u{301}", "look the same in print"),
+        ("һ", "prints like the time step `h`"),
+        ("W_k", "look the same in print"),
+        ("a, a_k", "is the time index"),
+        ("Е1", "prints like `E1`"),
     ] {
         let model = format!(
             "model M {{ param J: Sym<3>; param {names}: Real; group G: SO<3> velocity W; \
@@ -150,7 +150,7 @@ fn names_that_print_as_another_are_refused() {
     let other = "model M { param J: Sym<3>; param µ: Real; group G: SO<3> velocity W; \
                  constraint next(G) = G*W; lagrangian = -μ*tr(J*W)/h; }";
     let message = derive_source(other).map_or_else(|e| e.to_string(), |_| String::new());
-    assert!(message.contains("looks like it"), "{message}");
+    assert!(message.contains("it looks the same"), "{message}");
 }
 
 #[test]
@@ -162,21 +162,30 @@ fn names_that_are_typeset_as_another_are_refused() {
         )
     };
     for (names, said) in [
-        (r#"a, b: Real as "x", "x""#, "`b` and `a` are typeset alike"),
-        (r#"a, b: Real as "x_{1}", "{x}_1""#, "typeset alike"),
-        (r#"a, b: Real as "\hat x", "\hat{x}""#, "typeset alike"),
-        (r#"a: Real as "J""#, "`a` and `J` are typeset alike"),
-        (r#"a: Real as "W""#, "`W` and `a` are typeset alike"),
-        (r#"a: Real as "W_k""#, "typeset alike"),
-        (r#"a: Real as "G_{k+1}""#, "typeset alike"),
+        (
+            r#"a, b: Real as "x", "x""#,
+            "`b` and `a` look the same in LaTeX",
+        ),
+        (
+            r#"a, b: Real as "x_{1}", "{x}_1""#,
+            "look the same in LaTeX",
+        ),
+        (
+            r#"a, b: Real as "\hat x", "\hat{x}""#,
+            "look the same in LaTeX",
+        ),
+        (r#"a: Real as "J""#, "`a` and `J` look the same in LaTeX"),
+        (r#"a: Real as "W""#, "`W` and `a` look the same in LaTeX"),
+        (r#"a: Real as "W_k""#, "look the same in LaTeX"),
+        (r#"a: Real as "G_{k+1}""#, "look the same in LaTeX"),
         (
             r#"mu, a: Real as "m", "\mu"; param b: Real as "m""#,
-            "typeset alike",
+            "look the same in LaTeX",
         ),
         (r#"a: Real as "h""#, "the time step `h`"),
-        (r#"a: Real as "\ell""#, "prints as `ℓ`"),
-        (r#"a: Real as "E_1""#, "prints as `E1`"),
-        (r#"a: Real as "\mathrm{Id}""#, "prints as `Id`"),
+        (r#"a: Real as "\ell""#, "prints like `ℓ`"),
+        (r#"a: Real as "E_1""#, "prints like `E1`"),
+        (r#"a: Real as "\mathrm{Id}""#, "prints like `Id`"),
     ] {
         let message = derive_source(&with(names)).map_or_else(|e| e.to_string(), |_| String::new());
         assert!(message.contains(said), "{names}: {message}");

@@ -33,10 +33,10 @@ pub(super) fn after_divisor(c: &Cursor, divisor: &Expression) -> Diagnostic {
     };
     let d = Diagnostic::new(
         divisor.place.to(c.place()),
-        "after `/` a product without `*` can be read in two ways",
+        "a product without `*` is ambiguous after `/`",
     )
     .help(format!(
-        "write `/({a}*{next})` to divide by both, or `/{a}*{next}` to multiply by what follows"
+        "write `/({a}*{next})` to divide by both, or `/{a}*{next}` to multiply by `{next}`"
     ));
     // `d/dt x`.
     match unknown::function(&a) {
@@ -48,20 +48,20 @@ pub(super) fn after_divisor(c: &Cursor, divisor: &Expression) -> Diagnostic {
 /// `2h`: not a product, and ambiguous after `/`; `0x10` and `2f64` are numbers of other languages.
 pub(super) fn glued(c: &Cursor, number: &str, name: &str) -> Diagnostic {
     if let Some(value) = of_another_base(number, name) {
-        let message = format!("`{number}{name}`: numbers are written in decimal digits");
+        let message = format!("`{number}{name}`: numbers are decimal");
         return Diagnostic::new(c.place(), message).help(match value {
             Some(value) => format!("write `{value}`"),
-            None => "write it in decimal digits, such as `16`".to_owned(),
+            None => "write it in decimal, such as `16`".to_owned(),
         });
     }
     if SUFFIXES.contains(&name) {
-        let message = format!("`{number}{name}`: numbers have no type here, they are exact");
+        let message = format!("`{number}{name}`: numbers are exact and have no type");
         return Diagnostic::new(c.place(), message).help(format!("write `{number}`"));
     }
     let divides = c.follows_punct('/');
     let d = Diagnostic::new(
         c.place(),
-        format!("`{number}{name}` is a number glued to a name"),
+        format!("`{number}{name}` is neither a number nor a name"),
     );
     d.help(match divides {
         true => format!(
@@ -96,7 +96,7 @@ pub(super) fn after_factor(
     let factor = factor?;
     let (what, remedy) = match c.peek()? {
         Token::Number(n) => (
-            format!("`{n}` stands after a factor without `*`"),
+            format!("`{n}` follows a factor without `*`"),
             format!("write `*{n}` for the product, `^{n}` for a power"),
         ),
         Token::Open('(') => {
@@ -117,7 +117,7 @@ pub(super) fn after_factor(
                 return None;
             }
             (
-                format!("parentheses stand after {what} without `*`"),
+                format!("parentheses follow {what} without `*`"),
                 "write `*(...)` for the product".to_owned(),
             )
         }
@@ -138,7 +138,7 @@ fn power_of_function(factor: &Kind, place: Place) -> Option<Diagnostic> {
         return None;
     }
     let power = q.numerator();
-    let message = format!("`{f}^{power}(...)`: a power stands behind the argument of a function");
+    let message = format!("`{f}^{power}(...)`: write the power after the argument of a function");
     let help = match unknown::function(&format!("a{f}")).filter(|_| power == -1) {
         Some(inverse) => inverse.to_owned(),
         None => format!("write `{f}(...)^{power}`"),
@@ -153,7 +153,7 @@ pub(super) fn after_exponent(c: &Cursor, base: &Expression, q: Rational) -> Opti
         return None;
     };
     let x = spelled(base);
-    let message = format!("`{x}^1/{n}` can be read in two ways");
+    let message = format!("`{x}^1/{n}` is ambiguous");
     let help = format!("write `{x}^(1/{n})` for the exponent 1/{n}, or `{x}/{n}` to divide by {n}");
     Some(Diagnostic::new(base.place.to(c.place()), message).help(help))
 }

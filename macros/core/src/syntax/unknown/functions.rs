@@ -1,21 +1,21 @@
 //! Functions of other languages: their form in the language, or the advice if there is none.
 
 /// The advice for inverses of trigonometric functions.
-const NO_INVERSE: &str = "the language has no inverse of sine, cosine or tangent. Make the angle itself a configuration, for \
-    example `field θ: Real;`, so that its potential `k*θ^2/2` can be stated";
+const NO_INVERSE: &str = "clebsch has no inverse of sine, cosine or tangent. Declare the angle as a configuration, for example \
+    `field θ: Real;`, and write its potential as `k*θ^2/2`";
 
 /// The advice for piecewise functions.
-const NO_CASES: &str = "functions in pieces are not supported yet, except by `abs` and `sign`: `(x + abs(x))/2` is x where x > 0 \
-    and 0 elsewhere, `(1 + sign(x))/2` is 1 or 0";
-
 /// The advice for rates of change.
-const RATE: &str = "the discrete Lagrangian writes a rate of change as a difference over the step: `(next(x) - x)/h`";
+const NO_CASES: &str = "piecewise functions are not supported yet, except through `abs` and `sign`: `(x + abs(x))/2` is x \
+    where x > 0 and 0 elsewhere, `(1 + sign(x))/2` is 1 or 0";
+
+const RATE: &str = "write a rate of change as a difference over the step: `(next(x) - x)/h`";
 
 /// The advice for units of angles.
 pub(crate) const RADIANS: &str = "angles are in radians: 30 degrees are `30*pi/180`, or `pi/6`";
 
 /// The advice for derivatives and integrals.
-const ENGINE: &str = "state the Lagrangian itself: derivatives are taken by the engine";
+const ENGINE: &str = "state the Lagrangian; clebsch takes the derivatives";
 
 /// The advice for sums over pairs of sites.
 pub(crate) const PAIRS: &str = "terms couple neighbours along a label, not all pairs of sites. Declare the bodies one by one, \
@@ -44,24 +44,24 @@ pub(crate) fn function(name: &str) -> Option<&'static str> {
         "ln" => "write `log(x)`",
         "log10" => "write `log(x)/log(10)`",
         "log2" => "write `log(x)/log(2)`",
-        "pow" | "power" => "a power is written `x^2`, `x^(1/2)`, `exp(p*log(x))`",
-        "sq" | "square" | "sqr" => "write `x^2` of a number, `dot(x, x)` of a vector",
+        "pow" | "power" => "write a power as `x^2`, `x^(1/2)` or `exp(p*log(x))`",
+        "sq" | "square" | "sqr" => "write `x^2` for a number, `dot(x, x)` for a vector",
         "cbrt" => "write `x^(1/3)`",
         "fabs" | "Abs" | "absolute" => "write `abs(x)`",
         "mod" | "fmod" | "floor" | "ceil" | "round" | "rint" => {
-            "the language has no whole part or remainder. An angle needs none: `cos(q)` repeats by itself"
+            "clebsch has no rounding or remainder. An angle needs none: `cos(q)` is periodic"
         }
         "I3" | "determinant" => "write `det(A)`",
         "trace" => "write `tr(A)`",
         "inverse" => "write `inv(A)`",
         "transpose" | "transposed" => "write `A^T`",
         "inner" | "scalar" | "vdot" | "matmul" => {
-            "write `dot(a, b)` for vectors, `A*b` for a matrix times what follows"
+            "write `dot(a, b)` for vectors, `A*b` for a matrix times a vector or a matrix"
         }
         "outer" => "write `a*b^T`",
-        "wedge" | "curl" => "write `cross(a, b)` of vectors with three components",
+        "wedge" | "curl" => "write `cross(a, b)` for vectors with three components",
         "vec" | "Vec" | "vector" | "Vector" | "array" | "list" | "Matrix" | "matrix" => {
-            "a vector is the sum of its components times unit vectors, `a*E1 + b*E2`, or a parameter, `param v: Vec<3>;`"
+            "write a vector in unit vectors, `a*E1 + b*E2`, or declare it, `param v: Vec<3>;`"
         }
         "eye" | "identity" => "the identity matrix is `Id`",
         "mid" | "midpoint" | "mean" | "average" | "avg" => {
@@ -75,10 +75,10 @@ pub(crate) fn function(name: &str) -> Option<&'static str> {
         }
         "pairs" | "combinations" => PAIRS,
         "range" | "product" | "prod" => {
-            "sums over a label are meant by `at nodes` and `at segments`; other loops are not supported"
+            "terms `at nodes` and `at segments` are summed over the label automatically; other loops are not supported"
         }
         "random" | "rand" | "randn" | "normal" => {
-            "a Lagrangian has no random numbers: make them parameters, with values in the case"
+            "a Lagrangian contains no random numbers: declare parameters, and give their values in the case"
         }
         "previous" => "write the term one step later: `x` for `previous(x)`, `next(x)` for `x`",
         _ => return None,

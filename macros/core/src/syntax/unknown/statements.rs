@@ -6,11 +6,12 @@ use super::names::STEPS;
 use crate::diagnostic::{Diagnostic, closest};
 
 /// The advice for uniform damping.
-const DAMPING: &str = "damping of all momenta at one rate γ can be stated: declare a clock, `advected t: Real; constraint next(t) = t + h;`, \
+/// The advice for a force with a potential.
+const DAMPING: &str = "to damp all momenta at one rate γ, declare a clock, `advected t: Real; constraint next(t) = t + h;`, \
     and multiply kinetic terms by `exp(γ*(t + next(t))/2)` and potentials by `exp(γ*t)`";
 
-/// The advice for a force with a potential.
-const POTENTIAL: &str = "a force with a potential V is the term `-h*V` of the Lagrangian; a constant force F along a number x is `h*F*x`";
+const POTENTIAL: &str = "for a force with a potential V, add the term `-h*V` to the Lagrangian; for a constant force F along a \
+    number x, add `h*F*x`";
 
 /// Names of forces that may have a potential.
 const FORCES: [&str; 8] = [
@@ -49,7 +50,7 @@ pub(in crate::syntax) fn statement(c: &Cursor, keyword: &Name) -> Diagnostic {
     let force = FORCES.contains(&word);
     if is_force(word) {
         let message = format!(
-            "`{word}` cannot be stated: forces without a potential, friction among them, are not supported yet"
+            "`{word}` is not a statement: forces without a potential, such as friction, are not supported yet"
         );
         let d = Diagnostic::new(keyword.place, message);
         return if force { d.help(POTENTIAL) } else { d }.help(DAMPING);
@@ -63,36 +64,37 @@ fn declaration(word: &str) -> Option<&'static str> {
     Some(match word {
         "var" | "variable" | "variables" | "state" | "coordinate" | "coordinates" | "coord"
         | "coords" | "dof" | "config" | "configuration" | "unknown" | "particle" | "mass" => {
-            "a configuration is declared by `field q: Real;` or `field x: Vec<3>;`, the attitude of a body by `group Λ: SO<3> velocity Ω;`"
+            "declare a configuration as `field q: Real;` or `field x: Vec<3>;`, the attitude of a body as `group Λ: SO<3> \
+             velocity Ω;`"
         }
         "body" | "rigid" | "rotation" => {
-            "a body with a fixed point is declared by `group Λ: SO<3> velocity Ω;`, a free one by `group G: SE<3> velocity V;`, each with \
-             its constraint `next(Λ) = Λ*Ω`"
+            "declare a body with a fixed point as `group Λ: SO<3> velocity Ω;`, a free body as `group G: SE<3> velocity V;`, \
+             each with its constraint, `constraint next(Λ) = Λ*Ω;`"
         }
         "const" | "constant" | "parameter" | "parameters" | "params" | "real" | "float"
         | "double" | "int" => {
-            "a parameter is declared by `param m: Real;`, its value stands in the case; `let m = 2;` names a number"
+            "declare a parameter as `param m: Real;`, and give its value in the case; to name a number, write `let m = 2;`"
         }
         "lambda" | "define" | "val" | "auto" | "where" | "with" => {
-            "an expression is given a name by `let`, as in `let d = next(x) - x;`"
+            "to name an expression, write `let`, as in `let d = next(x) - x;`"
         }
         "import" | "from" | "use" | "include" | "using" => {
             "functions need no import: write `sin(q)`, `sqrt(x)`, `dot(a, b)`"
         }
         "def" | "fn" | "function" | "func" => {
-            "a function of the position is stated by `given V(Real): Real = \"k*x^2/2\";`, an abbreviation by `let V = k*q^2/2;`"
+            "declare a function of the position as `given V(Real): Real = \"k*x^2/2\";`, an abbreviation as `let V = k*q^2/2;`"
         }
         "for" | "while" | "loop" => {
-            "there are no loops: quantities `at nodes` of a label `label i in 0..N;` are summed over its sites"
+            "the language has no loops: quantities `at nodes` of a label `label i in 0..N;` are summed over its sites"
         }
         "if" | "else" | "match" | "switch" => {
-            "there are no cases: `abs(x)` and `sign(x)` are functions, and `(x + abs(x))/2` is x where x > 0 and 0 elsewhere"
+            "the language has no conditionals: use `abs(x)` and `sign(x)`; `(x + abs(x))/2` is x where x > 0 and 0 elsewhere"
         }
         "initial" | "init" | "start" | "steps" | "solve" | "run" | "simulate" | "plot"
         | "output" | "bounds" => {
-            "the model states the equations only. Numbers and initial values stand in the case file: `clebsch case FILE` prints one"
+            "a model states the equations only. Put numbers and initial values into a case file; `clebsch case FILE` prints one"
         }
-        "constraints" => "write `hold λ: dot(x, x) = L^2;` for a constraint on configurations",
+        "constraints" => "to constrain configurations, write `hold λ: dot(x, x) = L^2;`",
         _ => return None,
     })
 }
@@ -111,10 +113,11 @@ fn meant(c: &Cursor, word: &str) -> String {
     }
     match c.peek() {
         Some(Token::Punct('=', _)) => {
-            format!("an expression is given a name by `let {word} = ...;`")
+            format!("to name an expression, write `let {word} = ...;`")
         }
         Some(Token::Punct(':' | ',', _)) => format!(
-            "say what it is: `param {word}: ...;` does not move, `field {word}: ...;` moves in a vector space, `group {word}: ... velocity ...;` in a Lie group"
+            "say what it is: `param {word}: ...;` for a constant, `field {word}: ...;` for a configuration in a vector space, \
+             `group {word}: ... velocity ...;` for one in a Lie group"
         ),
         _ => STARTS.to_owned(),
     }
@@ -127,23 +130,24 @@ fn assignment(c: &Cursor, word: &str) -> Option<String> {
         _ => None,
     };
     if number.is_some() && STEPS.contains(&word) {
-        return Some("the step size stands in the case file, as `h = 0.01`".to_owned());
+        return Some("give the step size in the case file, as `h = 0.01`".to_owned());
     }
     if let Some(n) = number {
         return Some(format!(
-            "declare a parameter, `param {word}: Real;`, whose value stands in the case, or name the number, `let {word} = {n};`"
+            "declare a parameter, `param {word}: Real;`, and give its value in the case; or name the number, `let {word} = \
+             {n};`"
         ));
     }
     match word {
         "L" | "l" | "ℓ" | "Lagrangian" | "lagrange" => Some(
-            "the discrete Lagrangian of a step is stated by `lagrangian = ...;`, (kinetic - potential) times the step"
+            "write `lagrangian = ...;`: the discrete Lagrangian of a step is (kinetic - potential) times the step"
                 .to_owned(),
         ),
         "T" | "Id" | "E1" | "E2" | "E3" => Some(format!(
-            "an expression is given a name by `let`; `{word}` has a meaning of its own, so choose another name, for example `let K = ...;`"
+            "`{word}` has a fixed meaning; to name an expression, choose another name, for example `let K = ...;`"
         )),
         _ if word == "H" || word.eq_ignore_ascii_case("hamiltonian") => Some(
-            "a model is stated by the discrete Lagrangian of a step, `lagrangian = ...;`".to_owned(),
+            "state the discrete Lagrangian of a step, `lagrangian = ...;`".to_owned(),
         ),
         _ => None,
     }
@@ -156,7 +160,7 @@ const STARTS: &str = "statements start with dim, time, label, periodic, end, gri
 pub(in crate::syntax) fn no_start(c: &Cursor, error: Diagnostic) -> Diagnostic {
     match c.peek() {
         Some(Token::Punct('%' | '/' | '*', _)) => {
-            error.help("remarks begin with `//`, documentation with `///`")
+            error.help("write a comment after `//`, documentation after `///`")
         }
         _ => error.help(STARTS),
     }

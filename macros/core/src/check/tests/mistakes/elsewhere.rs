@@ -46,7 +46,7 @@ fn forces_are_said_not_to_be_supported_and_damping_to_be_stated_by_a_clock() {
     for statement in ["force", "friction", "dissipation", "damping", "torque"] {
         let (marked, d) = first(&source(&format!("{statement} = -c*q;"), "k*q^2"));
         assert_eq!(marked, statement);
-        let wanted = format!("`{statement}` cannot be stated: forces without a potential");
+        let wanted = format!("`{statement}` is not a statement: forces without a potential");
         assert!(d.message.starts_with(&wanted), "{}", d.message);
         let help = d.help.join(" ");
         assert!(help.contains("`exp(γ*(t + next(t))/2)`"), "{help}");
@@ -80,14 +80,14 @@ fn functions_of_other_languages_are_told_with_what_does_them() {
             "",
             "k*atan2(x[2], x[1])",
             "atan2",
-            "Make the angle itself a configuration",
+            "Declare the angle as a configuration",
         ),
         ("", "k*acosh(q)", "acosh", "`log(x + sqrt(x^2 - 1))`"),
         ("", "k*abs(x)", "x", "`sqrt(dot(x, x))`"),
         ("", "k*norm(x)", "norm", "`sqrt(dot(x, x))`"),
         ("", "k*length(x)", "length", "`sqrt(dot(x, x))`"),
         ("", "k*heaviside(q)", "heaviside", "`(1 + sign(x))/2`"),
-        ("", "k*floor(q)", "floor", "no whole part"),
+        ("", "k*floor(q)", "floor", "no rounding or remainder"),
         ("", "k*dot(x, vec(0, 1))", "vec", "`a*E1 + b*E2`"),
         ("", "k*diff(q)^2", "diff", "`(next(x) - x)/h`"),
         ("", "k*sin^2(q)", "sin^2", "write `sin(...)^2`"),
@@ -96,14 +96,14 @@ fn functions_of_other_languages_are_told_with_what_does_them() {
             "",
             "k*np.sin(q)",
             ".",
-            "functions belong to no module: write `sin(...)`",
+            "functions need no module: write `sin(...)`",
         ),
         ("", "k*math.acos(q)", ".", "no inverse of sine"),
         ("", "k*x.dot(x)", ".", "write `dot(x, ...)`"),
-        ("", "k*x.T*x", ".", "the transpose is written `x^T`"),
+        ("", "k*x.T*x", ".", "write the transpose as `x^T`"),
         ("", "k*x.norm()", ".", "`sqrt(dot(x, x))`"),
         ("", "k*q.dot^2", ".", "`(next(q) - q)/h`"),
-        ("", "k*x.y", ".", "written `x[2]`"),
+        ("", "k*x.y", ".", "write a component of a vector as `x[2]`"),
     ]);
 }
 
@@ -114,10 +114,10 @@ fn signs_of_other_languages_are_told() {
             "",
             "k*(x[1] > 0)*x[1]",
             ">",
-            "potentials in pieces are not supported yet",
+            "piecewise potentials are not supported yet",
         ),
-        ("", "k*q*(q >= 0)", ">", "`>=` compares"),
-        ("", "k*q*(q == 0)", "=", "`==` compares"),
+        ("", "k*q*(q >= 0)", ">", "the comparison `>=`"),
+        ("", "k*q*(q == 0)", "=", "the comparison `==`"),
         (
             "",
             "k*where(q < 0, q, 0)",
@@ -125,7 +125,7 @@ fn signs_of_other_languages_are_told() {
             "`(x + abs(x))/2` is x where x > 0",
         ),
         ("", "if q > 0 { q } else { 0 }", ">", "`abs` and `sign`"),
-        ("", "k*q > 0", ">", "potentials in pieces"),
+        ("", "k*q > 0", ">", "piecewise potentials"),
         ("", "k*(x @ x)", "@", "`dot(a, b)`"),
         ("", "k*dot(x, [0, 1])", "[", "`a*E1 + b*E2`"),
         ("", "k*dot(x, (0, 1))", ",", "`a*E1 + b*E2`"),
@@ -133,10 +133,15 @@ fn signs_of_other_languages_are_told() {
             "",
             "sum(m[i]*m[j])",
             "i",
-            "a sum over pairs of sites is not supported yet",
+            "sums over pairs of sites are not supported yet",
         ),
-        ("", "k*sum(q for i in range(3))", "in", "there are no loops"),
-        ("", "k*q**2", "*", "a power is written `a^2`"),
+        (
+            "",
+            "k*sum(q for i in range(3))",
+            "in",
+            "the language has no loops",
+        ),
+        ("", "k*q**2", "*", "write a power as `a^2`"),
         ("let u == q;", "u", "=", "one `=`"),
         (
             "assume 0 < m < 1;",
@@ -156,7 +161,7 @@ fn signs_of_other_languages_are_told() {
             ",",
             "names of one shape",
         ),
-        ("% remark\n", "q", "%", "remarks begin with `//`"),
+        ("% remark\n", "q", "%", "write a comment after `//`"),
     ]);
 }
 
@@ -164,20 +169,20 @@ fn signs_of_other_languages_are_told() {
 fn words_of_other_languages_are_told_at_the_start_of_a_statement() {
     told(&[
         ("g2 = 9.81;", "q", "g2", "`param g2: Real;`"),
-        (
-            "h = 0.01;",
-            "q",
-            "h",
-            "the step size stands in the case file",
-        ),
+        ("h = 0.01;", "q", "h", "give the step size in the case file"),
         ("const g2 = 9.81;", "q", "const", "`param m: Real;`"),
         ("var y: Real;", "q", "var", "`field q: Real;`"),
         ("def V(q): return q;", "q", "def", "`given V(Real): Real"),
         ("let V = lambda q: q;", "V", ":", "`given V(Real): Real"),
         ("let V(q) = q^2;", "q", "(", "`let V = k*q^2/2;`"),
         ("import numpy as np;", "q", "import", "need no import"),
-        ("for i in 0..3 { }", "q", "for", "there are no loops"),
-        ("if q > 0 { }", "q", "if", "there are no cases"),
+        ("for i in 0..3 { }", "q", "for", "the language has no loops"),
+        (
+            "if q > 0 { }",
+            "q",
+            "if",
+            "the language has no conditionals",
+        ),
         ("initial q = 1;", "q", "initial", "`clebsch case FILE`"),
         ("T = m*q^2;", "q", "T", "`let K = ...;`"),
         ("param g2;", "q", ";", "`param m: Real;`"),
@@ -197,7 +202,7 @@ fn names_and_shapes_are_told_with_what_is_meant() {
             "",
             "q*cos(c*t)",
             "t",
-            "cannot depend on the time `t` unless a clock is declared",
+            "cannot depend on the time `t` unless you declare a clock",
         ),
         (
             "",
@@ -238,7 +243,7 @@ fn names_and_shapes_are_told_with_what_is_meant() {
             "",
             "k*q*prev(q)",
             "prev(q)",
-            "`q` for `prev(q)`, `next(q)` for `q`",
+            "`q` for `prev(q)` and `next(q)` for `q`",
         ),
         ("", "k*dot(q, q)", "q", "`a^2`"),
         ("", "cross(x, x)", "x", "`dot(perp(a), b)`"),
@@ -264,7 +269,7 @@ fn constraints_on_velocities_are_said_not_to_be_supported() {
             "hold v: dot(next(x), next(x)) = 1;",
             "q",
             "dot(next(x), next(x)) = 1",
-            "leave `next` out",
+            "remove `next`",
         ),
     ]);
 }

@@ -11,7 +11,7 @@ fn a_definition_that_nothing_uses_is_said() {
     assert_eq!(topics(&format!("let f = k*x; {spring}")), [UnusedLet]);
     let text = words(&format!("let f = k*x; {spring}"));
     assert!(
-        text.contains("`f` is named by `let` and never used"),
+        text.contains("`f` is defined by `let` but never used"),
         "{text}"
     );
     // A force that has a name only.
