@@ -59,8 +59,9 @@ fn a_link_without_length_is_named() {
             places.join(", ")
         );
         let err = refused(&format!("undefined-link-{count}"), model, &case);
-        let said =
-            format!("at i = {site}, the length of `next(x, i) - x` is 0, where it has no derivative");
+        let said = format!(
+            "at i = {site}, the length of `next(x, i) - x` is 0, where it has no derivative"
+        );
         assert!(err.contains(&said), "{err}");
     }
 }
