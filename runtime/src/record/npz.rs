@@ -331,6 +331,6 @@ mod tests {
         );
         let told = told.expect_err("refused");
         assert_eq!(told.kind(), io::ErrorKind::InvalidInput);
-        assert!(told.to_string().contains("made for 792 bytes"), "{told}");
+        assert!(told.to_string().contains("space for 792 bytes"), "{told}");
     }
 }
