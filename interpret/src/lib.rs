@@ -107,7 +107,7 @@ impl fmt::Display for Refused {
                 most,
             } => write!(
                 f,
-                "`{label} = {asked}` is too large for a model file: the limit is `{label} = {most}`, some hundred bytes for \
+                "`{label} = {asked}` is too large for a model file: the limit is `{label} = {most}`, about a hundred bytes for \
                  each site"
             ),
             Self::Functional { path } => write!(

@@ -120,7 +120,7 @@ fn bodies_whose_velocities_are_joined_run_with_sixty_segments() {
     let case = Case::new(60, None);
     let settings = clebsch::card::Settings::step(case.h);
     let (card, mut line) = beside::opened(own.source, &case, &(own.data)(&case), settings);
-    let told = "one for every number of sites";
+    let told = "one for any number of sites";
     assert!(card.summary.contains(told), "{}", card.summary);
     line.step().expect("steps");
     let mut sums = vec![f64::NAN; card.invariant_count()];

@@ -245,7 +245,7 @@ fn what_has_no_value_is_told_with_what_to_write() {
         ),
         &[
             "initial.X: ",
-            "`S` depends on the positions X, which are given here",
+            "`S` depends on the positions X, which this entry defines",
         ],
     );
     check(
@@ -271,7 +271,7 @@ fn what_has_no_value_is_told_with_what_to_write() {
     for (momentum, said) in [
         (
             "S",
-            "`S` has values at the particles `a`, but those of Y belong to `b`",
+            "`S` has values at the particles `a`, but the values of Y belong to `b`",
         ),
         ("x", "`x` has no value here"),
     ] {

@@ -131,7 +131,7 @@ fn ranges_and_ends_are_printed() {
             "End i = N: load",
             "i = 1, ..., N-2.",
             "∑_{i=0}^{N-1} Λ_{i,k} μ_{2,i,k}",
-            "Fluxes between neighbouring sites",
+            "fluxes between neighbouring sites",
         ],
     );
     let toda = clebsch("derive models/lattices/toda-chain.clebsch").out;

@@ -21,7 +21,7 @@ fn a_line_of_a_hundred_thousand_sites_runs() {
         .runs("run models/lattices/toda-chain.clebsch --case @wave.toml --out @out --verbose");
     done.prints([
         "lattice              N = 100000, periodic",
-        "one for every number of sites, with loops over them\n",
+        "one for any number of sites, with loops over the sites\n",
         "action as stated: ",
         "total_momentum",
         "within bound",

@@ -231,7 +231,7 @@ fn invariants_are_looked_at_where_it_was_asked() {
     // The energy swings: the last node is not its farthest.
     assert!(run("1") > run("1000"));
     clebsch("run kepler --steps 100 --every 10")
-        .prints("drifts: sampled at every 10 nodes and at the last");
+        .prints("drifts: sampled every 10 nodes and at the last");
 }
 
 #[test]

@@ -282,8 +282,9 @@ fn of_all_sites<'a>(summary: &str, names: impl Iterator<Item = &'a str>) -> Stri
 
 /// Describes how a chain is run, and lists the quantities that are not computed.
 fn told(left_out: &[String]) -> String {
-    let mut told =
-        String::from("\nprogram              one for every number of sites, with loops over them");
+    let mut told = String::from(
+        "\nprogram              one for any number of sites, with loops over the sites",
+    );
     if !left_out.is_empty() {
         told.push_str("; not computed: ");
         told.push_str(&left_out.join(", "));

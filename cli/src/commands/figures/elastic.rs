@@ -216,7 +216,7 @@ pub(super) fn drift(gallery: &Gallery) -> Result<String, Failure> {
     });
     let panels = vec![
         panel(
-            "h² (E − E(0)): forward, kinetic energy of the edge behind the node; at the node, that of its momentum",
+            "h² (E − E(0)): forward, from the velocity of the edge before the node; at the node, from its momentum",
             "",
             vec![
                 line("forward", 0, times_square(&course.forward)),
