@@ -97,7 +97,7 @@ impl Expression {
         }
     }
 
-    /// The same, to be changed.
+    /// Like `parts`, by mutable reference.
     fn parts_mut(&mut self) -> Vec<&mut Self> {
         match &mut self.kind {
             Kind::Number(..) | Kind::Constant(_) | Kind::Name(_) => Vec::new(),

@@ -118,7 +118,7 @@ impl Judged {
         self
     }
 
-    /// The same with a further equation, if it is worse than the others.
+    /// Takes another equation if its residual is larger than the residuals so far.
     fn take(&mut self, part: Part) {
         let worse = |a: &Part, b: &Part| a.ratio().is_nan() || b.ratio() <= a.ratio();
         if !self.worst.as_ref().is_some_and(|w| worse(w, &part)) {

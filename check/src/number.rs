@@ -114,7 +114,7 @@ impl Number {
         (self.value, self.error)
     }
 
-    /// The same without derivatives.
+    /// This number without derivatives.
     #[must_use]
     pub fn constant(&self) -> Self {
         Self::within(self.value, self.error)

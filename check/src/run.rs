@@ -132,7 +132,7 @@ impl Verdict {
         !self.is_broken() && !self.is_empty()
     }
 
-    /// The same as numbers, from which it is made again by [`Verdict::of_numbers`].
+    /// The verdict as numbers, from which [`Verdict::of_numbers`] restores it.
     #[must_use]
     #[allow(clippy::cast_precision_loss)]
     pub fn numbers(&self) -> Vec<f64> {

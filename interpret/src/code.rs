@@ -197,7 +197,7 @@ pub enum Code<T: Real> {
     While(Box<Code<T>>, Box<Code<T>>),
     /// `for` over counts, upwards.
     For(usize, Box<Code<T>>, Box<Code<T>>, Box<Code<T>>),
-    /// The same, downwards.
+    /// `for` over counts, downwards.
     Down(usize, Box<Code<T>>, Box<Code<T>>, Box<Code<T>>),
     /// A value put into places: one, or a tuple of them.
     Assign(Vec<Code<T>>, Box<Code<T>>),
@@ -330,7 +330,7 @@ impl<T: Real> Code<T> {
         }
     }
 
-    /// The same, to be changed.
+    /// Like `place`, by mutable reference.
     pub fn place_mut<'a>(&self, places: &'a mut Places<T>) -> Option<&'a mut Value<T>> {
         match self {
             Code::Place(at) => places.get_mut(*at),

@@ -155,7 +155,7 @@ impl Failure {
         }
     }
 
-    /// The same error, with the name of a field.
+    /// This error, with the name of a field.
     pub fn in_field(self, field: &'static str) -> Self {
         match self {
             Failure::Poinsot(e) => e.in_field(field).into(),

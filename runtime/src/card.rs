@@ -84,7 +84,7 @@ pub struct Field {
 }
 
 impl Field {
-    /// The same field with this ASCII name.
+    /// This field, with the ASCII name `ascii`.
     #[must_use]
     pub const fn spelt(self, ascii: &'static str) -> Self {
         Self { ascii, ..self }
@@ -191,7 +191,7 @@ impl Settings {
         }
     }
 
-    /// The same steps, for inspection only: see [`Settings::inquiry`].
+    /// These steps, for inspection only: see [`Settings::inquiry`].
     #[must_use]
     pub fn to_inquire(self) -> Self {
         Self {
@@ -200,7 +200,7 @@ impl Settings {
         }
     }
 
-    /// The same steps, of the given order.
+    /// These steps, with the given order.
     #[must_use]
     pub fn of_order(self, order: u32) -> Self {
         Self {
@@ -479,7 +479,7 @@ pub enum OpenError {
 }
 
 impl OpenError {
-    /// The same error; if the first step failed, with the warning about the kinetic energy.
+    /// Adds the warning about the kinetic energy if the first step failed.
     #[must_use]
     pub fn beside(self, warning: Option<KineticWarning>) -> Self {
         match (self, warning) {

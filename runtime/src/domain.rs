@@ -54,7 +54,7 @@ pub struct Contact {
     /// `det = 0`, or the argument interpolated between them its bound. None where the velocity
     /// itself is outside.
     pub share: Option<f64>,
-    /// The step that was refused.
+    /// The size of the failed step.
     pub h: f64,
     /// How often the step was halved until it was tried and worked; 0 where none was found.
     pub halvings: u16,
@@ -97,7 +97,7 @@ impl Contact {
         (self.halvings > 0).then(|| self.h * 0.5_f64.powi(i32::from(self.halvings)))
     }
 
-    /// The same with a shorter step that `try_step` can make, if halving finds one.
+    /// This contact, with a smaller step size for which `try_step` succeeds, if halving finds one.
     #[cold]
     #[must_use]
     pub fn with_trials<T: Real>(self, h: T, try_step: impl Fn(T) -> bool) -> Self {
@@ -214,7 +214,7 @@ pub fn invertible<T: Real, const N: usize>(
     closely(configuration, h, T::LANES, lane_of)
 }
 
-/// The same of maps whose size is known when a model is read, given by their matrices.
+/// Like `invertible`, for maps whose size is known only at run time, given by their matrices.
 ///
 /// # Errors
 /// [`Contact`] of the first lane that does not.
@@ -268,7 +268,7 @@ pub fn field_invertible<T: Real, const N: usize>(
     invertible(field, &linear(before), &linear(after), h)
 }
 
-/// The same lane by lane, by the eigenvalues of the velocity and the singular values of the end.
+/// Tests each lane by the eigenvalues of the velocity and the singular values of the matrix at the end of the step.
 #[cold]
 #[inline(never)]
 fn closely<T: Real, R: Fn() -> f64>(

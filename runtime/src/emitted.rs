@@ -91,7 +91,7 @@ pub fn spectrum_scales<const N: usize>(m: f64, s: f64) -> impl Iterator<Item = f
     spectrum_scales_of(N, m, s)
 }
 
-/// The same for a size that is known when a model is read.
+/// Like `spectrum_scales`, for a size that is known only at run time.
 pub fn spectrum_scales_of(n: usize, m: f64, s: f64) -> impl Iterator<Item = f64> {
     let power = |x: f64, n: usize| (0..n).fold(1.0, |p, _| p * x);
     crate::linalg::even_degrees(n)
@@ -257,7 +257,7 @@ pub fn put_vector<'a, T: Real, const N: usize>(
     fill(out, N, value.iter().copied())
 }
 
-/// The same for the coordinates of a skew matrix.
+/// Writes the coordinates of a skew matrix to the front of `out`; returns the rest.
 #[inline]
 pub fn put_skew<'a, T: Real, const N: usize>(
     out: &'a mut [T],
@@ -266,7 +266,7 @@ pub fn put_skew<'a, T: Real, const N: usize>(
     fill(out, N * N.saturating_sub(1) / 2, skew_coordinates(value))
 }
 
-/// The same for the entries of a matrix, row by row.
+/// Writes the entries of a matrix, row by row, to the front of `out`; returns the rest.
 #[inline]
 pub fn put_matrix<'a, T: Real, const R: usize, const C: usize>(
     out: &'a mut [T],
@@ -276,7 +276,7 @@ pub fn put_matrix<'a, T: Real, const R: usize, const C: usize>(
     fill(out, R * C, entries)
 }
 
-/// The same for one number.
+/// Writes one number to the front of `out`; returns the rest.
 #[inline]
 pub fn put_number<'a, T: Real>(out: &'a mut [T], value: &T) -> &'a mut [T] {
     fill(out, 1, [*value].into_iter())

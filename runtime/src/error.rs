@@ -272,7 +272,7 @@ impl fmt::Display for ParameterError {
 impl std::error::Error for ParameterError {}
 
 impl PoinsotError {
-    /// The same error as a [`ParameterError`] of the parameter `field`.
+    /// Turns this error into a [`ParameterError`] of the parameter `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
         let remedy = match self {
@@ -297,7 +297,7 @@ impl PoinsotError {
 }
 
 impl NotARotation {
-    /// The same error as a [`ParameterError`] of the initial value `field`.
+    /// Turns this error into a [`ParameterError`] of the initial value `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
         ParameterError {
@@ -309,7 +309,7 @@ impl NotARotation {
 }
 
 impl NotARigidMotion {
-    /// The same error as a [`ParameterError`] of the initial value `field`.
+    /// Turns this error into a [`ParameterError`] of the initial value `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
         match self {
@@ -327,7 +327,7 @@ impl NotARigidMotion {
 }
 
 impl NotInvertible {
-    /// The same error as a [`ParameterError`] of the initial value `field`.
+    /// Turns this error into a [`ParameterError`] of the initial value `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
         ParameterError {

@@ -33,7 +33,7 @@ impl KineticWarning {
         Self::of_entries(count.min(N), &|i, j| form[(i, j)])
     }
 
-    /// The same of the entries of a matrix of `n` rows.
+    /// Like `of`, for a matrix of `n` rows given by its entries.
     #[must_use]
     pub fn of_entries(n: usize, form: &dyn Fn(usize, usize) -> f64) -> Option<Self> {
         // Velocities have units of their own: each is measured by its own energy, or, where that

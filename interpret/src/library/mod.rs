@@ -99,7 +99,7 @@ pub fn kernel<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
         .or_else(|| groups::native(name, arguments))
 }
 
-/// The same for those that change their first argument, or call back.
+/// Like `kernel`, for functions that change their first argument or call back.
 pub fn special<T: Real>(name: &str) -> Option<Special<T>> {
     special::kernel(name)
         .or_else(|| special::special(name))

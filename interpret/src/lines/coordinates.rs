@@ -184,7 +184,7 @@ fn of_space(one: &[f64]) -> Option<(Matrix3<f64>, Vector3<f64>)> {
     ))
 }
 
-/// The same of the plane.
+/// Like `of_space`, for the plane.
 fn of_plane(one: &[f64]) -> Option<(Matrix2<f64>, Vector2<f64>)> {
     let [a, b, x, c, d, y, ..] = *one else {
         return None;

@@ -95,7 +95,7 @@ pub struct LineModel {
     initial: Given,
     new: Routine<f64>,
     start: Routine<f64>,
-    /// The same, with initial momenta projected on the constraints, if there are any.
+    /// Like `start`, with initial momenta projected on the constraints; `None` without constraints.
     projecting: Option<Routine<f64>>,
     step: Routine<f64>,
     workspace: Routine<f64>,
@@ -439,7 +439,7 @@ impl LineModel {
         self.start_by(&self.start, choice, h, numbers)
     }
 
-    /// The same, but projects the momenta on the constraints, however large their normal part is.
+    /// Like [`LineModel::start`], but projects the momenta on the constraints, however large their normal part is.
     ///
     /// # Errors
     /// As [`LineModel::start`].

@@ -72,7 +72,7 @@ pub struct RecordedSolve {
 }
 
 impl RecordedSolve {
-    /// The same equations; nothing if the search or the node is not found by places alone.
+    /// Records these equations. Returns `None` if places alone do not give the search or the node.
     pub fn of(with: Arc<Solve>) -> Option<Self> {
         let at_trial = |what: &AtTrial| what.body.over(Traced::constant);
         Some(RecordedSolve {

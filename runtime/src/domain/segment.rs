@@ -28,12 +28,12 @@ pub(super) fn contact<const N: usize>(velocity: &SMatrix<f64, N, N>) -> Option<f
     by_minors(N, |k| symmetric(velocity, k))
 }
 
-/// The same of a matrix whose size is known when a model is read.
+/// Like `contact`, for a matrix whose size is known only at run time.
 pub(super) fn contact_of(velocity: &Dense<f64>) -> Option<f64> {
     by_minors(velocity.rows, |k| symmetric_of(velocity, k))
 }
 
-/// The same by the sums of the principal minors of `k` rows.
+/// Finds the first contact from the sums of the principal minors of `k` rows.
 fn by_minors(n: usize, symmetric: impl Fn(usize) -> f64) -> Option<f64> {
     let mut coefficients = [0.0; MOST];
     let coefficients = coefficients.get_mut(..=n)?;
@@ -75,7 +75,7 @@ fn symmetric<const N: usize>(a: &SMatrix<f64, N, N>, k: usize) -> f64 {
     sum
 }
 
-/// The same of a matrix whose size is known when a model is read.
+/// Like `symmetric`, for a matrix whose size is known only at run time.
 fn symmetric_of(a: &Dense<f64>, k: usize) -> f64 {
     let (n, mut sum) = (a.rows, 0.0);
     for rows in 0u32..1 << n {

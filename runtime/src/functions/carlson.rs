@@ -51,8 +51,8 @@ impl carlson_rf {
     }
 }
 
-/// The same integral by the principal invariants of B, its trace, second invariant and determinant: what a
-/// model states so is seen to be isotropic.
+/// Carlson's R_F in terms of the principal invariants of B: trace, second invariant and determinant. A model stated with this
+/// function is recognised as isotropic.
 #[allow(non_camel_case_types)]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct carlson_rf_of_invariants;
@@ -104,7 +104,7 @@ fn integral<T: Real, const N: usize>(of: [T; 3], by: [usize; N]) -> Jet<T, N> {
     }
 }
 
-/// The same over plain numbers: the value, then the derivatives with respect to the invariants of these numbers.
+/// Like `integral`, over plain numbers: the value, then the derivatives with respect to the invariants.
 fn in_numbers<const N: usize>(by: &[usize], of: &[f64], out: &mut [f64]) {
     let found = iterated::<f64, N>(
         core::array::from_fn(|i| of[i]),
@@ -198,7 +198,7 @@ fn improved<T: Real, const N: usize>(
     u - value / (u * l - root).times(2.0)
 }
 
-/// The same root of numbers: Newton's iteration from above, which falls until rounding stops it.
+/// The root for plain numbers, by Newton's iteration from above. The iterates decrease until rounding stops them.
 fn plain_trace([first, second, root]: [f64; 3]) -> f64 {
     let mut u = (3.0 * first).sqrt();
     for _ in 0..MOST_CORRECTIONS {

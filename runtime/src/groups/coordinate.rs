@@ -90,7 +90,7 @@ impl Coordinate {
         Self { factor: 0, part }
     }
 
-    /// The same coordinate in factor `factor` of a product.
+    /// This coordinate, in factor `factor` of a product.
     #[must_use]
     pub fn in_factor(self, factor: usize) -> Self {
         Self {

@@ -74,7 +74,7 @@ pub trait Group<T>: Copy {
         self.inverse().compose(next)
     }
 
-    /// The same in the frame of space, `next . self^-1`.
+    /// The velocity in the space frame, `next . self^-1`.
     #[inline]
     fn spatial_velocity(&self, next: &Self) -> Self {
         next.compose(&self.inverse())

@@ -56,7 +56,7 @@ pub fn added<T: Real, const R: usize, const C: usize>(
     (sum, lost)
 }
 
-/// The same of a number.
+/// Like `added`, for a single number.
 #[inline(always)]
 #[must_use]
 pub fn added_number<T: Real>(value: T, rest: T, amount: T) -> (T, T) {

@@ -287,7 +287,7 @@ of_scalars!(CarriedPlaneImpulse { 0 });
 of_scalars!(SpatialPlaneImpulse { 0 });
 
 impl<T: Real> CarriedPlaneImpulse<T> {
-    /// The same impulse about the origin of the plane.
+    /// This impulse about the origin of the plane.
     #[inline]
     pub fn to_space(&self, motion: &PlaneMotion<T>) -> SpatialPlaneImpulse<T> {
         let linear = Vector2::new(self.0.y, self.0.z);
@@ -295,7 +295,7 @@ impl<T: Real> CarriedPlaneImpulse<T> {
         SpatialPlaneImpulse(SVector::<T, 3>::new(self.0.x + moment, linear.x, linear.y))
     }
 
-    /// The same impulse in body axes.
+    /// This impulse in body axes.
     #[inline]
     pub fn to_body(&self, motion: &PlaneMotion<T>) -> BodyPlaneImpulse<T> {
         BodyPlaneImpulse(motion.covector_turned_back(&self.0))
@@ -303,13 +303,13 @@ impl<T: Real> CarriedPlaneImpulse<T> {
 }
 
 impl<T: Real> BodyPlaneImpulse<T> {
-    /// The same impulse in the axes of the plane, about the body's origin.
+    /// This impulse in the axes of the plane, about the body's origin.
     #[inline]
     pub fn carried(&self, motion: &PlaneMotion<T>) -> CarriedPlaneImpulse<T> {
         CarriedPlaneImpulse(motion.covector_turned(&self.0))
     }
 
-    /// The same impulse in the axes of the plane.
+    /// This impulse in the axes of the plane, about the origin of the plane.
     #[inline]
     pub fn to_space(&self, motion: &PlaneMotion<T>) -> SpatialPlaneImpulse<T> {
         SpatialPlaneImpulse(motion.covector_to_space(&self.0))
@@ -317,7 +317,7 @@ impl<T: Real> BodyPlaneImpulse<T> {
 }
 
 impl<T: Real> SpatialPlaneImpulse<T> {
-    /// The same impulse in body axes.
+    /// This impulse in body axes.
     #[inline]
     pub fn to_body(&self, motion: &PlaneMotion<T>) -> BodyPlaneImpulse<T> {
         BodyPlaneImpulse(motion.covector_to_body(&self.0))

@@ -351,7 +351,7 @@ of_scalars!(CarriedImpulse { 0 });
 of_scalars!(SpatialImpulse { 0 });
 
 impl<T: Real> CarriedImpulse<T> {
-    /// The same impulse about the origin of space.
+    /// This impulse about the origin of space.
     #[inline]
     pub fn to_space(&self, motion: &RigidMotion<T>) -> SpatialImpulse<T> {
         let (angular, linear) = parts(&self.0);
@@ -359,7 +359,7 @@ impl<T: Real> CarriedImpulse<T> {
         SpatialImpulse(stacked(angular + moment, linear))
     }
 
-    /// The same impulse in body axes.
+    /// This impulse in body axes.
     #[inline]
     pub fn to_body(&self, motion: &RigidMotion<T>) -> BodyImpulse<T> {
         BodyImpulse(motion.covector_turned_back(&self.0))
@@ -367,13 +367,13 @@ impl<T: Real> CarriedImpulse<T> {
 }
 
 impl<T: Real> BodyImpulse<T> {
-    /// The same impulse in space axes, about the body's origin.
+    /// This impulse in space axes, about the body's origin.
     #[inline]
     pub fn carried(&self, motion: &RigidMotion<T>) -> CarriedImpulse<T> {
         CarriedImpulse(motion.covector_turned(&self.0))
     }
 
-    /// The same impulse in space axes.
+    /// This impulse in space axes, about the origin of space.
     #[inline]
     pub fn to_space(&self, motion: &RigidMotion<T>) -> SpatialImpulse<T> {
         SpatialImpulse(motion.covector_to_space(&self.0))
@@ -381,7 +381,7 @@ impl<T: Real> BodyImpulse<T> {
 }
 
 impl<T: Real> SpatialImpulse<T> {
-    /// The same impulse in body axes.
+    /// This impulse in body axes.
     #[inline]
     pub fn to_body(&self, motion: &RigidMotion<T>) -> BodyImpulse<T> {
         BodyImpulse(motion.covector_to_body(&self.0))

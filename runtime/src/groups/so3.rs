@@ -204,7 +204,7 @@ impl<T: Real> Rotation<T> {
         T::from_f64(1.5) - T::from_f64(0.5) * norm_squared(self.q)
     }
 
-    /// The same rotation with `|q| = 1` to rounding, given that it is nearly so.
+    /// This rotation, rescaled to `|q| = 1` up to rounding; `|q|` must already be close to 1.
     #[inline(always)]
     pub(crate) fn renormalised(&self) -> Self {
         let scale = self.repair();

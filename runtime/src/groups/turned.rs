@@ -28,7 +28,7 @@ impl<T: Real> Rotation<T> {
         }
     }
 
-    /// The same where the inverse of the square of the length of `omega` is known.
+    /// Like `turned`, if the inverse of the squared length of `omega` is known.
     #[inline(always)]
     pub(crate) fn turned_at(&self, omega: [T; 4], per_square: T) -> TurnedRotation<T> {
         let q = self.quaternion();

@@ -22,7 +22,7 @@ pub trait Model:
     /// quartic gain by it. Iterations of which each body needs its own number do not.
     const SIDE_BY_SIDE: bool;
 
-    /// The same model over another scalar.
+    /// This model over another scalar.
     type Over<U: Real>: Model<
             Scalar = U,
             Parameters = <Self::Parameters as OfScalars>::Over<U>,

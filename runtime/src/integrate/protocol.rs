@@ -241,7 +241,7 @@ macro_rules! stepper_part {
         }
     };
     (@solver) => {
-        /// The same model, its steps solved by the solver named.
+        /// This model, with the given solver.
         #[must_use]
         pub fn with_solver(self, method: $crate::solvers::Method) -> Self {
             Self { method, ..self }
@@ -296,14 +296,14 @@ macro_rules! stepper_part {
                 &self.solver
             }
 
-            /// The same, with rounding left to gather, so that it can be measured.
+            /// This workspace without projection: rounding errors accumulate, so that you can measure them.
             #[must_use]
             pub fn without_projection(mut self) -> Self {
                 self.solver = self.solver.without_projection();
                 self
             }
 
-            /// The same, with steps of an order above two made symplectic with the attitude.
+            /// This workspace with compensated steps: steps of order above two are symplectic in momentum and attitude.
             #[must_use]
             pub fn compensated(mut self) -> Self {
                 self.solver = self.solver.compensated();

@@ -64,7 +64,7 @@ pub trait Stepper {
     /// The number of the node.
     fn node(state: &Self::State) -> u64;
 
-    /// The same state, counted as another node.
+    /// The state, with its node number set to `node`.
     #[must_use]
     fn at_node(state: Self::State, node: u64) -> Self::State;
 }

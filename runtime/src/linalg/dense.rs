@@ -160,7 +160,7 @@ impl<T: Real> Dense<T> {
         }
     }
 
-    /// The same number everywhere.
+    /// A matrix with all entries equal to `x`.
     pub fn repeat(rows: usize, cols: usize, x: T) -> Self {
         Self::from_fn(rows, cols, |_, _| x)
     }

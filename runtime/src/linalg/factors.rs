@@ -169,7 +169,7 @@ fn substitute<T: Real, const D: usize>(a: &[[T; D]; D], mut x: [T; D]) -> [T; D]
     x
 }
 
-/// The same of a matrix whose size is known when a model is read, over plain numbers.
+/// Factors of a matrix over plain numbers whose size is known only at run time.
 #[derive(Debug)]
 pub struct DenseFactors {
     /// As [`Factors`] has them.
@@ -187,7 +187,7 @@ impl Clone for DenseFactors {
         }
     }
 
-    // Those before a step are kept without allocating anew.
+    // Copies into the existing lists, without a new allocation.
     fn clone_from(&mut self, source: &Self) {
         (self.columns.rows, self.columns.cols) = (source.columns.rows, source.columns.cols);
         self.columns.data.clone_from(&source.columns.data);

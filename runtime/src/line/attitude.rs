@@ -48,7 +48,7 @@ impl<T: Real> Attitude<T> {
         self.rotation
     }
 
-    /// The same attitude, its quaternion times 1 or -1.
+    /// This attitude, with its quaternion multiplied by `sign`, which is 1 or -1.
     pub(crate) fn of_sign(&self, sign: T) -> Self {
         let q = self.rotation.quaternion().map(|x| x * sign);
         Self {

@@ -191,7 +191,7 @@ impl<T: Real> AnyBand<T> {
         }
     }
 
-    /// The same with velocities of rotations: `turns` marks the components of a site that belong to the vector of one.
+    /// This matrix with rotational velocities: `turns` marks the components of a site that belong to an angular velocity.
     #[must_use]
     pub fn with_turns(self, turns: &[bool]) -> Self {
         let turns = turns.to_vec();
@@ -444,7 +444,7 @@ impl<T: Real, const N: usize, const R: usize> Band<T, N, R> {
         }
     }
 
-    /// The same with velocities of rotations: `turns` marks the components of a site that belong to the vector of one.
+    /// This matrix with rotational velocities: `turns` marks the components of a site that belong to an angular velocity.
     #[must_use]
     pub fn with_turns(self, turns: [bool; N]) -> Self {
         let Self { all, velocities } = self;

@@ -176,7 +176,7 @@ impl<T: Real> Blocks<T> {
         self.own[size * site..size * (site + 1)].copy_from_slice(block);
     }
 
-    /// Those of neighbours back to zeros.
+    /// Sets the blocks of neighbours to zero.
     #[inline(always)]
     pub fn clear_neighbours(&mut self) {
         self.before.fill(T::zero());
@@ -250,7 +250,7 @@ impl<T: Real> Blocks<T> {
         }
     }
 
-    /// The same of one component of a site.
+    /// Like `hold`, for one component of a site.
     pub fn hold_component(&mut self, site: usize, k: usize) {
         let (n, last) = (self.n, self.sites - 1);
         let size = n * n;

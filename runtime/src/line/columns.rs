@@ -52,7 +52,7 @@ fn stride_of(len: usize) -> usize {
 }
 
 impl<V: Numbered<N, Number = T>, T: Real, const N: usize> Columns<V, T, N> {
-    /// The same value at so many sites.
+    /// A list of `len` copies of `value`.
     pub fn filled(value: V, len: usize) -> Self {
         let stride = stride_of(len);
         let mut data = Vec::with_capacity(N * stride);
@@ -179,7 +179,7 @@ pub struct ColumnsPart<'a, V, T, const N: usize> {
 }
 
 impl<V: Numbered<N, Number = T>, T: Real, const N: usize> ColumnsPart<'_, V, T, N> {
-    /// The same value at all sites.
+    /// Sets the value at all sites to `value`.
     pub fn fill(mut self, value: V) {
         for (column, number) in self.columns.iter_mut().zip(value.numbers()) {
             column.fill(number);

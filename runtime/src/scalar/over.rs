@@ -13,7 +13,7 @@ pub trait OfScalars: Copy + core::fmt::Debug + Send + Sync {
     /// The type of its scalars.
     type Scalar: Real;
 
-    /// The same type over another scalar.
+    /// This type over another scalar.
     type Over<U: Real>: OfScalars<Scalar = U, Over<Self::Scalar> = Self>;
 
     /// Every scalar replaced by its image, always in the same order. Nothing is checked: the result

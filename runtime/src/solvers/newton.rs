@@ -170,7 +170,7 @@ where
         }
     }
 
-    /// The same for a trial step: if it fails, clebsch does not search for a shorter one.
+    /// Like `from_rest`, for a trial step: if it fails, clebsch does not search for a smaller step size.
     #[cold]
     #[must_use]
     pub fn to_try() -> Self {
@@ -484,7 +484,7 @@ where
         self.correct_by::<false>()
     }
 
-    /// The same where the tangent is the derivative along the coordinates of
+    /// Like `correct`, if the tangent is the derivative along the coordinates of
     /// [`Group::retract_from_left`].
     #[inline(always)]
     pub fn correct_from_left(&mut self) -> Progress<G> {

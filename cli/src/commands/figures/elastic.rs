@@ -50,7 +50,7 @@ pub(super) struct Course {
     pub volume: Series,
     /// Angular momentum and circulation, by components along the axes of stretches in space and in the reference.
     pub along: [[Series; 3]; 2],
-    /// The same vectors along fixed axes.
+    /// The vectors along fixed axes.
     pub fixed: [[Series; 3]; 2],
     /// Kinetic energy of the edge that starts at the node, and the stored one at the node.
     pub forward: Series,

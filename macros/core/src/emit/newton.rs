@@ -40,7 +40,7 @@ pub(super) struct Together<'a> {
 pub(super) struct Loop {
     /// The statements that compute the values known at the node.
     pub known: TokenStream,
-    /// The same values as a program with its bindings, for the code after the solution.
+    /// The computed values as a program with its bindings, for the code after the solution.
     pub computed: Option<(schedule::Program, Bindings)>,
     /// An expression that gives the solution or returns an error.
     pub solve: TokenStream,

@@ -147,7 +147,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
         })
     }
 
-    /// The same ensemble, at least `groups` groups of bodies a task of a parallel run.
+    /// This ensemble, with at least `groups` groups of bodies in each task of a parallel run.
     #[cfg(feature = "rayon")]
     #[must_use]
     pub fn with_block(self, groups: usize) -> Self {
@@ -155,7 +155,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
         Self { block, ..self }
     }
 
-    /// The same ensemble on the instruction set named, where it is at hand.
+    /// This ensemble, on the given instruction set if the processor has it.
     #[must_use]
     pub fn with_instructions(self, instructions: InstructionSet) -> Self {
         Self {

@@ -146,7 +146,7 @@ impl Axis {
         })
     }
 
-    /// The same coordinate within the axis, and whether it is mirrored.
+    /// The coordinate mapped into the axis, and whether it is mirrored.
     #[cold]
     #[inline(never)]
     fn returned<T: Real>(&self, along: T) -> Result<(T, bool), Beyond> {
@@ -183,7 +183,7 @@ pub(super) enum Beyond {
 }
 
 impl Beyond {
-    /// The same, said of a particle.
+    /// This error, for the particle `site`.
     #[cold]
     pub(super) fn of(self, site: usize) -> MeshError {
         match self {

@@ -52,7 +52,7 @@ impl<T: Real, const D: usize> Padded<T, D> {
         &self.places
     }
 
-    /// The same, to be summed at, all of them zero.
+    /// All places, set to zero, to be summed into.
     pub fn cleared(&mut self) -> &mut [T] {
         self.places.fill(T::zero());
         &mut self.places

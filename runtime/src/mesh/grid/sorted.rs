@@ -195,7 +195,7 @@ pub(super) struct Rows<'a, T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Rows<'_, T, D> {
-    /// Those of a row.
+    /// The particles of a row.
     #[inline(always)]
     pub fn row(&self, row: usize) -> &[Particle<T, D>] {
         let row = self.particles.get(within(self.ends, row));

@@ -73,7 +73,7 @@ pub fn davenport<T: Real>(c: &Matrix3<T>, v: &Vector3<T>) -> Result<Rotation<T>,
     Err(refuse(c, v, previous))
 }
 
-/// The same by the solver `method`. Every other solver prepares the factor anew.
+/// Like [`davenport`], with the solver `method`. Every other solver prepares the factor anew.
 ///
 /// # Errors
 /// [`Unsolved`]; for other solvers also if the matrix is not a left factor.

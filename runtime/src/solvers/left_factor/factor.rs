@@ -96,7 +96,7 @@ impl fmt::Display for LeftFactorError {
 impl std::error::Error for LeftFactorError {}
 
 impl LeftFactorError {
-    /// The same error as a [`ParameterError`] of the parameter `field`.
+    /// Turns this error into a [`ParameterError`] of the parameter `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
         let remedy = match self {

@@ -48,7 +48,7 @@ pub(super) fn nearby_rotation<T: Real, const N: usize>(
         return None;
     }
     let half = T::from_f64(0.5);
-    // Those given are of pairs.
+    // The given reciprocals belong to pairs.
     let mut reciprocals = reciprocals.data.0;
     for (i, x) in d.iter().enumerate() {
         reciprocals[i][i] = half / *x;

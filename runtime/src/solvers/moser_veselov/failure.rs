@@ -129,7 +129,7 @@ impl MoserVeselovError {
         }
     }
 
-    /// The same error with the step size that failed, and the largest that succeeds.
+    /// This error with the failed step size, and the largest step size that succeeds.
     #[cold]
     #[must_use]
     pub fn with_steps(self, h: f64, largest_step: f64) -> Self {
@@ -140,7 +140,7 @@ impl MoserVeselovError {
         }
     }
 
-    /// The same error for a momentum that does not depend on the step: the bound is linear in it.
+    /// This error for a momentum that does not depend on the step size: the bound is linear in the step size.
     #[cold]
     #[must_use]
     pub fn with_linear_step<T: Real>(self, h: T) -> Self {
@@ -148,8 +148,8 @@ impl MoserVeselovError {
         self.with_steps(h, h / self.ratio * INSIDE)
     }
 
-    /// The same error for an edge momentum that depends on the step: searches the largest step of
-    /// every lane, and reports the smallest of them.
+    /// This error for an edge momentum that depends on the step size: searches the largest step size of
+    /// every lane, and reports the smallest of these.
     #[cold]
     #[must_use]
     pub fn with_searched_step<T: Real>(

@@ -241,8 +241,8 @@ impl<T: Real> Free<T> {
         Correction { momentum, attitude }
     }
 
-    /// The same trajectory with its rounding left to gather, so that it can be seen: nothing is put
-    /// back on the quadrics or aligned. The attitude's quaternion keeps its length.
+    /// This trajectory without projection: rounding errors accumulate, so that you can measure them. The
+    /// quaternion of the attitude is still normalised.
     #[must_use]
     pub fn without_projection(self) -> Self {
         Self {
@@ -524,7 +524,7 @@ impl<T: Real> Free<T> {
         Ok(())
     }
 
-    /// The same one by one: for numbers with derivatives, and steps that are each followed by a turn.
+    /// Takes the steps one by one: for numbers with derivatives, and for steps that are each followed by a rotation.
     fn step_many(
         &mut self,
         attitude: &mut Rotation<T>,

@@ -257,7 +257,7 @@ impl<T: Real> Poinsot<T> {
         Matrix3::from_diagonal_element(self.j.trace()) - self.j
     }
 
-    /// The same body in principal axes, with its moments over `unit` known.
+    /// This body in principal axes, with known moments divided by `unit`.
     pub(super) fn in_principal_axes(&self, [x, y, z]: [T; 3]) -> Self {
         self.with_inertia(&Matrix3::from_diagonal(&Vector3::new(x, y, z)))
     }

@@ -199,7 +199,7 @@ mod tests {
         assert_eq!(next([2.9e-2, 8.4e-7]), Next::Correct);
         // A first correction from zero velocity lacks a length to compare with.
         assert_eq!(next([4.7e307, 1.1e-6]), Next::Correct);
-        // Those that fall as far as the residual leave rounding.
+        // Corrections that decrease as much as the residual are not rounding.
         assert_eq!(next([2.9e-2, 1e-14]), Next::CorrectAndEnd);
     }
 

@@ -125,7 +125,7 @@ impl NewtonError {
         self.configurations.get(factor).copied()
     }
 
-    /// The same error with the step size that was refused, the largest that could be made, and the
+    /// This error with the failed step size, the largest step size that succeeds, and the
     /// names of the configurations. `step` makes a step of another size from the same state.
     #[cold]
     #[inline(never)]
@@ -144,7 +144,7 @@ impl NewtonError {
         self.explained_by(h, configurations, &|h| step(h, Search::to_try()))
     }
 
-    /// The same, where `step` makes its own search.
+    /// Like `explained`, if `step` makes its own search.
     #[cold]
     #[inline(never)]
     #[must_use]

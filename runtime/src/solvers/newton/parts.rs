@@ -40,7 +40,7 @@ pub(super) enum Aside {
 }
 
 impl Aside {
-    /// That of a part; `open` where it lacks a scale of its own.
+    /// The value for a part; `open` if the part has no scale of its own.
     pub(super) fn of(self, open: bool) -> f64 {
         match self {
             Self::OfStep if open => OPEN_ASIDE,
@@ -64,7 +64,7 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// Those of a group, of `most` coordinates at most.
+    /// The parts of a group, each of at most `most` coordinates.
     pub(super) fn of_group<T, G: Group<T>>(most: usize) -> Self {
         Self {
             of: (0..G::DIMENSION.min(most)).map(G::part_of).collect(),
@@ -401,7 +401,7 @@ fn are_near<T: Real, G: Group<T>, const D: usize>(
     near || near_beside::<T, G, D>(squares, units, noise)
 }
 
-/// The same if a part moves little compared with others, or by rounding alone.
+/// Like `are_near`, if a part moves little compared with other parts, or only by rounding.
 #[cold]
 #[inline(never)]
 fn near_beside<T: Real, G: Group<T>, const D: usize>(

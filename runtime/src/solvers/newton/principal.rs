@@ -187,7 +187,7 @@ pub struct Equations<'a, G, const D: usize> {
     pub tangent: &'a dyn Fn(&G) -> SMatrix<f64, D, D>,
 }
 
-/// The same with the coordinates of the group.
+/// Equations with the coordinates of the group.
 pub(super) struct OnGroup<'a, G, const D: usize> {
     equations: &'a Equations<'a, G, D>,
     parts: Parts,

@@ -8,8 +8,8 @@ use crate::solvers::moser_veselov::MoserVeselovError;
 use crate::{Real, Rotation, SpatialMomentum};
 
 impl<T: Real> Free<T> {
-    /// The same trajectory, its steps solved by the solver named: at each of them, and the body
-    /// prepared anew, unless it is the one by `kappa`.
+    /// This trajectory, with the solver `method` in every step. Every solver except `kappa` prepares the
+    /// body anew.
     #[must_use]
     pub fn solved_by(self, method: Method) -> Self {
         match method {
