@@ -15,7 +15,7 @@ const ENOUGH: u64 = 8;
 /// A residual below this fraction of one rounding of its terms cannot result from rounding.
 const FAR_BELOW: f64 = 1e-3;
 
-/// Which steps are judged.
+/// The selection of judged steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Which {
     /// A hundred at random, and the last.

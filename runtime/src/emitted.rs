@@ -1,5 +1,5 @@
 //! The names that emitted code uses, in one place: linear algebra, groups, solvers, errors and the
-//! description of a model. Not meant to be written by hand; steppers import it whole.
+//! description of a model. Hand-written code should not use this module; steppers import all of it.
 
 pub use crate::card::{
     Card, Dimension, Field, Invariant, Kind, OpenError, Settings, chosen_solver,
@@ -43,7 +43,7 @@ pub use crate::{ParameterError, StartError, StepCause, StepError};
 pub use nalgebra::{SMatrix, SVector};
 pub use num_traits::{One as _, Zero as _};
 
-/// The inverse of a matrix; all NaN where there is none, so that the step that used it is refused.
+/// The inverse of a matrix; all NaN if there is none, so that the step that uses it fails.
 #[inline]
 #[must_use]
 pub fn inverse_or_nan<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
@@ -213,7 +213,7 @@ pub fn skew_basis<T: Real, const N: usize>(index: usize) -> SMatrix<T, N, N> {
     basis
 }
 
-/// The row and the column of this index, where there are so many.
+/// The row and the column of this index.
 #[inline]
 #[must_use]
 pub fn skew_place(n: usize, index: usize) -> Option<(usize, usize)> {
@@ -248,7 +248,7 @@ pub fn array_basis<T: Real, const R: usize, const C: usize>(index: usize) -> SMa
     SMatrix::from_fn(|i, j| one(C * i + j))
 }
 
-/// Writes the components of a vector to the front of `out`; returns what is left of it.
+/// Writes the components of a vector to the front of `out`; returns the rest.
 #[inline]
 pub fn put_vector<'a, T: Real, const N: usize>(
     out: &'a mut [T],

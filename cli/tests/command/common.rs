@@ -202,7 +202,7 @@ pub fn clebsch<W: Words + ?Sized>(words: &W) -> Done {
     on(SHIPPED.get_or_init(Gallery::shipped), words)
 }
 
-/// The same, which has to succeed.
+/// Runs the command; it must succeed.
 #[track_caller]
 pub fn runs<W: Words + ?Sized>(words: &W) -> Done {
     clebsch(words).succeeds()

@@ -292,7 +292,7 @@ pub fn remember(
     let mut all = Vec::new();
     unfit(numbers(unfit(found.values.first())?, &mut all))?;
     let (node, first) = (unfit(count(&node))?, unfit(first_count(places))?);
-    // The state has gone on by one node.
+    // The state has advanced by one node.
     let node = node - (first - 1);
     let is_noted = with_newest_cut(|cut| {
         let solved = &mut cut.solved;

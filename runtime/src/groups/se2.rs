@@ -1,5 +1,5 @@
-//! Rigid motions of the plane, the group SE(2), and the momenta they carry.
-//! Takes rotations and translations or homogeneous matrices; gives motions body -> plane.
+//! Rigid motions of the plane, the group SE(2), and their momenta. Takes rotations and translations
+//! or homogeneous matrices; gives motions body -> plane.
 
 use super::placed::{added, between};
 use super::se3::NotARigidMotion;
@@ -17,7 +17,7 @@ use nalgebra::{Matrix2, Matrix3, SVector, Vector2};
 pub struct PlaneMotion<T = f64> {
     /// `R`, body -> plane.
     pub rotation: Orthogonal<2, T>,
-    /// `x`, where the body's origin is in the plane.
+    /// `x`, the position of the body's origin in the plane.
     pub translation: Vector2<T>,
 }
 
@@ -32,7 +32,7 @@ fn quarter<T: Real>(v: &Vector2<T>) -> Vector2<T> {
 }
 
 impl<T: Real> PlaneMotion<T> {
-    /// The motion that leaves everything where it is.
+    /// The identity.
     #[inline]
     pub fn identity() -> Self {
         Self {
@@ -41,7 +41,7 @@ impl<T: Real> PlaneMotion<T> {
         }
     }
 
-    /// The turn by an angle about the origin of the plane, then the translation.
+    /// The rotation by an angle about the origin of the plane, followed by the translation.
     #[inline]
     pub fn new(angle: T, translation: Vector2<T>) -> Self {
         let (sine, cosine) = (angle.sin(), angle.cos());
@@ -110,7 +110,7 @@ impl<T: Real> Group<T> for PlaneMotion<T> {
 
     super::own_operations!();
 
-    /// `(R^T R', R^T (x' - x))`: two places near each other are subtracted before anything is rounded
+    /// `(R^T R', R^T (x' - x))`: nearby positions are subtracted first, so the result is not rounded
     /// to their distance from the origin.
     #[inline]
     fn body_velocity(&self, next: &Self) -> Self {

@@ -1,5 +1,5 @@
-//! Rigid motions of space, the group SE(3), and the momenta they carry.
-//! Takes rotations and translations or homogeneous matrices; gives motions body -> space.
+//! Rigid motions of space, the group SE(3), and their momenta. Takes rotations and translations or
+//! homogeneous matrices; gives motions body -> space.
 
 use super::placed::{added, between};
 use super::{
@@ -19,7 +19,7 @@ use nalgebra::{Matrix4, SVector, Vector3};
 pub struct RigidMotion<T = f64> {
     /// `R`, body -> space.
     pub rotation: Rotation<T>,
-    /// `x`, where the body's origin is in space.
+    /// `x`, the position of the body's origin in space.
     pub translation: Vector3<T>,
 }
 
@@ -36,7 +36,7 @@ pub enum NotARigidMotion {
     Rotation(NotARotation),
     /// Its last row is not `(0, ..., 0, 1)`, or its last column is not finite.
     LastRow {
-        /// By how much an entry differs at most.
+        /// The largest deviation of an entry.
         defect: f64,
     },
 }

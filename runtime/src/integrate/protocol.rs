@@ -214,7 +214,7 @@ macro_rules! stepper_part {
         /// As `start`, with steps of this order: see [`Order`]($crate::solvers::moser_veselov::Order).
         ///
         /// # Errors
-        /// As `start`; also for what this size or scalar does not have.
+        /// As `start`; also if this size or scalar does not support the order.
         pub fn start_with(
             &self,
             initial: $initial<$($size,)* $T>,
@@ -227,7 +227,7 @@ macro_rules! stepper_part {
     (@started solver [$($size:ident)*] $initial:ident $state:ident $work:ident $T:ident) => {
         $crate::stepper_part! { @solver }
 
-        /// As `start`, with the solver named.
+        /// As `start`, with the given solver.
         ///
         /// # Errors
         /// As `start`; also for what this size or scalar does not have.

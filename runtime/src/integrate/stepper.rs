@@ -15,7 +15,7 @@ pub trait Stepper {
     /// A workspace for steps of `h`, of either sign, from `state`.
     ///
     /// # Errors
-    /// When the first step could not be made.
+    /// If the first step fails.
     fn workspace(
         &self,
         state: &Self::State,
@@ -25,7 +25,7 @@ pub trait Stepper {
     /// One step, in place.
     ///
     /// # Errors
-    /// When it cannot be solved; the state is then unchanged.
+    /// If the step cannot be solved; the state is then unchanged.
     fn advance(
         &self,
         state: &mut Self::State,

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 pub struct Threads(pub usize);
 
 #[cfg(feature = "rayon")]
-/// Fewest sites that a thread is given: with fewer, waking it costs more than it saves.
+/// The least number of sites for a thread; with fewer, waking the thread costs more than it saves.
 const FEWEST: usize = 2048;
 
 impl Threads {

@@ -357,7 +357,7 @@ impl<T: Real> Free<T> {
         }
     }
 
-    /// A step from a state that has been put there, or by another solver, which knows no other.
+    /// A step from a state that another function has set, or a step with another solver, which always starts from the state.
     #[cold]
     #[inline(never)]
     fn elsewhere(

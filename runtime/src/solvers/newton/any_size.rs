@@ -340,7 +340,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         search.age = 0;
     }
 
-    /// Whether the residual is wanted: not at the last trial, whose rest alone is.
+    /// Whether the residual is needed: at the last trial, only its rest is.
     #[must_use]
     pub fn wants_residual(&self) -> bool {
         self.found.is_none()

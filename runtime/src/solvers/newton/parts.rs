@@ -26,8 +26,8 @@ const STEP_WAY: f64 = 2.0;
 /// A part that moves little is measured by this share of the part that moves most.
 const ASIDE: f64 = 0.05;
 
-/// The same of a part without a scale of its own, in a step judged by one correction: its equations may vary over any
-/// length, also over that by which it moves little.
+/// Like `ASIDE`, for a part without a scale of its own in a step judged by one correction: its equations may vary
+/// over any length, even a short one.
 const OPEN_ASIDE: f64 = 1e-3;
 
 /// By which share of the part that moves most others are measured.
@@ -109,7 +109,7 @@ impl Parts {
         units
     }
 
-    /// The same without lists of its own.
+    /// Borrows these kinds, without lists of its own.
     pub(super) fn kinds(&self) -> Kinds<'_> {
         Kinds {
             size: self.dimension(),

@@ -102,7 +102,7 @@ pub(super) trait Curve {
     /// The velocity of rest.
     fn rest(&self) -> Self::Velocity;
 
-    /// A velocity moved by coordinates.
+    /// The velocity `from`, displaced by `coordinates`.
     fn moved(&self, from: &Self::Velocity, coordinates: &[f64]) -> Self::Velocity;
 
     /// The lengths of the coordinates of `to` seen from `from`.

@@ -173,7 +173,7 @@ pub(super) fn ended<C: Curve>(
         }
         before = size;
     }
-    // NaN is not near.
+    // The comparison is false for NaN.
     let solved = before <= enough;
     if !solved {
         return Err(WORSE);
@@ -271,7 +271,7 @@ fn on_the_way<C: Curve>(
     [left, steepest]
 }
 
-/// The same between two looks, where the equations are rough.
+/// Like `on_the_way`, between two looks, if the equations are rough.
 fn left_between(
     off: &dyn Fn(f64) -> Reals,
     judges: &Judges<'_>,
