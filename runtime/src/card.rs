@@ -301,12 +301,12 @@ impl Card {
         if self.preprocessed && compensated {
             format!(
                 "order {order} by modified moments, compensated: Poisson in the momentum; \
-                 symplectic with the attitude up to terms of h^11"
+                 symplectic in momentum and attitude up to terms of h^11"
             )
         } else if self.preprocessed {
             format!(
-                "order {order} by modified moments: Poisson in the momentum; symplectic with the \
-                 attitude only up to the error of a step"
+                "order {order} by modified moments: Poisson in the momentum; symplectic in momentum \
+                 and attitude only up to the error of a step"
             )
         } else {
             let stages = CompositionOrder::of_number(order).map_or(1, |o| o.factors().len());

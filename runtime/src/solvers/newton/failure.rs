@@ -55,11 +55,11 @@ pub struct NewtonError {
     pub lane: u8,
     /// The configurations of the model, in their order.
     pub(crate) configurations: &'static &'static [&'static str],
-    /// Whether the step was only tried.
+    /// Whether the step was only a trial.
     pub(crate) tried: bool,
 }
 
-/// Where the names are not known.
+/// Used if the names are not known.
 const NO_NAMES: &[&str] = &[];
 
 impl NewtonError {
@@ -254,7 +254,7 @@ impl<T: Real, G, const D: usize, W: Group<T>, const E: usize> Newton<'_, T, G, D
 where
     G: Group<T> + Found<W>,
 {
-    /// Another attempt, or what was wrong with the last.
+    /// Another attempt, or the error of the last one.
     #[cold]
     #[inline(never)]
     pub(super) fn failed(&mut self) -> Progress<G> {

@@ -9,7 +9,7 @@ use crate::linalg::Reals;
 use crate::scalar::{Real, larger};
 use nalgebra::SVector;
 
-/// Where nothing turns, angles of this size count as a course.
+/// If nothing turns, angles of this size set the scale.
 const LITTLE: f64 = 1e-6;
 
 /// Pure numbers count as a course of this size at most: a quarter of a turn, or three times a length.
@@ -19,8 +19,8 @@ const TURN: f64 = 2.0;
 /// so near, all of them beyond 90 degrees.
 const STEP_TURN: f64 = 1.5;
 
-/// In a step judged by one correction, translations of a body count as so many of its units at most: beside a long way
-/// any error would be small.
+/// In a step judged by one correction, translations of a body count as so many of its units at most: compared with a
+/// long displacement, any error would be small.
 const STEP_WAY: f64 = 2.0;
 
 /// A part that moves little is measured by this share of the part that moves most.
@@ -59,7 +59,7 @@ pub struct Parts {
     pub of: Vec<usize>,
     /// Whether the coordinates of each part are pure numbers.
     pub pure: Vec<bool>,
-    /// Whether they lack a scale of their own.
+    /// Whether the coordinates of each part lack a scale of their own.
     pub open: Vec<bool>,
 }
 
@@ -73,7 +73,7 @@ impl Parts {
         }
     }
 
-    /// How many coordinates there are.
+    /// The number of coordinates.
     #[must_use]
     pub fn dimension(&self) -> usize {
         self.of.len()
@@ -309,7 +309,7 @@ fn most_of_step(part: usize, units: &[f64], pure: impl Fn(usize) -> bool) -> f64
 fn is_near([way, off]: [f64; 2], most: f64, turns: bool) -> bool {
     let most = most * most;
     let counted = if way > most { most } else { way };
-    // NaN is not near.
+    // The comparison is false for NaN.
     off <= FALLS * FALLS * counted && !(turns && way > most)
 }
 

@@ -21,11 +21,11 @@ pub struct QuaternionError {
     pub largest_step: Option<f64>,
     /// Index (0, 1, 2) of the momentum component of largest `|h N_i| / I_ii`.
     pub component: usize,
-    /// The lane all this is about. 0 for types without lanes.
+    /// The lane of these numbers. 0 for types without lanes.
     pub lane: u32,
 }
 
-/// The step offered is this little inside the bound, where the root is double.
+/// The suggested step size is inside the bound by this relative margin, where the root is double.
 const INSIDE: f64 = 1.0 - 1e-10;
 
 impl QuaternionError {
