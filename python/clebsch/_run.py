@@ -47,12 +47,28 @@ class Invariant(NamedTuple):
     verdict: str
 
 
+class _Finished:
+    """The answers of a `Running` after its last step, as plain values: what a pickled run keeps of it."""
+
+    _ASKED = ("arrays", "case", "columns", "fields", "halvings", "outcomes", "stated", "summary", "warnings")
+
+    def __init__(self, running: _clebsch.Running | _Finished) -> None:
+        self._answers = {name: getattr(running, name)() for name in self._ASKED}
+
+    def __getattr__(self, name: str) -> Any:
+        answers = self.__dict__.get("_answers", {})
+        if name not in answers:
+            raise AttributeError(name)
+        return lambda: answers[name]
+
+
 class Run:
     """The results of a run.
 
     ``run["q"]`` is the array of the quantity `q`: its first index is the sample, the others are those of the quantity. The names
     and shapes are those of ``trajectory.npz``, which the command writes: the observables under their names, the invariants with
-    ``invariant_`` before theirs, which may be left out. Arrays are views on the same memory where that is possible.
+    ``invariant_`` before theirs, which may be left out. Arrays are views on the same memory where that is possible. A run can be
+    pickled.
 
     Attributes
     ----------
@@ -81,6 +97,9 @@ class Run:
         self._known_case: dict[str, Any] | None = None
         self._known_outcomes: list[dict[str, Any]] | None = None
         self._observed = {name: np.asarray(values) for name, values in observed.items()}
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_running": _Finished(self._running)}
 
     # Arrays.
 

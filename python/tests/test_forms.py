@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 from shared import top_values
@@ -29,6 +31,18 @@ def test_data_sets(top):
     assert rod["Lambda"].dims == ("time", "site_40", "row_3", "column_3")
     assert rod["phi"].dims == ("time", "site_40", "component_3")
     assert rod["sites_of_phi"].dims == ("site_40",)
+
+
+@pytest.mark.parametrize("name", ["heavy-top", "toda-chain"])
+def test_pickled_runs(name):
+    run = cl.load(name).run(steps=5, observe={"double_time": lambda s: 2 * s.t})
+    again = pickle.loads(pickle.dumps(pickle.loads(pickle.dumps(run))))
+    assert repr(again) == repr(run) and again.keys() == run.keys() and again.stated == run.stated
+    for key in run.keys():
+        np.testing.assert_array_equal(again[key], run[key])
+    for key, values in run.initial.items():
+        np.testing.assert_array_equal(again.initial[key], values)
+    assert again.drift.keys() == run.drift.keys() and again.to_pandas().shape == run.to_pandas().shape
 
 
 @pytest.mark.parametrize("name", ["heavy-top", "kepler", "toda-chain", "kirchhoff-rod", "particle-mesh-1d", "ellipsoid-spatial"])

@@ -83,11 +83,11 @@ fn first_sentence(doc: &str) -> String {
 
 /// The documentation of a model's text; empty if the text does not parse.
 fn documentation(text: &str) -> String {
-    let model = pipeline::parse_source(text);
-    model.map_or_else(
-        |_| String::new(),
-        |model| model.docs.join("\n").trim().to_owned(),
-    )
+    let Ok(model) = pipeline::parse_source(text) else {
+        return String::new();
+    };
+    let lines: Vec<&str> = model.docs.iter().map(|line| line.trim()).collect();
+    lines.join("\n").trim().to_owned()
 }
 
 /// Lists the cases of one model with their descriptions.

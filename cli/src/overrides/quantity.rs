@@ -289,7 +289,7 @@ fn entries(
     Ok(match field.kind {
         Kind::Rotation | Kind::RigidMotion => {
             return Err(format!(
-                "you cannot vary single entries of `{name}`: it would no longer be {}",
+                "you cannot vary single entries of `{name}`: it would no longer be a {}",
                 if field.kind == Kind::Rotation {
                     "rotation"
                 } else {

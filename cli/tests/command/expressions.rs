@@ -59,7 +59,7 @@ fn what_has_no_value_is_told_at_its_key() {
         steps = "10*k"       | steps = "10.2*k"      | steps: must be a whole number, at least 1, found 20.4
         "k - 1"              | "k -"                 | initial.x: "k -":
         energy = "1/k"       | energy = "-k"         | bounds.energy: a bound must not be negative, found -2
-        a = [0, 0, "sin(0)"] | a = { csv = "a.csv" } | an array of a file is { npz =
+        a = [0, 0, "sin(0)"] | a = { csv = "a.csv" } | write an array of a file as { npz =
 "#,
     ) {
         let text = case(PARAMETERS);

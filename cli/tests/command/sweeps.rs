@@ -174,7 +174,7 @@ fn wrong_axes_are_named() {
         ("h=a", "`a` is not a number"),
         ("h=1:2", "three parts"),
         ("h=1:2:0", "give 1 to"),
-        ("Lambda.11=1", "no rotation any more"),
+        ("Lambda.11=1", "it would no longer be a rotation"),
         ("h=0:1:1000000", ""),
     ] {
         let more: &[&str] = match says {

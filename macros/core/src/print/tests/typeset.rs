@@ -129,7 +129,7 @@ fn wrong_names_are_refused() {
         (r#""x_{}}""#, "do not match"),
         (r#""\\{x""#, "is neither a symbol nor a space"),
         (r#""\\lamda""#, "did you mean `\\lambda`?"),
-        (r#""μ""#, "in LaTeX `\\mu`"),
+        (r#""μ""#, "write `\\mu`"),
         (r#""ж""#, "which LaTeX cannot print"),
         (r#""x\\\\y""#, "is neither a symbol nor a space"),
     ] {
