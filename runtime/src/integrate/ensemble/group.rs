@@ -55,7 +55,7 @@ struct Single<M: Model<Scalar = f64>> {
 
 impl<M: Model<Scalar = f64>, const N: usize> Group<M, N> {
     /// The group of these bodies, the first of which has the index `first`; empty lanes repeat the
-    /// last body. `None` if there are no bodies.
+    /// last body. `None` if the list is empty.
     pub(super) fn start(
         bodies: &[Body<M>],
         first: usize,

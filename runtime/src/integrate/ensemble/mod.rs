@@ -175,7 +175,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
         self.bodies == 0
     }
 
-    /// The parameters and the state of a body; `None` if there is no body with that index.
+    /// The parameters and the state of a body; `None` if the index is out of range.
     #[must_use]
     pub fn body(&self, index: usize) -> Option<(M::Parameters, M::State)> {
         if index >= self.bodies {

@@ -53,7 +53,7 @@ pub struct AnySearch<C: Chart> {
     work: Work<C::Element>,
 }
 
-/// What one step works with, kept so that the next one does not allocate.
+/// The buffers of one step, kept so that the next step does not allocate.
 #[derive(Clone, Debug, Default)]
 struct Work<E> {
     trial: E,

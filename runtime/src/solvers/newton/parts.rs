@@ -40,7 +40,7 @@ pub(super) enum Aside {
 }
 
 impl Aside {
-    /// The value for a part; `open` if the part has no scale of its own.
+    /// The value for a part; `open` if the part lacks a scale of its own.
     pub(super) fn of(self, open: bool) -> f64 {
         match self {
             Self::OfStep if open => OPEN_ASIDE,
