@@ -20,7 +20,7 @@ pub struct Here {
     pub index: i64,
     /// Whether the index is the last node, where a segment is the last one.
     pub at_last: bool,
-    /// The node at which something is carried from the stored to the varied configuration.
+    /// The node at which quantities are advected from the stored to the varied configuration.
     pub carried: Option<usize>,
 }
 
@@ -54,7 +54,7 @@ impl Here {
         }
     }
 
-    /// Where the parts of an expression are evaluated that is evaluated here.
+    /// The positions at which the parts of this expression are evaluated.
     #[must_use]
     pub fn within(self, e: &Expression) -> Self {
         match &e.kind {
@@ -163,7 +163,7 @@ impl Scene<'_> {
         sum.ok_or_else(|| "an empty sum".to_owned())
     }
 
-    /// A product from the right where a vector ends it, which is less work and less rounding.
+    /// Evaluates a product that ends in a vector from the right, which needs less work and causes less rounding.
     fn product(&self, list: &[Expression], here: Here) -> Evaluated {
         let mut values = Vec::with_capacity(list.len());
         for f in list {

@@ -97,7 +97,7 @@ impl Expression {
         }
     }
 
-    /// The same, to be changed.
+    /// Like `parts`, by mutable reference.
     fn parts_mut(&mut self) -> Vec<&mut Self> {
         match &mut self.kind {
             Kind::Number(..) | Kind::Constant(_) | Kind::Name(_) => Vec::new(),
@@ -112,7 +112,7 @@ impl Expression {
         }
     }
 
-    /// Visits it and everything in it.
+    /// Visits the expression and all its parts.
     pub fn each(&self, visit: &mut dyn FnMut(&Self)) {
         visit(self);
         for part in self.parts() {
@@ -127,7 +127,7 @@ impl Expression {
         found
     }
 
-    /// Puts what `of` gives in the place of parts, larger ones first; into what is put in it does not look.
+    /// Replaces parts by the values of `of`, larger parts first; it does not search the replacements.
     pub fn replace(&mut self, of: &dyn Fn(&Self) -> Option<Self>) {
         match of(self) {
             Some(put) => *self = put,

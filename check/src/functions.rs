@@ -1,9 +1,9 @@
-//! Functions of one number, with first and second derivative. Takes a name and a number; gives the value, or nothing if
+//! Functions of one number, with first and second derivative. Takes a name and a number; gives the value, or `None` if
 //! the function is unknown.
 
 use crate::number::Number;
 
-/// Roundings of a function of the standard library, at most.
+/// The largest number of roundings of a function of the standard library.
 const ROUNDINGS: f64 = 4.0;
 
 /// The function of this name.
@@ -47,7 +47,7 @@ fn sign(v: f64) -> f64 {
     }
 }
 
-/// Where the argument may have either sign the derivative may be either.
+/// If the argument may have either sign, so may the derivative.
 fn unknown_side(x: &Number, out: &mut Number, jump: f64) {
     if x.error > 0.0 && x.value.abs() <= x.error {
         out.slopes = x.slopes.clone();

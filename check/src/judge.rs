@@ -15,8 +15,8 @@ use std::borrow::Cow;
 /// Roundings of the terms of an equation that a solver may leave, in addition to the rounding of the evaluation.
 const LEFT_BY_SOLVERS: f64 = 8.0;
 
-/// The same for constraints. A search for multipliers ends when corrections are at most 32 double roundings of the
-/// terms.
+/// Like `LEFT_BY_SOLVERS`, for constraints. A search for multipliers ends when corrections are at most 32 double
+/// roundings of the terms.
 pub const LEFT_OF_WHAT_IS_HELD: f64 = 128.0;
 
 /// Products of numbers larger than this may overflow.
@@ -118,7 +118,7 @@ impl Judged {
         self
     }
 
-    /// The same with a further equation, if it is worse than the others.
+    /// Takes another equation if its residual is larger than the residuals so far.
     fn take(&mut self, part: Part) {
         let worse = |a: &Part, b: &Part| a.ratio().is_nan() || b.ratio() <= a.ratio();
         if !self.worst.as_ref().is_some_and(|w| worse(w, &part)) {
@@ -171,13 +171,13 @@ impl Judge {
             false => Cow::Owned(self.setup.clone().with_step(self.setup.h * share)),
         };
         let parts = self.parts_of(&setup, step, before, after)?;
-        // Where terms overflow nothing is measured.
+        // If terms overflow, nothing is measured.
         let mut numbers = before.iter().chain(after).map(|x| x.abs());
         let is_large = |x: f64| (LARGE..f64::INFINITY).contains(&x);
         if numbers.any(is_large) && parts.iter().any(|p| p.ratio().is_nan()) {
             return Err("terms of the action exceed the largest double".to_owned());
         }
-        // Where nothing moves, every step repeats the same zeros.
+        // If nothing moves, every step repeats the same zeros.
         let is_still = before == after;
         let tested = parts.iter().filter(|p| p.tests() && !is_still);
         let mut out = Judged {
@@ -253,7 +253,7 @@ impl Judge {
         Ok(out)
     }
 
-    /// How far an element of a group of rotations is from one.
+    /// The distance of a matrix or quaternion from the group of rotations.
     fn orthonormal(&self, m: &Moving<'_>, numbers: &[f64], node: usize) -> Option<Part> {
         let q = self.stated.quantities.get(m.name)?;
         let Role::Element(group, _) = &q.role else {
@@ -272,7 +272,7 @@ impl Judge {
         })
     }
 
-    /// The momentum of a configuration at a node, and how uncertain its components are.
+    /// The momentum of a configuration at a node, with the uncertainty of its components.
     fn momentum(&self, m: &Moving<'_>, node: &[f64]) -> Result<Momentum, String> {
         let missing = || format!("the momentum of `{}` is not observed", m.name);
         let q = self.stated.quantities.get(m.name).ok_or_else(missing)?;

@@ -233,7 +233,7 @@ mod tests {
         let of_space = [0.0, -1.0, 0.0, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0];
         assert!(off(&body.expect("it fits"), &of_body) < 1e-15);
         assert!(off(&space.expect("it fits"), &of_space) < 1e-15);
-        // A quaternion goes half of the angle.
+        // A quaternion contains half of the angle.
         let one = [1.0, 0.0, 0.0, 0.0];
         let found = moved(&role(Group::Quaternion), &one, &third, 2.0).expect("it fits");
         let half = std::f64::consts::FRAC_1_SQRT_2;

@@ -1,5 +1,5 @@
-//! Numbers with derivatives, each with a bound on what rounding has done to it (Higham, Accuracy and Stability, section 3.3).
-//! Takes values with their uncertainty; gives sums, products and quotients of them.
+//! Numbers with derivatives, each with a bound on its rounding error (Higham, Accuracy and Stability, section 3.3). Takes
+//! values with their uncertainty; gives sums, products and quotients of them.
 
 /// Half the distance from 1 to the next double: the relative error of one rounding.
 pub const UNIT: f64 = f64::EPSILON / 2.0;
@@ -31,7 +31,7 @@ pub struct Number {
     pub slopes: Vec<Slope>,
 }
 
-/// The rounding of a sum: none where a part is zero.
+/// The rounding of a sum: zero if a part is zero.
 fn of_sum(a: f64, b: f64) -> f64 {
     match a == 0.0 || b == 0.0 {
         true => 0.0,
@@ -39,7 +39,7 @@ fn of_sum(a: f64, b: f64) -> f64 {
     }
 }
 
-/// The rounding of a product: none where a factor is zero or one.
+/// The rounding of a product: zero if a factor is zero or one.
 fn of_product(a: f64, b: f64) -> f64 {
     match a == 0.0 || b == 0.0 || a.abs() == 1.0 || b.abs() == 1.0 {
         true => 0.0,
@@ -47,7 +47,7 @@ fn of_product(a: f64, b: f64) -> f64 {
     }
 }
 
-/// Bounds are computed with rounding too: this much more covers it.
+/// This factor covers the rounding of the bounds themselves.
 const SLACK: f64 = 1.0 + 1e-13;
 
 /// A product of two inexact numbers, and a bound on its error.
@@ -114,7 +114,7 @@ impl Number {
         (self.value, self.error)
     }
 
-    /// The same without derivatives.
+    /// This number without derivatives.
     #[must_use]
     pub fn constant(&self) -> Self {
         Self::within(self.value, self.error)

@@ -6,7 +6,7 @@ use crate::terms::Term;
 use clebsch_core::syntax::ast::NodeRule;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Where a quantity lives along a label.
+/// The kind of sites of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Sites {
     /// At nodes of the chain, or at the members of a set.
@@ -37,7 +37,7 @@ pub enum Role {
     Advected,
 }
 
-/// How a field is kept as numbers.
+/// How a field is stored as numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
     /// Entry by entry.
@@ -78,7 +78,7 @@ pub struct End {
     pub name: String,
     /// Parameters of its own, and whether each is a quaternion.
     pub params: Vec<String>,
-    /// Configurations that are given.
+    /// Prescribed configurations.
     pub given: Vec<String>,
     /// Terms that it adds.
     pub terms: Vec<Term>,
@@ -89,7 +89,7 @@ pub struct End {
 pub struct Hold {
     /// The name of its multiplier.
     pub name: String,
-    /// Left side less right side.
+    /// Left side minus right side.
     pub value: Term,
     /// Whether it constrains sums over sites.
     pub of_sums: bool,
@@ -112,7 +112,7 @@ pub struct Stated {
     pub labels: Vec<String>,
     /// The terms of the Lagrangian.
     pub terms: Vec<Term>,
-    /// By what the typed Lagrangian is divided.
+    /// The divisor of the Lagrangian as stated.
     pub scale: Option<Expression>,
     /// The node rule.
     pub rule: NodeRule,

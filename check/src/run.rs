@@ -15,7 +15,7 @@ const ENOUGH: u64 = 8;
 /// A residual below this fraction of one rounding of its terms cannot result from rounding.
 const FAR_BELOW: f64 = 1e-3;
 
-/// Which steps are judged.
+/// The selection of judged steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Which {
     /// A hundred at random, and the last.
@@ -132,7 +132,7 @@ impl Verdict {
         !self.is_broken() && !self.is_empty()
     }
 
-    /// The same as numbers, from which it is made again by [`Verdict::of_numbers`].
+    /// The verdict as numbers, from which [`Verdict::of_numbers`] restores it.
     #[must_use]
     #[allow(clippy::cast_precision_loss)]
     pub fn numbers(&self) -> Vec<f64> {

@@ -99,7 +99,7 @@ impl<'a> Scene<'a> {
     /// It is not known here.
     pub fn name(&self, n: &str, here: Here) -> Evaluated {
         if n == self.stated.step {
-            // Nothing takes time between the stored and the varied configuration.
+            // No time passes between the stored and the varied configuration.
             return Ok(Value::number(Number::exact(match here.carried {
                 None => self.setup.h,
                 Some(_) => 0.0,
@@ -238,7 +238,7 @@ impl<'a> Scene<'a> {
         velocities.any(|velocity| update.has(velocity))
     }
 
-    /// The velocity of the edge, by the stated constraint, or that from the stored to the varied configuration.
+    /// The velocity of the edge by the stated constraint, or the velocity from the stored to the varied configuration.
     fn velocity(&self, q: &'a Quantity, site: Option<usize>, here: Here) -> Evaluated {
         let Role::Element(group, side) = &q.role else {
             return Err(format!("`{}` has no velocity", q.name));

@@ -70,7 +70,7 @@ impl Setup {
         out
     }
 
-    /// The same with steps of `h`.
+    /// This setup with steps of size `h`.
     #[must_use]
     pub fn with_step(self, h: f64) -> Self {
         Self { h, ..self }

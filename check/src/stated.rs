@@ -13,7 +13,7 @@ impl Stated {
     /// Reads a model.
     ///
     /// # Errors
-    /// What of it cannot be judged.
+    /// The part of the model that cannot be judged.
     pub fn read(model: &Model, sizes: &[(String, usize)]) -> Result<Self, String> {
         let mut out = Self {
             quantities: BTreeMap::new(),

@@ -1,5 +1,5 @@
 //! The terms of a Lagrangian: over which sites each is summed, and whether it lives on the edge or at one node in time.
-//! Takes an expression with definitions put in; gives its terms.
+//! Takes an expression with substituted definitions; gives its terms.
 
 use crate::expression::{Expression, Kind};
 use crate::stated::{Role, Sites, Stated};
@@ -320,7 +320,7 @@ impl<'a> Terms<'a> {
         moving
     }
 
-    /// Summands with each that is another one a step later, the other way, added to that one.
+    /// Combines each summand with the negative summand that equals it one step later.
     fn joined(&self, terms: Vec<Expression>) -> Vec<Expression> {
         let mut left: Vec<Option<Expression>> = terms.into_iter().map(Some).collect();
         let mut out = Vec::new();

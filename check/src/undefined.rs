@@ -19,7 +19,7 @@ use std::fmt;
 pub struct Undefined {
     /// The index along the label and the site, of a part that belongs to a site.
     pub site: Option<(String, i64)>,
-    /// The part as a statement would have it.
+    /// The part, as text of the model.
     pub part: String,
     /// Its value, or `None` if only its derivative is infinite or undefined.
     pub value: Option<f64>,
@@ -127,7 +127,8 @@ fn fault(scene: &Scene<'_>, e: &Expression, here: Here) -> Option<Fault> {
     infinite.then_some(Fault::Slope)
 }
 
-/// Whether it is a root of what moves and is zero: its derivative is infinite, though the slopes of zero may vanish too.
+/// Whether it is a root of a moving expression that is zero: the derivative is infinite, even if the derivative of the
+/// expression vanishes.
 fn root_of_zero(scene: &Scene<'_>, e: &Expression, here: Here) -> Option<Fault> {
     let argument = match &e.kind {
         Kind::Call(f, list) if f == "sqrt" => list.first()?,

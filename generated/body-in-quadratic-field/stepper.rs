@@ -28,7 +28,7 @@ impl<T: Real> BodyInQuadraticField<T> {
     ///
     /// # Errors
     /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is no admissible factor of the equation to solve.
+    /// assumption, or is not an admissible factor of the equation to solve.
     pub fn new(
         parameters: BodyInQuadraticFieldParameters<T>,
     ) -> Result<Self, ParameterError> {
@@ -55,7 +55,7 @@ pub struct BodyInQuadraticFieldInitial<T = f64> {
     /// `Γ` at node 0.
     pub Γ: SVector<T, 3>,
 }
-/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+/// The state at one node, which can be compared and saved. The momentum is stored in the space frame, advected quantities as their values at the identity, so that rounding errors do not accumulate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyInQuadraticFieldState<T = f64> {
     Λ: Rotation<T>,
@@ -77,7 +77,7 @@ impl<T: Real> BodyInQuadraticFieldState<T> {
         self.momentum.to_body(&self.Λ)
     }
 }
-/// The step, the solver's name, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
+/// The step, the solver's name, and the momentum of the edge that begins at the state `here`. Any other state needs a new one.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyInQuadraticFieldWorkspace<T = f64> {
     h: T,
@@ -162,11 +162,11 @@ impl<T: Real> BodyInQuadraticField<T> {
 pub struct BodyInQuadraticFieldConfiguration<T = f64> {
     /// `Λ` at the node: body -> space.
     pub Λ: Rotation<T>,
-    /// `Γ` at the node, as its constraint carries it.
+    /// `Γ` at the node, evolved by its constraint.
     pub Γ: SVector<T, 3>,
 }
 impl<T: Real> BodyInQuadraticField<T> {
-    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// The residual of the discrete Euler-Lagrange equations at the middle of three
     /// consecutive configurations: component `i` is the derivative of the action of the
     /// two edges when the middle element is rotated about its axis `i` (a body axis on
     /// the body side, a space axis on the spatial side). Zero on solutions.

@@ -34,7 +34,7 @@ impl<T: Real> BodyInTwoFields<T> {
     ///
     /// # Errors
     /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is no admissible factor of the equation to solve.
+    /// assumption, or is not an admissible factor of the equation to solve.
     pub fn new(
         parameters: BodyInTwoFieldsParameters<T>,
     ) -> Result<Self, ParameterError> {
@@ -61,7 +61,7 @@ pub struct BodyInTwoFieldsInitial<T = f64> {
     /// Momentum at node 0, in the body frame.
     pub body_momentum: BodyMomentum<T>,
 }
-/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+/// The state at one node, which can be compared and saved. The momentum is stored in the space frame, advected quantities as their values at the identity, so that rounding errors do not accumulate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyInTwoFieldsState<T = f64> {
     Λ: Rotation<T>,
@@ -82,7 +82,7 @@ impl<T: Real> BodyInTwoFieldsState<T> {
         self.momentum.to_body(&self.Λ)
     }
 }
-/// The step, the solver's name, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
+/// The step, the solver's name, and the momentum of the edge that begins at the state `here`. Any other state needs a new one.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyInTwoFieldsWorkspace<T = f64> {
     h: T,
@@ -158,7 +158,7 @@ pub struct BodyInTwoFieldsConfiguration<T = f64> {
     pub Λ: Rotation<T>,
 }
 impl<T: Real> BodyInTwoFields<T> {
-    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// The residual of the discrete Euler-Lagrange equations at the middle of three
     /// consecutive configurations: component `i` is the derivative of the action of the
     /// two edges when the middle element is rotated about its axis `i` (a body axis on
     /// the body side, a space axis on the spatial side). Zero on solutions.

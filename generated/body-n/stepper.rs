@@ -18,7 +18,7 @@ pub struct BodyN<const N: usize, T = f64> {
     method: Method,
 }
 impl<const N: usize, T: Real> BodyN<N, T> {
-    /// Sizes the model does not admit do not build.
+    /// Sizes that the model does not admit do not compile.
     const ADMITTED: () = {
         ::core::assert!(3 <= N && N <= 8, "`n` ranges from 3 to 8 in this model");
     };
@@ -30,7 +30,7 @@ impl<const N: usize, T: Real> BodyN<N, T> {
     ///
     /// # Errors
     /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is no admissible factor of the equation to solve.
+    /// assumption, or is not an admissible factor of the equation to solve.
     pub fn new(parameters: BodyNParameters<N, T>) -> Result<Self, ParameterError> {
         let () = Self::ADMITTED;
         validate::finite_entries("C", &parameters.C)?;
@@ -51,7 +51,7 @@ pub struct BodyNInitial<const N: usize, T = f64> {
     /// Momentum at node 0, in the body frame.
     pub body_momentum: BodyMomentumMatrix<N, T>,
 }
-/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+/// The state at one node, which can be compared and saved. The momentum is stored in the space frame, advected quantities as their values at the identity, so that rounding errors do not accumulate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyNState<const N: usize, T = f64> {
     Λ: Orthogonal<N, T>,
@@ -93,7 +93,7 @@ impl<const N: usize, T: Real> BodyN<N, T> {
             node: 0,
         })
     }
-    /// What steps of `h` from `state` begin with.
+    /// The data with which steps of size `h` from `state` begin.
     fn prepared(
         &self,
         _: &BodyNState<N, T>,
@@ -103,7 +103,7 @@ impl<const N: usize, T: Real> BodyN<N, T> {
         let method = choice.unwrap_or(self.method);
         Ok(BodyNWorkspace { h, method })
     }
-    /// One step, in place. Solved thus: C is constant: Newton's method on the Lie algebra.
+    /// One step, in place. Method: C is constant: Newton's method on the Lie algebra.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -134,7 +134,7 @@ impl<const N: usize, T: Real> BodyN<N, T> {
     fn edge_momentum(&self, state: &BodyNState<N, T>, h: T) -> SMatrix<T, N, N> {
         state.momentum.to_body(&state.Λ).0
     }
-    /// Says how far the step is beyond the bound, and which step could be solved.
+    /// Reports how far the step exceeds the bound, and a step size that succeeds.
     #[cold]
     fn refused(
         &self,
@@ -168,7 +168,7 @@ pub struct BodyNConfiguration<const N: usize, T = f64> {
     pub Λ: Orthogonal<N, T>,
 }
 impl<const N: usize, T: Real> BodyN<N, T> {
-    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// The residual of the discrete Euler-Lagrange equations at the middle of three
     /// consecutive configurations: components are derivatives of the action of the two edges
     /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
     /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix

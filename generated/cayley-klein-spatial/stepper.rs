@@ -24,7 +24,7 @@ impl<T: Real> CayleyKleinSpatial<T> {
     ///
     /// # Errors
     /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is no admissible factor of the equation to solve.
+    /// assumption, or is not an admissible factor of the equation to solve.
     pub fn new(
         parameters: CayleyKleinSpatialParameters<T>,
     ) -> Result<Self, ParameterError> {
@@ -42,7 +42,7 @@ pub struct CayleyKleinSpatialInitial<T = f64> {
     /// `I` at node 0.
     pub I: SMatrix<T, 3, 3>,
 }
-/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+/// The state at one node, which can be compared and saved. The momentum is stored in the space frame, advected quantities as their values at the identity, so that rounding errors do not accumulate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CayleyKleinSpatialState<T = f64> {
     q: UnitQuaternion<T>,
@@ -64,7 +64,7 @@ impl<T: Real> CayleyKleinSpatialState<T> {
         self.momentum.to_body(&self.q)
     }
 }
-/// The step and the momentum of the edge that begins at the state `here`. Made anew for any other state.
+/// The step and the momentum of the edge that begins at the state `here`. Any other state needs a new one.
 #[derive(Clone, Copy, Debug)]
 pub struct CayleyKleinSpatialWorkspace<T = f64> {
     h: T,
@@ -93,7 +93,7 @@ impl<T: Real> CayleyKleinSpatial<T> {
             node: 0,
         })
     }
-    /// What steps of `h` from `state` begin with.
+    /// The data with which steps of size `h` from `state` begin.
     fn prepared(
         &self,
         state: &CayleyKleinSpatialState<T>,
@@ -117,7 +117,7 @@ impl<T: Real> CayleyKleinSpatial<T> {
         let I = state.I;
         QuaternionBody::new("I_k - c Id", I - SMatrix::<T, 3, 3>::identity() * c, c)
     }
-    /// One step, in place. Solved thus: A is carried by the motion, constant in the body, and symmetric, β constant: one equation for one number a step.
+    /// One step, in place. Method: A is carried by the motion, constant in the body, and symmetric, β constant: one equation for one number a step.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -158,7 +158,7 @@ impl<T: Real> CayleyKleinSpatial<T> {
         let space = state.momentum.0;
         Edge::new(state.q.rotation().matrix().tr_mul(&space), space)
     }
-    /// Says how far the step is beyond the bound, and which step could be solved.
+    /// Reports how far the step exceeds the bound, and a step size that succeeds.
     #[cold]
     fn refused(
         &self,
@@ -193,11 +193,11 @@ impl<T: Real> CayleyKleinSpatial<T> {
 pub struct CayleyKleinSpatialConfiguration<T = f64> {
     /// `q` at the node: body -> space.
     pub q: UnitQuaternion<T>,
-    /// `I` at the node, as its constraint carries it.
+    /// `I` at the node, evolved by its constraint.
     pub I: SMatrix<T, 3, 3>,
 }
 impl<T: Real> CayleyKleinSpatial<T> {
-    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// The residual of the discrete Euler-Lagrange equations at the middle of three
     /// consecutive configurations: components are derivatives of the action of the two edges
     /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
     /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix

@@ -28,7 +28,7 @@ impl<T: Real> CayleyKlein<T> {
     ///
     /// # Errors
     /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is no admissible factor of the equation to solve.
+    /// assumption, or is not an admissible factor of the equation to solve.
     pub fn new(parameters: CayleyKleinParameters<T>) -> Result<Self, ParameterError> {
         validate::finite_entries("I", &parameters.I)?;
         validate::diagonal("I", &parameters.I)?;
@@ -50,7 +50,7 @@ pub struct CayleyKleinInitial<T = f64> {
     /// Momentum at node 0, in the body frame.
     pub body_momentum: BodyMomentum<T>,
 }
-/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+/// The state at one node, which can be compared and saved. The momentum is stored in the space frame, advected quantities as their values at the identity, so that rounding errors do not accumulate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CayleyKleinState<T = f64> {
     q: UnitQuaternion<T>,
@@ -71,7 +71,7 @@ impl<T: Real> CayleyKleinState<T> {
         self.momentum.to_body(&self.q)
     }
 }
-/// The step and the momentum of the edge that begins at the state `here`. Made anew for any other state.
+/// The step and the momentum of the edge that begins at the state `here`. Any other state needs a new one.
 #[derive(Clone, Copy, Debug)]
 pub struct CayleyKleinWorkspace<T = f64> {
     h: T,
@@ -79,7 +79,7 @@ pub struct CayleyKleinWorkspace<T = f64> {
     here: CayleyKleinState<T>,
 }
 impl<T: Real> CayleyKlein<T> {
-    /// What steps of `h` from `state` begin with.
+    /// The data with which steps of size `h` from `state` begin.
     fn prepared(
         &self,
         state: &CayleyKleinState<T>,
@@ -92,7 +92,7 @@ impl<T: Real> CayleyKlein<T> {
             here: *state,
         })
     }
-    /// One step, in place. Solved thus: A is constant and symmetric, β constant: one equation for one number a step.
+    /// One step, in place. Method: A is constant and symmetric, β constant: one equation for one number a step.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -123,7 +123,7 @@ impl<T: Real> CayleyKlein<T> {
         let turn = state.q.rotation().matrix();
         Edge::new(turn.tr_mul(&state.momentum.0), state.momentum.0)
     }
-    /// Says how far the step is beyond the bound, and which step could be solved.
+    /// Reports how far the step exceeds the bound, and a step size that succeeds.
     #[cold]
     fn refused(
         &self,
@@ -154,7 +154,7 @@ pub struct CayleyKleinConfiguration<T = f64> {
     pub q: UnitQuaternion<T>,
 }
 impl<T: Real> CayleyKlein<T> {
-    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// The residual of the discrete Euler-Lagrange equations at the middle of three
     /// consecutive configurations: components are derivatives of the action of the two edges
     /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
     /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix

@@ -30,7 +30,7 @@ impl<T: Real> ChargedParticle<T> {
     ///
     /// # Errors
     /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is no admissible factor of the equation to solve.
+    /// assumption, or is not an admissible factor of the equation to solve.
     pub fn new(
         parameters: ChargedParticleParameters<T>,
     ) -> Result<Self, ParameterError> {
@@ -49,7 +49,7 @@ pub struct ChargedParticleInitial<T = f64> {
     /// Its momentum at node 0.
     pub momentum: FieldMomentum<3, 1, T>,
 }
-/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate. Places and their momenta are kept in two numbers, the rest below the rounding of the other.
+/// The state at one node, which can be compared and saved. The momentum is stored in the space frame, advected quantities as their values at the identity, so that rounding errors do not accumulate. Positions and their momenta are stored as two numbers, the second below the rounding of the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChargedParticleState<T = f64> {
     X: Additive<3, 1, T>,
@@ -74,7 +74,7 @@ pub struct ChargedParticleWorkspace<T = f64> {
     h: T,
 }
 impl<T: Real> ChargedParticle<T> {
-    /// What steps of `h` from `state` begin with.
+    /// The data with which steps of size `h` from `state` begin.
     fn prepared(
         &self,
         _: &ChargedParticleState<T>,
@@ -83,7 +83,7 @@ impl<T: Real> ChargedParticle<T> {
     ) -> Result<ChargedParticleWorkspace<T>, StartError> {
         Ok(ChargedParticleWorkspace { h })
     }
-    /// One step, in place. Solved thus: the balance is linear: one small linear system.
+    /// One step, in place. Method: the balance is linear: one small linear system.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -143,7 +143,7 @@ pub struct ChargedParticleConfiguration<T = f64> {
     pub X: Additive<3, 1, T>,
 }
 impl<T: Real> ChargedParticle<T> {
-    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// The residual of the discrete Euler-Lagrange equations at the middle of three
     /// consecutive configurations: components are derivatives of the action of the two edges
     /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
     /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
@@ -210,7 +210,7 @@ impl<T: Real> ChargedParticle<T> {
         T::from_f64(0.5) * m * ΔX_matrix.dot(&ΔX_matrix) / (h * h)
             - T::from_f64(0.5) * q * E.dot(&X) - T::from_f64(0.5) * q * E.dot(&X_next)
     }
-    /// The state after a step of `h` that is tried, or none.
+    /// The state after a trial step of size `h`; `None` if it fails.
     #[cold]
     fn attempt(
         &self,

@@ -32,7 +32,7 @@ impl<T: Real> CoupledBodies<T> {
     ///
     /// # Errors
     /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is no admissible factor of the equation to solve.
+    /// assumption, or is not an admissible factor of the equation to solve.
     pub fn new(parameters: CoupledBodiesParameters<T>) -> Result<Self, ParameterError> {
         validate::finite_entries("J1", &parameters.J1)?;
         validate::symmetric("J1", &parameters.J1)?;
@@ -56,7 +56,7 @@ pub struct CoupledBodiesInitial<T = f64> {
     /// Momentum at node 0, in the body frame.
     pub body_momentum_Λ2: BodyMomentum<T>,
 }
-/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+/// The state at one node, which can be compared and saved. The momentum is stored in the space frame, advected quantities as their values at the identity, so that rounding errors do not accumulate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoupledBodiesState<T = f64> {
     Λ1: Rotation<T>,
@@ -104,7 +104,7 @@ impl<T: Real> CoupledBodiesWorkspace<T> {
     }
 }
 impl<T: Real> CoupledBodies<T> {
-    /// What steps of `h` from `state` begin with.
+    /// The data with which steps of size `h` from `state` begin.
     fn prepared(
         &self,
         _: &CoupledBodiesState<T>,
@@ -116,7 +116,7 @@ impl<T: Real> CoupledBodies<T> {
             search: newton::Search::from_rest(),
         })
     }
-    /// One step, in place. Solved thus: several velocities are solved together: Newton on the derived residuals.
+    /// One step, in place. Method: several velocities are solved together: Newton on the derived residuals.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -251,8 +251,8 @@ impl<T: Real> CoupledBodies<T> {
         work.search.remember(state.node - 1, &found);
         Ok(())
     }
-    /// The solution to be taken where the one found is not known to be principal, or none was
-    /// found. None where the iteration begins again, at the principal root.
+    /// The solution to use if the iteration has found none, or one that is not known to be principal.
+    /// `None` if the iteration starts again, at the principal root.
     #[cold]
     #[inline(never)]
     fn settled(
@@ -281,7 +281,7 @@ impl<T: Real> CoupledBodies<T> {
         };
         Err(self.refused(state, h, e))
     }
-    /// Says which equation is worst, and which step could be solved.
+    /// Reports the equation with the largest residual, and a step size that succeeds.
     #[cold]
     #[inline(never)]
     fn refused(
@@ -465,7 +465,7 @@ pub struct CoupledBodiesConfiguration<T = f64> {
     pub Λ2: Rotation<T>,
 }
 impl<T: Real> CoupledBodies<T> {
-    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// The residual of the discrete Euler-Lagrange equations at the middle of three
     /// consecutive configurations: component `i` is the derivative of the action of the
     /// two edges when the middle element is rotated about its axis `i` (a body axis on
     /// the body side, a space axis on the spatial side). Zero on solutions.
@@ -603,7 +603,7 @@ impl<T: Real> CoupledBodies<T> {
         -(t1 * eps * d1.dot(&(less_identity(&Ω1_matrix.transpose()) * (R * (t2 * d2)))))
             - t1 * (J1 * less_identity(&Ω1_matrix)).trace() - t1 * (J2 * t2).trace()
     }
-    /// The state after a step of `h` that is tried, or none.
+    /// The state after a trial step of size `h`; `None` if it fails.
     #[cold]
     fn attempt(
         &self,

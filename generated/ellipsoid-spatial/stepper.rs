@@ -28,7 +28,7 @@ pub struct EllipsoidSpatial<const N: usize, T = f64> {
     inverse_1_right: SMatrix<T, N, N>,
 }
 impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
-    /// Sizes the model does not admit do not build.
+    /// Sizes that the model does not admit do not compile.
     const ADMITTED: () = {
         ::core::assert!(2 <= N && N <= 4, "`n` ranges from 2 to 4 in this model");
     };
@@ -40,7 +40,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
     ///
     /// # Errors
     /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is no admissible factor of the equation to solve.
+    /// assumption, or is not an admissible factor of the equation to solve.
     pub fn new(
         parameters: EllipsoidSpatialParameters<N, T>,
     ) -> Result<Self, ParameterError> {
@@ -71,7 +71,7 @@ pub struct EllipsoidSpatialInitial<const N: usize, T = f64> {
     /// Momentum at node 0, in the space frame.
     pub spatial_momentum: SpatialMomentumMatrix<N, T>,
 }
-/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+/// The state at one node, which can be compared and saved. The momentum is stored in the space frame, advected quantities as their values at the identity, so that rounding errors do not accumulate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EllipsoidSpatialState<const N: usize, T = f64> {
     Q: Linear<N, T>,
@@ -98,7 +98,7 @@ pub struct EllipsoidSpatialWorkspace<const N: usize, T = f64> {
     h: T,
 }
 impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
-    /// What steps of `h` from `state` begin with.
+    /// The data with which steps of size `h` from `state` begin.
     fn prepared(
         &self,
         state: &EllipsoidSpatialState<N, T>,
@@ -118,10 +118,10 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         }
         Ok(EllipsoidSpatialWorkspace { h })
     }
-    /// One step, in place. Solved thus: the balance is linear: two small linear systems.
+    /// One step, in place. Method: the balance is linear: two small linear systems.
     ///
     /// # Errors
-    /// When the step cannot be solved, or leaves what the model is defined on, with numbers and
+    /// If the step cannot be solved, or leaves the domain of the model, with numbers and
     /// a remedy; the state is then unchanged.
     #[inline]
     pub fn step(
@@ -144,7 +144,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
             }
         }
     }
-    /// Says what the step met, and which step could be made.
+    /// Reports where the step leaves the domain, and a step size that succeeds.
     #[cold]
     #[inline(never)]
     fn left_domain(
@@ -200,7 +200,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         let _ = (state, h);
         [determinant(&S)]
     }
-    /// One step, in place. Solved thus: the balance is linear: two small linear systems.
+    /// One step, in place. Method: the balance is linear: two small linear systems.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -268,7 +268,7 @@ pub struct EllipsoidSpatialConfiguration<const N: usize, T = f64> {
     pub Q: Linear<N, T>,
 }
 impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
-    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// The residual of the discrete Euler-Lagrange equations at the middle of three
     /// consecutive configurations: components are derivatives of the action of the two edges
     /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
     /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
@@ -405,7 +405,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
                         * (S * (g_matrix.transpose() - SMatrix::<T, N, N>::identity()))))
                     .trace() / (h * h)
     }
-    /// The state after a step of `h` that is tried, or none.
+    /// The state after a trial step of size `h`; `None` if it fails.
     #[cold]
     fn attempt(
         &self,

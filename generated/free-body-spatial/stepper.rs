@@ -25,7 +25,7 @@ impl<T: Real> FreeBodySpatial<T> {
     ///
     /// # Errors
     /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is no admissible factor of the equation to solve.
+    /// assumption, or is not an admissible factor of the equation to solve.
     pub fn new(
         parameters: FreeBodySpatialParameters<T>,
     ) -> Result<Self, ParameterError> {
@@ -45,7 +45,7 @@ pub struct FreeBodySpatialInitial<T = f64> {
     /// `J` at node 0.
     pub J: SMatrix<T, 3, 3>,
 }
-/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+/// The state at one node, which can be compared and saved. The momentum is stored in the space frame, advected quantities as their values at the identity, so that rounding errors do not accumulate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeBodySpatialState<T = f64> {
     Λ: Rotation<T>,
@@ -67,7 +67,7 @@ impl<T: Real> FreeBodySpatialState<T> {
         self.momentum.to_body(&self.Λ)
     }
 }
-/// The step and the constants of the trajectory. Made anew for a state of another body.
+/// The step and the constants of the trajectory. A state of another body needs a new one.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeBodySpatialWorkspace<T = f64> {
     h: T,
@@ -95,7 +95,7 @@ impl<T: Real> FreeBodySpatial<T> {
             node: 0,
         })
     }
-    /// What steps of `h` from `state` begin with.
+    /// The data with which steps of size `h` from `state` begin.
     fn prepared(
         &self,
         state: &FreeBodySpatialState<T>,
@@ -124,7 +124,7 @@ impl<T: Real> FreeBodySpatial<T> {
         let J = state.J;
         Poinsot::new(J).map_err(|e| e.in_field("J_k"))
     }
-    /// One step, in place. Solved thus: C is carried by the motion, constant in the body, and no node term acts, so κ is conserved: solved once, every step explicit.
+    /// One step, in place. Method: C is carried by the motion, constant in the body, and no node term acts, so κ is conserved: solved once, every step explicit.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -173,11 +173,11 @@ impl<T: Real> FreeBodySpatial<T> {
 pub struct FreeBodySpatialConfiguration<T = f64> {
     /// `Λ` at the node: body -> space.
     pub Λ: Rotation<T>,
-    /// `J` at the node, as its constraint carries it.
+    /// `J` at the node, evolved by its constraint.
     pub J: SMatrix<T, 3, 3>,
 }
 impl<T: Real> FreeBodySpatial<T> {
-    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// The residual of the discrete Euler-Lagrange equations at the middle of three
     /// consecutive configurations: component `i` is the derivative of the action of the
     /// two edges when the middle element is rotated about its axis `i` (a body axis on
     /// the body side, a space axis on the spatial side). Zero on solutions.

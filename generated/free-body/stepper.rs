@@ -26,7 +26,7 @@ impl<T: Real> FreeBody<T> {
     ///
     /// # Errors
     /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is no admissible factor of the equation to solve.
+    /// assumption, or is not an admissible factor of the equation to solve.
     pub fn new(parameters: FreeBodyParameters<T>) -> Result<Self, ParameterError> {
         validate::finite_entries("J", &parameters.J)?;
         validate::symmetric("J", &parameters.J)?;
@@ -47,7 +47,7 @@ pub struct FreeBodyInitial<T = f64> {
     /// Momentum at node 0, in the body frame.
     pub body_momentum: BodyMomentum<T>,
 }
-/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+/// The state at one node, which can be compared and saved. The momentum is stored in the space frame, advected quantities as their values at the identity, so that rounding errors do not accumulate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeBodyState<T = f64> {
     Λ: Rotation<T>,
@@ -75,7 +75,7 @@ pub struct FreeBodyWorkspace<T = f64> {
     solver: Free<T>,
 }
 impl<T: Real> FreeBody<T> {
-    /// What steps of `h` from `state` begin with.
+    /// The data with which steps of size `h` from `state` begin.
     fn prepared(
         &self,
         state: &FreeBodyState<T>,
@@ -94,7 +94,7 @@ impl<T: Real> FreeBody<T> {
                 .solved_by(self.method),
         })
     }
-    /// One step, in place. Solved thus: C is constant and no node term acts, so κ is conserved: solved once, every step explicit.
+    /// One step, in place. Method: C is constant and no node term acts, so κ is conserved: solved once, every step explicit.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -129,7 +129,7 @@ pub struct FreeBodyConfiguration<T = f64> {
     pub Λ: Rotation<T>,
 }
 impl<T: Real> FreeBody<T> {
-    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// The residual of the discrete Euler-Lagrange equations at the middle of three
     /// consecutive configurations: component `i` is the derivative of the action of the
     /// two edges when the middle element is rotated about its axis `i` (a body axis on
     /// the body side, a space axis on the spatial side). Zero on solutions.

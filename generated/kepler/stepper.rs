@@ -26,7 +26,7 @@ impl<T: Real> Kepler<T> {
     ///
     /// # Errors
     /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is no admissible factor of the equation to solve.
+    /// assumption, or is not an admissible factor of the equation to solve.
     pub fn new(parameters: KeplerParameters<T>) -> Result<Self, ParameterError> {
         validate::finite("m", &[parameters.m])?;
         validate::finite("k", &[parameters.k])?;
@@ -41,7 +41,7 @@ pub struct KeplerInitial<T = f64> {
     /// Its momentum at node 0.
     pub momentum: FieldMomentum<3, 1, T>,
 }
-/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate. Places and their momenta are kept in two numbers, the rest below the rounding of the other.
+/// The state at one node, which can be compared and saved. The momentum is stored in the space frame, advected quantities as their values at the identity, so that rounding errors do not accumulate. Positions and their momenta are stored as two numbers, the second below the rounding of the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeplerState<T = f64> {
     X: Additive<3, 1, T>,
@@ -66,7 +66,7 @@ pub struct KeplerWorkspace<T = f64> {
     h: T,
 }
 impl<T: Real> Kepler<T> {
-    /// What steps of `h` from `state` begin with.
+    /// The data with which steps of size `h` from `state` begin.
     fn prepared(
         &self,
         state: &KeplerState<T>,
@@ -84,7 +84,7 @@ impl<T: Real> Kepler<T> {
         }
         Ok(KeplerWorkspace { h })
     }
-    /// One step, in place. Solved thus: the balance is linear: one division.
+    /// One step, in place. Method: the balance is linear: one division.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -145,7 +145,7 @@ pub struct KeplerConfiguration<T = f64> {
     pub X: Additive<3, 1, T>,
 }
 impl<T: Real> Kepler<T> {
-    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// The residual of the discrete Euler-Lagrange equations at the middle of three
     /// consecutive configurations: components are derivatives of the action of the two edges
     /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
     /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
@@ -210,7 +210,7 @@ impl<T: Real> Kepler<T> {
             - T::from_f64(0.5) * m * k / X.dot(&X).sqrt()
             - T::from_f64(0.5) * m * k / X_next.dot(&X_next).sqrt()
     }
-    /// The state after a step of `h` that is tried, or none.
+    /// The state after a trial step of size `h`; `None` if it fails.
     #[cold]
     fn attempt(&self, state: &KeplerState<T>, h: T) -> Option<KeplerState<T>> {
         let mut moving = *state;

@@ -33,7 +33,7 @@ impl<T: Real> KirchhoffBody<T> {
     ///
     /// # Errors
     /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is no admissible factor of the equation to solve.
+    /// assumption, or is not an admissible factor of the equation to solve.
     pub fn new(parameters: KirchhoffBodyParameters<T>) -> Result<Self, ParameterError> {
         validate::finite_entries("J", &parameters.J)?;
         validate::symmetric("J", &parameters.J)?;
@@ -55,7 +55,7 @@ pub struct KirchhoffBodyInitial<T = f64> {
     /// Momentum at node 0, in the body frame.
     pub body_momentum: BodyImpulse<T>,
 }
-/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame (of a rigid motion about the body's own origin), advected quantities by their value carried back to the identity, so that roundoff does not accumulate. Places and their momenta are kept in two numbers, the rest below the rounding of the other.
+/// The state at one node, which can be compared and saved. The momentum is stored in the space frame (of a rigid motion about the body's own origin), advected quantities as their values at the identity, so that rounding errors do not accumulate. Positions and their momenta are stored as two numbers, the second below the rounding of the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KirchhoffBodyState<T = f64> {
     G: RigidMotion<T>,
@@ -91,7 +91,7 @@ impl<T: Real> KirchhoffBodyWorkspace<T> {
     }
 }
 impl<T: Real> KirchhoffBody<T> {
-    /// What steps of `h` from `state` begin with.
+    /// The data with which steps of size `h` from `state` begin.
     fn prepared(
         &self,
         _: &KirchhoffBodyState<T>,
@@ -103,7 +103,7 @@ impl<T: Real> KirchhoffBody<T> {
             search: newton::Search::from_rest(),
         })
     }
-    /// One step, in place. Solved thus: the group is not SO(n): Newton on the derived residual.
+    /// One step, in place. Method: the group is not SO(n): Newton on the derived residual.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -278,8 +278,8 @@ impl<T: Real> KirchhoffBody<T> {
         work.search.remember(state.node - 1, &found);
         Ok(())
     }
-    /// The solution to be taken where the one found is not known to be principal, or none was
-    /// found. None where the iteration begins again, at the principal root.
+    /// The solution to use if the iteration has found none, or one that is not known to be principal.
+    /// `None` if the iteration starts again, at the principal root.
     #[cold]
     #[inline(never)]
     fn settled(
@@ -315,7 +315,7 @@ impl<T: Real> KirchhoffBody<T> {
         };
         Err(self.refused(state, h, e))
     }
-    /// Says which equation is worst, and which step could be solved.
+    /// Reports the equation with the largest residual, and a step size that succeeds.
     #[cold]
     #[inline(never)]
     fn refused(
@@ -559,7 +559,7 @@ pub struct KirchhoffBodyConfiguration<T = f64> {
     pub G: RigidMotion<T>,
 }
 impl<T: Real> KirchhoffBody<T> {
-    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// The residual of the discrete Euler-Lagrange equations at the middle of three
     /// consecutive configurations: components are derivatives of the action of the two edges
     /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
     /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
@@ -735,7 +735,7 @@ impl<T: Real> KirchhoffBody<T> {
             + T::from_f64(0.5) * b.dot(&P) + T::from_f64(0.5) * b.dot(&P_next)
             - (J * less_identity(&motion_rotation(&V_matrix))).trace() / (h * h)
     }
-    /// The state after a step of `h` that is tried, or none.
+    /// The state after a trial step of size `h`; `None` if it fails.
     #[cold]
     fn attempt(
         &self,

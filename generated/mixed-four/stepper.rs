@@ -47,7 +47,7 @@ impl<T: Real> MixedFour<T> {
     ///
     /// # Errors
     /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is no admissible factor of the equation to solve.
+    /// assumption, or is not an admissible factor of the equation to solve.
     pub fn new(parameters: MixedFourParameters<T>) -> Result<Self, ParameterError> {
         validate::finite_entries("J", &parameters.J)?;
         validate::symmetric("J", &parameters.J)?;
@@ -94,7 +94,7 @@ pub struct MixedFourInitial<T = f64> {
     /// Its momentum at node 0.
     pub momentum_X: FieldMomentum<3, 1, T>,
 }
-/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame (of a rigid motion about the body's own origin), advected quantities by their value carried back to the identity, so that roundoff does not accumulate. Places and their momenta are kept in two numbers, the rest below the rounding of the other.
+/// The state at one node, which can be compared and saved. The momentum is stored in the space frame (of a rigid motion about the body's own origin), advected quantities as their values at the identity, so that rounding errors do not accumulate. Positions and their momenta are stored as two numbers, the second below the rounding of the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixedFourState<T = f64> {
     R: Rotation<T>,
@@ -166,7 +166,7 @@ pub struct MixedFourWorkspace<T = f64> {
     search_4: newton::Search<T, [Additive<3, 1, T>; 1], 3>,
 }
 impl<T: Real> MixedFour<T> {
-    /// What steps of `h` from `state` begin with.
+    /// The data with which steps of size `h` from `state` begin.
     fn prepared(
         &self,
         _: &MixedFourState<T>,
@@ -190,7 +190,7 @@ impl<T: Real> MixedFour<T> {
             search_4: newton::Search::from_rest(),
         })
     }
-    /// One step, in place. Solved thus: block by block: V, C is constant: Moser-Veselov; W, the group is not SO(n): Newton; Y, A is constant and symmetric, β constant: one equation for one number; ΔX, the balance is not linear in ΔX: Newton.
+    /// One step, in place. Method: block by block: V, C is constant: Moser-Veselov; W, the group is not SO(n): Newton; Y, A is constant and symmetric, β constant: one equation for one number; ΔX, the balance is not linear in ΔX: Newton.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -476,7 +476,7 @@ impl<T: Real> MixedFour<T> {
         work.search_4.remember(state.node - 1, &found_4);
         Ok(())
     }
-    /// Says how far the step is beyond the bound, and which step could be made.
+    /// Reports how far the step exceeds the bound, and a step size that succeeds.
     #[cold]
     #[inline(never)]
     fn refused(
@@ -506,8 +506,8 @@ impl<T: Real> MixedFour<T> {
             );
         StepCause::from(e).at_node(state.node)
     }
-    /// The solution to be taken where the one found is not known to be principal, or none was
-    /// found. None where the iteration begins again, at the principal root.
+    /// The solution to use if the iteration has found none, or one that is not known to be principal.
+    /// `None` if the iteration starts again, at the principal root.
     #[cold]
     #[inline(never)]
     fn settled_2(
@@ -544,7 +544,7 @@ impl<T: Real> MixedFour<T> {
         };
         Err(self.refused_2(state, h, e, method))
     }
-    /// Says which equation is worst, and which step could be solved.
+    /// Reports the equation with the largest residual, and a step size that succeeds.
     #[cold]
     #[inline(never)]
     fn refused_2(
@@ -731,7 +731,7 @@ impl<T: Real> MixedFour<T> {
         }
         Ok(verdict.elsewhere())
     }
-    /// Says how far the step is beyond the bound, and which step could be made.
+    /// Reports how far the step exceeds the bound, and a step size that succeeds.
     #[cold]
     #[inline(never)]
     fn refused_3(
@@ -761,8 +761,8 @@ impl<T: Real> MixedFour<T> {
             );
         StepCause::from(e).at_node(state.node)
     }
-    /// The solution to be taken where the one found is not known to be principal, or none was
-    /// found. None where the iteration begins again, at the principal root.
+    /// The solution to use if the iteration has found none, or one that is not known to be principal.
+    /// `None` if the iteration starts again, at the principal root.
     #[cold]
     #[inline(never)]
     fn settled_4(
@@ -792,7 +792,7 @@ impl<T: Real> MixedFour<T> {
         };
         Err(self.refused_4(state, h, e, method))
     }
-    /// Says which equation is worst, and which step could be solved.
+    /// Reports the equation with the largest residual, and a step size that succeeds.
     #[cold]
     #[inline(never)]
     fn refused_4(
@@ -967,7 +967,7 @@ pub struct MixedFourConfiguration<T = f64> {
     pub X: Additive<3, 1, T>,
 }
 impl<T: Real> MixedFour<T> {
-    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// The residual of the discrete Euler-Lagrange equations at the middle of three
     /// consecutive configurations: components are derivatives of the action of the two edges
     /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
     /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
@@ -1294,7 +1294,7 @@ impl<T: Real> MixedFour<T> {
             - (J * less_identity(&V_matrix)).trace() / (h * h)
             - (A * less_identity(&motion_rotation(&W_matrix))).trace() / (h * h)
     }
-    /// The state after a step of `h` that is tried, or none.
+    /// The state after a trial step of size `h`; `None` if it fails.
     #[cold]
     fn attempt(&self, state: &MixedFourState<T>, h: T) -> Option<MixedFourState<T>> {
         let mut moving = *state;

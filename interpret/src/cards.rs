@@ -22,8 +22,8 @@ type Told = (Card, Vec<Warning>);
 /// Cards by their texts and the chosen sizes or sites, and whether the text has warnings.
 static KNOWN: RwLock<BTreeMap<String, (Card, bool)>> = RwLock::new(BTreeMap::new());
 
-/// The card of a key, which is made once. Places in a text belong to the thread that has read it: if the text has warnings, it
-/// is derived again for them.
+/// The card of a key, computed once. Places in a text belong to the thread that has read it: if the text has warnings, it is
+/// derived again for them.
 fn once(
     key: String,
     make: impl FnOnce(Option<Card>) -> Result<Told, Refused>,
@@ -41,7 +41,7 @@ fn once(
     Ok((card, warnings))
 }
 
-/// Most sites of a label.
+/// The largest number of sites of a label.
 pub const MOST_SITES: usize = 10_000_000;
 
 /// The largest number of segments or sites of a label for which clebsch expands a chain body by body. The work grows
@@ -258,7 +258,7 @@ fn at_sizes(source: &str, sizes: Option<&[usize]>) -> Result<Told, Refused> {
 }
 
 thread_local! {
-    /// The text that this thread derived last: other sizes of a model are of the same program.
+    /// The text that this thread derived last: all sizes of a model share one program.
     static DERIVED: RefCell<Option<(String, Rc<Text>)>> = const { RefCell::new(None) };
 }
 
@@ -276,10 +276,10 @@ fn derived(source: &str) -> Result<Rc<Text>, Refused> {
     Ok(made)
 }
 
-/// A card holds the function that opens its model, and the model its card: the model is put in its place last.
+/// A card contains the function that opens its model, and the model contains its card, so the model is set last.
 const NOT_OPEN: OpenError = OpenError::Solver { offered: &[] };
 
-/// The card of a model that is open from now on; others of its sizes are given by `resize`.
+/// Opens a model and returns its card; `resize` returns its cards of other sizes.
 fn kept(mut model: Opened, resize: impl Fn(&[usize]) -> Option<Told> + Sync + 'static) -> Card {
     let place: &'static OnceLock<Opened> = Box::leak(Box::default());
     let open = move |parameters: &[Vec<f64>], initial: &[Vec<f64>], settings: Settings| {

@@ -1,4 +1,4 @@
-//! The operations of a function, read once: a tree over numbered places. Executing it looks no name up.
+//! The operations of a function, read once: a tree over numbered places. Execution needs no look-up of names.
 
 mod apply;
 mod over;
@@ -29,10 +29,10 @@ pub trait Library: Real {
     /// A function by its name and how many arguments it takes.
     fn native(name: &str, arguments: usize) -> Option<Native<Self>>;
 
-    /// One that changes its first argument, or calls back.
+    /// A function that changes its first argument, or calls back.
     fn special(name: &str) -> Option<Special<Self>>;
 
-    /// A loop over it, of what records the loop.
+    /// A loop, with its recording.
     fn iterate(_recorded: Option<Arc<dyn Iterate<Traced>>>) -> Option<Arc<dyn Iterate<Self>>> {
         None
     }
@@ -48,7 +48,7 @@ impl Library for f64 {
     }
 }
 
-/// Residuals and what they call are measured with their rounding: no solver, no element is moved.
+/// Only residuals and the functions that they call are evaluated with rounding bounds. They call no solver and move no element.
 impl Library for Rounded {
     fn native(name: &str, arguments: usize) -> Option<Native<Self>> {
         crate::library::kernel(name, arguments)
@@ -98,7 +98,7 @@ pub enum Operator {
 /// A function that is called, not inlined at its calls.
 #[derive(Debug)]
 pub struct Routine<T: Real> {
-    /// How many places it needs.
+    /// The number of places that it needs.
     pub places: usize,
     /// Its operations.
     pub body: Code<T>,
@@ -167,7 +167,7 @@ pub enum Code<T: Real> {
     Index(Box<Code<T>>, Vec<Code<T>>),
     /// An operator.
     Binary(Operator, Box<Code<T>>, Box<Code<T>>),
-    /// `&&`, `||`: the second where the first does not settle it.
+    /// `&&`, `||`: evaluates the second operand only if needed.
     Lazy(bool, Box<Code<T>>, Box<Code<T>>),
     /// `-`
     Negative(Box<Code<T>>),
@@ -175,11 +175,11 @@ pub enum Code<T: Real> {
     Not(Box<Code<T>>),
     /// A function of the runtime, with sizes, and its name.
     Call(Native<T>, Vec<Code<T>>, Vec<usize>, Arc<str>),
-    /// One that changes places or calls back.
+    /// A function that changes places or calls back.
     Special(Special<T>, Vec<Code<T>>, Arc<str>),
-    /// A function of the model, its parameters given as expressions; changed ones are put back.
+    /// A function of the model with expressions as arguments; changed arguments are written back.
     Routine(Arc<OnceLock<Routine<T>>>, Vec<Code<T>>),
-    /// A function with parameters at these places, to be called back.
+    /// A callback with parameters at these places.
     Closure(Vec<usize>, Box<Code<T>>),
     /// The loop of Newton's method, or one over sites.
     Iterate(Arc<dyn Iterate<T>>),
@@ -197,11 +197,11 @@ pub enum Code<T: Real> {
     While(Box<Code<T>>, Box<Code<T>>),
     /// `for` over counts, upwards.
     For(usize, Box<Code<T>>, Box<Code<T>>, Box<Code<T>>),
-    /// The same, downwards.
+    /// `for` over counts, downwards.
     Down(usize, Box<Code<T>>, Box<Code<T>>, Box<Code<T>>),
-    /// A value put into places: one, or a tuple of them.
+    /// An assignment of a value to one place, or to a tuple of places.
     Assign(Vec<Code<T>>, Box<Code<T>>),
-    /// A number added to a place.
+    /// Adds a number to a place.
     Increase(Box<Code<T>>, Box<Code<T>>),
     /// A struct. Fields that are not listed come from the base.
     Struct(Arc<Layout>, Vec<(usize, Code<T>)>, Option<Box<Code<T>>>),
@@ -219,7 +219,7 @@ pub enum Code<T: Real> {
     Try(Box<Code<T>>),
 }
 
-/// A value, or why there is none.
+/// A value, or the reason why it is missing.
 pub type Evaluated<T> = Result<Value<T>, Exit<T>>;
 
 const WRONG: &str = "an operation does not support values of these shapes";
@@ -330,7 +330,7 @@ impl<T: Real> Code<T> {
         }
     }
 
-    /// The same, to be changed.
+    /// Like `place`, by mutable reference.
     pub fn place_mut<'a>(&self, places: &'a mut Places<T>) -> Option<&'a mut Value<T>> {
         match self {
             Code::Place(at) => places.get_mut(*at),
@@ -383,7 +383,7 @@ impl<T: Real> Code<T> {
     /// # Errors
     /// [`Exit`] where a function returns from within.
     pub fn run(&self, places: &mut Places<T>) -> Evaluated<T> {
-        // Each kind by itself: together they would need places for the values of all.
+        // One function for each kind: a single function would need a stack frame for the values of all kinds.
         match self {
             Code::Constant(value) => Ok(value.clone()),
             Code::Place(at) => Ok(unfit(places.get(*at))?.clone()),
@@ -521,7 +521,7 @@ impl<T: Real> Code<T> {
         }
     }
 
-    /// Puts a value into a place, or at a site of a list.
+    /// Writes a value to a place, or to a site of a list.
     fn put(&self, value: Value<T>, places: &mut Places<T>) -> Result<(), Exit<T>> {
         if let Some(place) = self.place_mut(places) {
             *place = value;

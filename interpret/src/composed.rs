@@ -1,4 +1,4 @@
-//! Steps of higher order: a model from a file as a composition takes it.
+//! Steps of higher order: adapts a model from a file to compositions.
 
 use crate::code::Places;
 use crate::opened::{Opened, at};
@@ -18,7 +18,7 @@ pub struct Model {
     pub model: Value<f64>,
     /// Any state, as a template for the numbers of a state.
     pub state: Value<f64>,
-    /// The parameters as given, and the step of the whole composition.
+    /// The parameters as given, and the step size of the whole composition.
     pub fixed: Fixed,
 }
 
@@ -30,7 +30,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// Reads or writes what the solver of this step remembers.
+    /// Saves or restores the data that the solver of this step keeps.
     pub fn words(&mut self, words: &mut Words) {
         if let Some(recorded) = &mut self.recorded {
             recorded.write(&mut self.places);
@@ -44,7 +44,7 @@ impl Part {
 }
 
 impl Model {
-    /// Places with a state, for steps of `h`.
+    /// Places with a state, for steps of size `h`.
     fn places(&self, state: &Packed, h: f64) -> Places<f64> {
         let mut places = self.opened.places(self.model.clone());
         let mut here = self.state.clone();

@@ -1,4 +1,4 @@
-//! The card of a model from the constant that is emitted for it.
+//! Builds the card of a model from its emitted constant.
 
 use crate::lower::constant;
 use crate::program::{Program, named};
@@ -14,7 +14,7 @@ pub struct Constants<'a> {
     sizes: &'a BTreeMap<String, usize>,
 }
 
-/// Before a card is given its function.
+/// A placeholder until the card receives its function.
 const NOTHING: Open = &|_, _, _| Err(OpenError::Solver { offered: &[] });
 
 type Fields<'a> = BTreeMap<String, &'a syn::Expr>;
@@ -30,7 +30,7 @@ impl<'a> Constants<'a> {
         self.program.constants.get(&key)
     }
 
-    /// The card; it opens nothing yet.
+    /// The card, without the function that opens its model.
     pub fn card(&self) -> Result<Card, Refused> {
         let read = || {
             let card = fields(self.own("CARD")?)?;

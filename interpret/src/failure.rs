@@ -1,4 +1,4 @@
-//! The errors that steps and starts end with, whatever made them, and their way to the caller.
+//! The errors of starts and steps from all sources, and their conversion for the caller.
 
 use clebsch::domain::Contact;
 use clebsch::emitted::{LeftFactorError, MoserVeselovError, OpenError, QuaternionError, Unsolved};
@@ -39,7 +39,7 @@ pub enum Failure {
     NoReaction(NoReaction),
     /// A step that leaves the domain of the model.
     Contact(Contact),
-    /// An error of the values that open a trajectory.
+    /// An error of the values with which a trajectory is opened.
     Open(OpenError),
     /// A given matrix that is not a rotation.
     Rotation(NotARotation),
@@ -112,7 +112,7 @@ impl Failure {
         }
     }
 
-    /// As the error of a step.
+    /// The error as an error of a step.
     pub fn step(self, node: u64) -> StepError {
         match self {
             Failure::Step(e) => e,
@@ -137,7 +137,7 @@ impl Failure {
         }
     }
 
-    /// As the error of a start.
+    /// The error as an error of a start.
     pub fn start(self) -> StartError {
         match self {
             Failure::Start(e) => e,
@@ -146,7 +146,7 @@ impl Failure {
         }
     }
 
-    /// As the error of opening a trajectory.
+    /// The error as an error of opening a trajectory.
     pub fn open(self) -> OpenError {
         match self {
             Failure::Open(e) => e,
@@ -155,7 +155,7 @@ impl Failure {
         }
     }
 
-    /// The same error, with the name of a field.
+    /// This error, with the name of a field.
     pub fn in_field(self, field: &'static str) -> Self {
         match self {
             Failure::Poinsot(e) => e.in_field(field).into(),

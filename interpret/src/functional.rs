@@ -29,7 +29,7 @@ pub enum Around {
 }
 
 impl Around {
-    /// A domain with a grid, if there is one, and so many particles.
+    /// A domain, with a grid if there is one, and the number of particles.
     pub fn new(extent: Extent, grid: Option<&[usize]>, particles: usize) -> Option<Self> {
         Some(match extent {
             Extent::Line(domain) => Around::Line(Setting {
@@ -45,7 +45,7 @@ impl Around {
         })
     }
 
-    /// How many nodes the grid has.
+    /// The number of nodes of the grid.
     pub fn nodes(&self) -> usize {
         match self {
             Around::Line(setting) => setting.nodes(),
@@ -124,7 +124,7 @@ struct With<F, A> {
     back: Vec<A>,
 }
 
-/// One for a dimension: types of functionals do not say theirs.
+/// A functional for one dimension, which its type does not determine.
 #[derive(Clone)]
 struct In<F, A, const D: usize>(With<F, A>);
 
@@ -155,7 +155,7 @@ where
 
     fn words(&mut self, words: &mut Words) {
         let own: &mut dyn Any = &mut self.0.functional;
-        // Functionals on grids keep nothing that later values depend on.
+        // Functionals on grids keep no data that affect later values.
         if let Some(f) = own.downcast_mut::<mesh::voronoi_area<f64>>() {
             f.words(words);
         } else if let Some(f) = own.downcast_mut::<mesh::second_moment<f64>>() {
@@ -188,7 +188,7 @@ impl<T: Real> fmt::Debug for Held<T> {
 }
 
 impl<T: Real> Held<T> {
-    /// Its values at places, or at the values of another functional.
+    /// Its values at positions, or at the values of another functional.
     pub fn value(&mut self, at: &Column<T>, out: &mut [T]) -> Option<Result<(), MeshError>> {
         self.0.value(at, out)
     }

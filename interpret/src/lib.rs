@@ -31,12 +31,12 @@ pub use cards::{MOST_BODY_BY_BODY, card, card_and_warnings, card_body_by_body, c
 use clebsch_core::Errors;
 use core::fmt;
 
-/// Why a model file is not run.
+/// Why a model file does not run.
 #[derive(Debug)]
 pub enum Refused {
     /// The text is not a valid model, or the model does not have a stepper.
     Model(Errors),
-    /// The model is solved by a method that only built models have.
+    /// The model needs a solver that only compiled models have.
     Method {
         /// The name of the model.
         model: String,
@@ -47,20 +47,20 @@ pub enum Refused {
     Size {
         /// The name of the model.
         model: String,
-        /// Which sizes it has.
+        /// The admitted sizes.
         admitted: String,
     },
-    /// A functional of all sites that the runtime does not supply.
+    /// A functional of all sites that the runtime does not provide.
     Functional {
         /// Its path.
         path: String,
     },
-    /// A model with functionals of all sites that no loops over sites take.
+    /// A model with functionals of all sites that cannot run with loops over sites.
     Form {
         /// Why, in words.
         why: String,
     },
-    /// More sites than a model without loops over sites is run with.
+    /// More sites than a model without loops over sites supports.
     TooLong {
         /// Why the model cannot run with loops over sites.
         why: String,
@@ -69,7 +69,7 @@ pub enum Refused {
         /// The largest number of sites that clebsch expands body by body.
         most: usize,
     },
-    /// More sites than any model is run with.
+    /// More sites than any model supports.
     TooManySites {
         /// The name of the label, and the requested number of sites.
         asked: (String, usize),
@@ -107,7 +107,7 @@ impl fmt::Display for Refused {
                 most,
             } => write!(
                 f,
-                "`{label} = {asked}` is too large for a model file: the limit is `{label} = {most}`, some hundred bytes for \
+                "`{label} = {asked}` is too large for a model file: the limit is `{label} = {most}`, about a hundred bytes for \
                  each site"
             ),
             Self::Functional { path } => write!(
@@ -127,8 +127,8 @@ impl fmt::Display for Refused {
 
 impl std::error::Error for Refused {}
 
-/// A text for as long as the process: cards and errors name fields and parameters without owning them.
-/// A text is read once.
+/// A text that lives as long as the process, because cards and errors borrow the names of fields and
+/// parameters. Each text is stored once.
 fn text(text: &str) -> &'static str {
     Box::leak(text.to_owned().into_boxed_str())
 }

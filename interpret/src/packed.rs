@@ -45,7 +45,7 @@ impl Packed {
         true
     }
 
-    /// The same, counted as another node.
+    /// This state, with its node number set to `node`.
     pub fn counted(self, node: u64) -> Self {
         Packed { node, ..self }
     }

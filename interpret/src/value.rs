@@ -18,13 +18,13 @@ use std::sync::Arc;
 /// The frame a momentum is seen from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Frame {
-    /// That of the body.
+    /// The body frame.
     Body,
-    /// That of space.
+    /// The space frame.
     Spatial,
     /// The axes of space, about the origin of the body.
     Carried,
-    /// That of a field, which has one only.
+    /// The only frame of a field.
     Field,
 }
 
@@ -82,7 +82,7 @@ impl<T: Real> Struct<T> {
         self.values.get(at)
     }
 
-    /// The same, to be changed.
+    /// Like `field`, by mutable reference.
     #[inline]
     pub fn field_mut(&mut self, name: u32) -> Option<&mut Value<T>> {
         let at = self.layout.fields.iter().position(|f| *f == name)?;

@@ -76,7 +76,7 @@ fn own_momentum(chain: &Chain) -> String {
 fn off(chain: &Chain, source: &str, n: usize, action: impl Fn(&[A], &[A]) -> D) -> [f64; 2] {
     let mut line = started(chain, source, n, H);
     let mut momentum = Vec::new();
-    // The data of the start are arbitrary: any state will do.
+    // The initial data are arbitrary.
     let three: Vec<Vec<A>> = (0..3)
         .map(|node| {
             line.step().expect("steps");
@@ -333,7 +333,7 @@ fn ten_thousand_sites_are_run() {
     }
 }
 
-/// Why data are refused.
+/// Why data are rejected.
 fn refused(chain: &Chain, change: impl Fn(&str, &mut Vec<f64>)) -> String {
     let model = read(chain.source);
     let nodes = chain.nodes(50);

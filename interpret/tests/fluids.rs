@@ -27,7 +27,7 @@ fn source(file: usize) -> &'static str {
     STATEMENTS[file].0
 }
 
-/// So many particles, and nodes if there is a grid.
+/// The number of particles, and of nodes if there is a grid.
 fn choice(source: &str, particles: usize, nodes: usize) -> Choice {
     let model = pipeline::parse_source(source).expect("is a model");
     let lattice = Lattice::read(&model).expect("has labels");
@@ -79,7 +79,7 @@ fn particles(side: usize, speed: f64) -> Data {
     ])
 }
 
-/// Steps both, and compares all that both show.
+/// Steps both, and compares all observables.
 macro_rules! compared {
     ($source:expr, $choice:expr, $data:expr, $model:expr, $initial:expr, [$($name:literal = $values:ident),*], [$($total:ident),*]) => {{
         let (data, model) = ($data, $model);
@@ -112,7 +112,7 @@ macro_rules! compared {
     }};
 }
 
-/// How often particles met walls, of models that have them.
+/// The number of wall reflections, for models with walls.
 trait Reflected {
     fn reflections_or_none(&self) -> u64;
 }

@@ -32,7 +32,7 @@ fn ring(source: &str, numbers: &dyn Fn(&str) -> Option<Vec<f64>>) -> LineTraject
 
 /// An observable at three successive nodes.
 fn three(line: &mut LineTrajectory, name: &str) -> [Vec<f64>; 3] {
-    // The data of the start are arbitrary: any state will do.
+    // The initial data are arbitrary.
     line.step().expect("steps");
     [0, 1, 2].map(|node| {
         if node > 0 {
@@ -115,7 +115,7 @@ fn a_coefficient_of_two_velocities_depends_on_the_places_at_the_start() {
         "{}",
         of_numbers(action, &found)
     );
-    // The same at the end of the step is another action.
+    // The same term at the end of the step gives another action.
     let other: Numbers = |q, to| joined(q, to, |_, _, a, b| (b - a).cos(), 0.4);
     assert!(of_numbers(other, &found) > 1e-6);
     let found = places(&source("cos(next(r))"));

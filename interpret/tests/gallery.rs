@@ -32,7 +32,7 @@ fn served() -> Vec<(Entry, Card)> {
     all
 }
 
-/// A card without what differs: the functions, and sizes that are chosen otherwise.
+/// A card without the parts that differ: functions and chosen sizes.
 fn told(card: &Card) -> String {
     let all = [
         format!(
@@ -128,7 +128,7 @@ fn refusals_are_told_alike() {
             let Some(read) = (card.sized)(&sizes) else {
                 panic!("{} {sizes:?}", card.name);
             };
-            // Steps that are too long, of either kind of start, and values that are none.
+            // Steps that are too long, for both kinds of start, and values that are not numbers.
             for h in [0.0, -1.0, f64::NAN, 10.0 * case.h, 1e3 * case.h, 1e9] {
                 compare(&built, &read, case, Settings::step(h), 20);
             }
@@ -152,7 +152,7 @@ fn refusals_are_told_alike() {
     }
 }
 
-/// More than a table of functions once held, each with its own action.
+/// More functionals than an earlier table could contain, each with its own action.
 #[test]
 fn any_number_of_models_opens_and_a_text_is_read_once() {
     let text = |i: u32| {

@@ -1,4 +1,4 @@
-//! Models with held constraints and functions given by name, built and read: the same bits.
+//! Models with constraints and functions by name: compiled and interpreted steps agree bit for bit.
 
 #![allow(missing_docs)]
 
@@ -9,7 +9,7 @@ use clebsch_models::Case;
 use side_by_side::compare;
 
 clebsch::model! {
-    /// Two masses on rods, one below the other: numbers held, fields of one shape.
+    /// Two masses on rods, one below the other: scalar constraints, fields of one shape.
     pub model Rods {
         param m, M, L, l, g: Real;
         field x, y: Vec<2>;
@@ -22,7 +22,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A fluid ellipsoid: a determinant held, an integral given by name.
+    /// A fluid ellipsoid: a constrained determinant, and an integral by name.
     pub model Fluid {
         param I0: Sym<3>;
         param M: Real;
@@ -36,7 +36,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// The same with the matrix as its argument.
+    /// The ellipsoid with the matrix as the argument.
     pub model Drop {
         param I0: Sym<3>;
         param M: Real;
@@ -48,7 +48,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A joint: a vector held, a field and a rotation, and a field beside them that nothing holds.
+    /// A joint: a vector constraint on a field and a rotation, and an unconstrained field.
     pub model Hung {
         param J: Sym<3>;
         param m, k: Real;
@@ -64,7 +64,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// Linear maps stated in space, their shape held.
+    /// Linear maps stated in space, with constrained shape.
     pub model Shape {
         param C0, I0: Sym<3>;
         param k: Real;
@@ -78,7 +78,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A matrix that is held to be a rotation.
+    /// A matrix that is constrained to be a rotation.
     pub model Matrices {
         param J: Sym<3>;
         field Q: Mat<3>;
@@ -88,7 +88,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// The body that it then is.
+    /// The equivalent body.
     pub model Turning {
         param J: Sym<3>;
         group Q: SO<3> velocity W;
@@ -112,7 +112,7 @@ fn case(h: f64, parameters: &[&[f64]], initial: &[&[f64]]) -> Case {
 
 const ONE: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
 
-/// Plain steps, composed ones, longer ones until they are refused, data off the constraints.
+/// Plain steps, composed steps, longer steps until they fail, and data that violate the constraints.
 fn both(built: &Card, case: &Case) {
     let read = clebsch_interpret::card(built.source).expect("is read");
     let made = compare(built, &read, case, Settings::step(case.h), case.steps);

@@ -63,7 +63,7 @@ fn totals_about_what_ends_hold_equal_the_compiled_ones_and_those_of_bodies() {
     }
 }
 
-/// The order of composed steps, of places and momenta; and a step that cannot be made leaves the line where it was.
+/// The order of composed steps, for positions and momenta. A failed step leaves the chain unchanged.
 #[test]
 fn composed_steps_have_their_order() {
     let [_, of_held, _] = held::all();
@@ -161,7 +161,7 @@ fn a_wrong_sign_of_what_is_held_is_seen() {
             "dot(V, V)/2 + dot(g, x)",
             "dot(V, V)/2 - dot(g, x)",
         ),
-        // Other beads, the same at the start: the second link of three is held twice as heavily.
+        // Other beads with the same initial values: the constraint of the second of three links has twice the weight.
         (
             held::CHAIN,
             "dot(next(x, i) - x, next(x, i) - x) = a^2",

@@ -163,7 +163,7 @@ fn soliton_error(h: f64, steps: u64) -> f64 {
     }
     let mut after = vec![0.0; read.invariant_count()];
     t.invariants(&mut after);
-    // The energy swings with h squared; the momentum keeps its rounding.
+    // The energy oscillates in proportion to h squared; the momentum stays constant to rounding.
     assert!(
         (after[0] - before[0]).abs() < 0.2 * h * h,
         "{before:?} {after:?}"

@@ -18,7 +18,7 @@ use clebsch_oracle::oracle::dual::{Dual, Number};
 use clebsch_oracle::oracle::points::Source;
 
 clebsch::model! {
-    /// A charge whose invariants hold the step.
+    /// A charge whose invariants contain the step size.
     pub model Slow {
         param m: Real;
         param B: Vec<3>;
@@ -103,7 +103,7 @@ fn observed(card: &Card, trajectory: &dyn Trajectory) -> [Vec<f64>; 2] {
     parted(shown.filter(|(f, _)| given(f)))
 }
 
-/// How far one step from random states is from this action, at most.
+/// The largest deviation of one step from this action, over random states.
 fn off(card: &Card, action: Action) -> f64 {
     let mut source = Source::seeded(20);
     let all = (0..20).map(|_| {
@@ -139,7 +139,7 @@ fn turned(term: &str) -> Card {
     card(&format!("model Turned {{ {TURNED} {term}; }}"))
 }
 
-/// In whatever way the difference is typed.
+/// For each way to write the difference.
 #[test]
 fn a_factor_times_a_difference_is_one_term() {
     let whole: Action = |p, _, q, r| free(p[0], q, r) + of(p[1]) * q[0] * (r[1] - q[1]);
@@ -243,7 +243,7 @@ fn a_power_of_the_step_in_the_momentum_is_run_and_its_invariants_hold() {
     for (card, action) in &all {
         let off = off(card, *action);
         assert!(off < ROUNDING, "{}: {off}", card.source);
-        // Invariants of one step are none of another: no steps of other lengths are composed.
+        // Invariants for one step size are not invariants for another, so steps cannot be composed.
         assert_eq!(
             card.orders.len() > 1,
             card.reversible && !card.source.contains("h^2")

@@ -36,7 +36,7 @@ fn the_site_of_a_wrong_value_is_named() {
     let short = numbers.with("momentum_q", |q| q.truncate(49));
     assert_eq!(started(&short), compiled(&short));
     assert!(started(&short).contains("49 sites"), "{}", started(&short));
-    // A step that is refused: neighbours so far apart that the force is not a number.
+    // A step that fails: neighbours are so far apart that the force is not a number.
     let far = numbers.with("q", |q| q[20] = 1e200);
     assert_eq!(started(&far), compiled(&far));
     // Not at the one before it, which a step spoils too.
@@ -92,7 +92,7 @@ fn every_line_moves_as_its_bodies_do() {
 
 #[test]
 fn a_term_that_is_left_out_is_seen() {
-    // The statement without one of its terms of neighbours, run beside the compiled line that has it.
+    // The statement without one of its coupling terms, compared with the compiled chain that has it.
     let without = [
         (compiled::TODA, " + a*r)", ")"),
         (compiled::TODA, "(a/b)*exp(-b*r) + ", ""),
@@ -120,7 +120,7 @@ fn bodies_whose_velocities_are_joined_run_with_sixty_segments() {
     let case = Case::new(60, None);
     let settings = clebsch::card::Settings::step(case.h);
     let (card, mut line) = beside::opened(own.source, &case, &(own.data)(&case), settings);
-    let told = "one for every number of sites";
+    let told = "one for any number of sites";
     assert!(card.summary.contains(told), "{}", card.summary);
     line.step().expect("steps");
     let mut sums = vec![f64::NAN; card.invariant_count()];

@@ -82,7 +82,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// Four frames in a row, of which three are alike, each bound to the next.
+    /// Four frames in a row, three of them of the same kind, each coupled to the next.
     pub model Alike {
         param J, K: Sym<3>;
         param a, b: Vec<3>;
@@ -117,7 +117,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// Five coordinates found together, not by a linear system.
+    /// Five coordinates that a step solves for together, not by a linear system.
     pub model Five {
         param m, b, k: Real;
         field X: Vec<5>;
@@ -127,8 +127,8 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A rotation of four dimensions and a field of four, ten coordinates found together: each pulls at the
-    /// other's velocity.
+    /// A rotation of four dimensions and a field with four components, with coupled velocities: a step
+    /// solves for ten coordinates together.
     pub model Ten {
         param J: Sym<4>;
         param m, c, k: Real;
@@ -156,8 +156,8 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A turn of the plane beside a rotation of space, both seen from space: the factor of one is constant, that of
-    /// the other known at each node.
+    /// A rotation of the plane and a rotation of space, both in the space frame: the factor of the first is
+    /// constant, the factor of the second is known at each node.
     pub model Turns {
         param j: Real;
         param J: Sym<3>;
@@ -182,7 +182,7 @@ fn case(h: f64, parameters: &[&[f64]], initial: &[&[f64]]) -> Case {
     }
 }
 
-/// Plain and composed steps, longer ones until they are refused, and values that are none.
+/// Plain and composed steps, longer steps until they fail, and values that are not numbers.
 fn both(built: &Card, case: &Case) {
     let read = clebsch_interpret::card(built.source).expect("is read");
     let made = compare(built, &read, case, Settings::step(case.h), case.steps);
@@ -212,7 +212,7 @@ fn fractions_assumptions_and_long_fields() {
         &Nine::CARD,
         &case(0.05, &[&[1.3], &[0.3], &[2.0]], &initial),
     );
-    // Each assumption refuses alike.
+    // Both versions reject each violated assumption alike.
     let read = clebsch_interpret::card(Nine::CARD.source).expect("is read");
     for (k, c, e) in [
         (9.0, 0.3, 2.0),
@@ -258,7 +258,7 @@ fn energies_that_are_not_quadratic() {
     );
 }
 
-/// Decisions before Newton's method come out in many ways: a tape that is not followed leaves the search as it is.
+/// Decisions before Newton's method vary: if a tape does not apply, the search is unchanged.
 #[test]
 fn decisions_before_the_iteration() {
     let parameters: [&[f64]; 5] = [&[1.0], &[2.0], &[1.0], &[0.3], &[1.0]];
@@ -356,7 +356,7 @@ fn twelve_coordinates_by_one_linear_system() {
     both(&Twelve::CARD, &case(0.05, &parameters, &initial));
 }
 
-/// The turn of the plane goes on by the angle of `2 j sin(angle) = h p`, and the body as it does alone.
+/// The rotation of the plane advances by the angle with `2 j sin(angle) = h p`, and the body moves as it does alone.
 #[test]
 fn turns_of_the_plane_beside_rotations_seen_from_space() {
     let inertia = [0.5, 0.1, 0.0, 0.1, 0.7, 0.0, 0.0, 0.0, 0.9];

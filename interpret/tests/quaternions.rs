@@ -41,7 +41,7 @@ fn a_term_that_is_left_out_is_seen() {
     }
 }
 
-/// Attitudes that turn once around a ring: told alike by the built line, the one that is read and its bodies.
+/// Attitudes that turn once around a ring: the compiled chain, the interpreted chain and the expanded bodies give the same error.
 #[test]
 fn an_odd_number_of_turns_around_a_ring_is_told_alike() {
     let [_, own] = quaternions::all();

@@ -1,5 +1,5 @@
-//! Trajectories of the whole gallery, built and read, written down in the middle and made again: they go on to the last
-//! bit as those that were left alone, with the steps of every order that is offered.
+//! Trajectories of the whole gallery, compiled and interpreted, are saved in the middle and restored. They then equal
+//! uninterrupted trajectories bit for bit, for every order.
 
 use clebsch::card::{Card, Settings, Trajectory};
 use clebsch::saved::Words;
@@ -26,7 +26,7 @@ fn steps(trajectory: &mut dyn Trajectory) -> bool {
     (0..STEPS).all(|_| trajectory.step().is_ok())
 }
 
-/// Whether the trajectory could be followed so far; then it must be the same.
+/// Whether the trajectory reached this node; if so, it must be the same.
 fn goes_on_alike(card: &Card, case: &Case, settings: Settings) -> bool {
     let open = || (card.open)(&case.parameters, &case.initial, settings);
     let (Ok(mut whole), Ok(mut again)) = (open(), open()) else {
@@ -41,7 +41,7 @@ fn goes_on_alike(card: &Card, case: &Case, settings: Settings) -> bool {
     let Some(list) = words.into_list() else {
         panic!("{what}: cannot be written down");
     };
-    // One word too few, or too many, is noticed.
+    // One word too few or too many is an error.
     for other in [&list[1..], &[list.as_slice(), &[0]].concat()] {
         let mut words = Words::given(other.to_vec());
         again.words(&mut words);

@@ -214,7 +214,8 @@ class Model:
         solver : str, optional
             The solver of the implicit step, one of ``card["solvers"]``.
         compensated : bool, default False
-            Make steps of order 4, 6 or 8 of a free body symplectic with the attitude.
+            Add a constant rotation about the momentum to each step of order 4, 6 or 8 of a free body. The steps are then
+            symplectic.
         halve : bool, default False
             Retry a failed step as 2, 4, ... substeps. The run is then not symplectic.
         labels : dict, optional

@@ -32,7 +32,7 @@ pub enum Error {
     Parameter(ParameterError),
     /// A trajectory cannot start.
     Start(StartError),
-    /// A step was not made.
+    /// A step failed.
     Step(StepError),
     /// A run stopped before its end.
     Run(RunError),
@@ -44,9 +44,9 @@ pub enum Error {
     Open(OpenError),
     /// A body of an ensemble cannot start.
     EnsembleStart(EnsembleError<StartError>),
-    /// A body of an ensemble cannot go on.
+    /// A body of an ensemble cannot take its next step.
     EnsembleStep(EnsembleError<StepError>),
-    /// A snapshot cannot be taken, read or put back.
+    /// A snapshot cannot be taken, read or restored.
     Snapshot(SnapshotError),
     /// Newton's method finds no principal root.
     Newton(NewtonError),

@@ -84,7 +84,7 @@ pub struct Field {
 }
 
 impl Field {
-    /// The same field with this ASCII name.
+    /// This field, with the ASCII name `ascii`.
     #[must_use]
     pub const fn spelt(self, ascii: &'static str) -> Self {
         Self { ascii, ..self }
@@ -115,7 +115,7 @@ pub struct Invariant {
     pub formula: &'static str,
     /// Number of components.
     pub rows: usize,
-    /// How well it is kept.
+    /// How well it is conserved.
     pub conserved: Conserved,
 }
 
@@ -165,8 +165,8 @@ pub struct Settings {
     pub order: Option<u32>,
     /// The solver of the implicit step, one of [`Card::solvers`]. `None` selects the model's default.
     pub solver: Option<Method>,
-    /// Whether a constant turn about the momentum makes steps with modified moments symplectic with
-    /// the attitude. Available for the orders of [`Settings::COMPENSATED`].
+    /// Whether a constant rotation about the momentum makes steps with modified moments symplectic
+    /// in momentum and attitude. Available for the orders of [`Settings::COMPENSATED`].
     pub compensated: bool,
     /// Whether you only inspect single steps and never continue a run. If so, a model that is read from its text
     /// projects the initial momenta on its constraints, and does not try the first step in advance. Otherwise it
@@ -191,7 +191,7 @@ impl Settings {
         }
     }
 
-    /// The same steps, for inspection only: see [`Settings::inquiry`].
+    /// These steps, for inspection only: see [`Settings::inquiry`].
     #[must_use]
     pub fn to_inquire(self) -> Self {
         Self {
@@ -200,7 +200,7 @@ impl Settings {
         }
     }
 
-    /// The same steps, of the given order.
+    /// These steps, with the given order.
     #[must_use]
     pub fn of_order(self, order: u32) -> Self {
         Self {
@@ -237,7 +237,7 @@ pub type Open = &'static (
 /// admit these sizes.
 pub type Resize = &'static (dyn Fn(&[usize]) -> Option<Card> + Sync);
 
-/// Everything there is to know about a model without knowing its type.
+/// The complete description of a model whose type is hidden.
 #[derive(Clone, Copy)]
 pub struct Card {
     /// The model's name, such as `HeavyTop`.
@@ -258,7 +258,7 @@ pub struct Card {
     pub order: u32,
     /// The orders that you can request, the order of the plain step first.
     pub orders: &'static [u32],
-    /// Whether orders above the plain one come from modified moments; else from composition.
+    /// Whether orders above the plain order come from modified moments; otherwise they come from composition.
     pub preprocessed: bool,
     /// Whether a step with `-h` undoes a step with `h`.
     pub reversible: bool,
@@ -295,18 +295,18 @@ impl fmt::Debug for Card {
 }
 
 impl Card {
-    /// How steps of an order above the plain one are made, and what that costs in structure.
+    /// Describes how steps of an order above the plain order are made, and which structure they lose.
     #[must_use]
     pub fn method_of_order(&self, order: u32, compensated: bool) -> String {
         if self.preprocessed && compensated {
             format!(
                 "order {order} by modified moments, compensated: Poisson in the momentum; \
-                 symplectic with the attitude up to terms of h^11"
+                 symplectic in momentum and attitude up to terms of h^11"
             )
         } else if self.preprocessed {
             format!(
-                "order {order} by modified moments: Poisson in the momentum; symplectic with the \
-                 attitude only up to the error of a step"
+                "order {order} by modified moments: Poisson in the momentum; symplectic in momentum \
+                 and attitude only up to the error of a step"
             )
         } else {
             let stages = CompositionOrder::of_number(order).map_or(1, |o| o.factors().len());
@@ -364,7 +364,7 @@ pub type PartSeen<'a> = dyn FnMut(f64, &[f64], &[f64]) + 'a;
 
 /// A running trajectory whose model type is hidden.
 ///
-/// Slices that are too short are filled as far as they go.
+/// A slice that is too short receives only the first numbers.
 pub trait Trajectory: Send {
     /// The node the state is at; 0 at the start.
     fn node(&self) -> u64;
@@ -398,7 +398,8 @@ pub trait Trajectory: Send {
     fn card(&self) -> &'static Card;
 
     /// A warning if the kinetic energy is not positive definite at the initial state. The trajectory
-    /// runs all the same. If its first step fails, [`OpenError::Kinetic`] carries the warning.
+    /// runs despite the warning. If its first step fails, [`OpenError::Kinetic`] carries the
+    /// warning.
     fn kinetic_warning(&self) -> Option<KineticWarning> {
         None
     }
@@ -479,7 +480,7 @@ pub enum OpenError {
 }
 
 impl OpenError {
-    /// The same error; if the first step failed, with the warning about the kinetic energy.
+    /// Adds the warning about the kinetic energy if the first step failed.
     #[must_use]
     pub fn beside(self, warning: Option<KineticWarning>) -> Self {
         match (self, warning) {

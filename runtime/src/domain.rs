@@ -50,13 +50,13 @@ pub enum Met {
 pub struct Contact {
     /// Why the step left the domain.
     pub met: Met,
-    /// When, as a share of the step from 0 to 1: where the straight line between the nodes meets
-    /// `det = 0`, or the argument interpolated between them its bound. None where the velocity
-    /// itself is outside.
+    /// The time of contact as a share of the step, from 0 to 1: where the straight line between the
+    /// nodes meets `det = 0`, or where the interpolated argument meets its bound. `None` if the
+    /// velocity itself is outside.
     pub share: Option<f64>,
-    /// The step that was refused.
+    /// The size of the failed step.
     pub h: f64,
-    /// How often the step was halved until it was tried and worked; 0 where none was found.
+    /// How often the step was halved before a trial succeeded; 0 if none succeeded.
     pub halvings: u16,
     /// The lane; 0 for types without lanes.
     pub lane: u8,
@@ -91,24 +91,24 @@ impl Contact {
         self.share.map(|s| s * self.h)
     }
 
-    /// A shorter step from the same state that was tried and works, if one was found.
+    /// A smaller step size for which a trial from the same state succeeded, if there is one.
     #[must_use]
     pub fn works(&self) -> Option<f64> {
         (self.halvings > 0).then(|| self.h * 0.5_f64.powi(i32::from(self.halvings)))
     }
 
-    /// The same with a shorter step that `try_step` can make, if halving finds one.
+    /// This contact, with a smaller step size for which `try_step` succeeds, if halving finds one.
     #[cold]
     #[must_use]
     pub fn with_trials<T: Real>(self, h: T, try_step: impl Fn(T) -> bool) -> Self {
-        // Steps a thousand times longer than the way to the contact are not tried.
+        // Step sizes more than a thousand times the distance to the contact are not tried.
         let far = self.share.map_or(0.0, |share| -(1e3 * share).log2());
         let first = if (1.0..1000.0).contains(&far) {
             far as u16
         } else {
             1
         };
-        // A trial that meets the edge looks for no step of its own.
+        // A trial that leaves the domain does not search for a step size itself.
         let found = search_of(|| {
             (first..first + 20).find(|k| try_step(h * T::from_f64(0.5_f64.powi(i32::from(*k)))))
         });
@@ -214,7 +214,7 @@ pub fn invertible<T: Real, const N: usize>(
     closely(configuration, h, T::LANES, lane_of)
 }
 
-/// The same of maps whose size is known when a model is read, given by their matrices.
+/// Like `invertible`, for maps whose size is known only at run time, given by their matrices.
 ///
 /// # Errors
 /// [`Contact`] of the first lane that does not.
@@ -252,8 +252,8 @@ pub fn invertible_of<T: Real>(
     closely(configuration, h, T::LANES, lane_of)
 }
 
-/// The same of a field whose values are square matrices, where a model takes its inverse or the logarithm
-/// of its determinant.
+/// Like `invertible`, for a field of square matrices of which the model takes the inverse or the
+/// logarithm of the determinant.
 ///
 /// # Errors
 /// [`Contact`] of the first lane that does not.
@@ -268,7 +268,7 @@ pub fn field_invertible<T: Real, const N: usize>(
     invertible(field, &linear(before), &linear(after), h)
 }
 
-/// The same lane by lane, by the eigenvalues of the velocity and the singular values of the end.
+/// Tests each lane by the eigenvalues of the velocity and the singular values of the matrix at the end of the step.
 #[cold]
 #[inline(never)]
 fn closely<T: Real, R: Fn() -> f64>(
@@ -284,7 +284,7 @@ fn closely<T: Real, R: Fn() -> f64>(
             return Err(Contact::new(met, Some(share), h, lane));
         }
         let ratio = ratio();
-        // NaN is refused too.
+        // This also rejects NaN.
         let enough = ratio >= LEAST_RATIO;
         if !enough {
             let met = Met::NearlySingular {
@@ -325,7 +325,7 @@ impl fmt::Display for Function {
     }
 }
 
-/// A function of something, as a model writes it.
+/// A function and its argument, as the model writes them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Call {
     /// The function.

@@ -1,5 +1,5 @@
 //! The names that emitted code uses, in one place: linear algebra, groups, solvers, errors and the
-//! description of a model. Not meant to be written by hand; steppers import it whole.
+//! description of a model. Hand-written code should not use this module; steppers import all of it.
 
 pub use crate::card::{
     Card, Dimension, Field, Invariant, Kind, OpenError, Settings, chosen_solver,
@@ -43,7 +43,7 @@ pub use crate::{ParameterError, StartError, StepCause, StepError};
 pub use nalgebra::{SMatrix, SVector};
 pub use num_traits::{One as _, Zero as _};
 
-/// The inverse of a matrix; all NaN where there is none, so that the step that used it is refused.
+/// The inverse of a matrix; all NaN if there is none, so that the step that uses it fails.
 #[inline]
 #[must_use]
 pub fn inverse_or_nan<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
@@ -91,7 +91,7 @@ pub fn spectrum_scales<const N: usize>(m: f64, s: f64) -> impl Iterator<Item = f
     spectrum_scales_of(N, m, s)
 }
 
-/// The same for a size that is known when a model is read.
+/// Like `spectrum_scales`, for a size that is known only at run time.
 pub fn spectrum_scales_of(n: usize, m: f64, s: f64) -> impl Iterator<Item = f64> {
     let power = |x: f64, n: usize| (0..n).fold(1.0, |p, _| p * x);
     crate::linalg::even_degrees(n)
@@ -213,7 +213,7 @@ pub fn skew_basis<T: Real, const N: usize>(index: usize) -> SMatrix<T, N, N> {
     basis
 }
 
-/// The row and the column of this index, where there are so many.
+/// The row and the column of this index.
 #[inline]
 #[must_use]
 pub fn skew_place(n: usize, index: usize) -> Option<(usize, usize)> {
@@ -248,7 +248,7 @@ pub fn array_basis<T: Real, const R: usize, const C: usize>(index: usize) -> SMa
     SMatrix::from_fn(|i, j| one(C * i + j))
 }
 
-/// Writes the components of a vector to the front of `out`; returns what is left of it.
+/// Writes the components of a vector to the front of `out`; returns the rest.
 #[inline]
 pub fn put_vector<'a, T: Real, const N: usize>(
     out: &'a mut [T],
@@ -257,7 +257,7 @@ pub fn put_vector<'a, T: Real, const N: usize>(
     fill(out, N, value.iter().copied())
 }
 
-/// The same for the coordinates of a skew matrix.
+/// Writes the coordinates of a skew matrix to the front of `out`; returns the rest.
 #[inline]
 pub fn put_skew<'a, T: Real, const N: usize>(
     out: &'a mut [T],
@@ -266,7 +266,7 @@ pub fn put_skew<'a, T: Real, const N: usize>(
     fill(out, N * N.saturating_sub(1) / 2, skew_coordinates(value))
 }
 
-/// The same for the entries of a matrix, row by row.
+/// Writes the entries of a matrix, row by row, to the front of `out`; returns the rest.
 #[inline]
 pub fn put_matrix<'a, T: Real, const R: usize, const C: usize>(
     out: &'a mut [T],
@@ -276,7 +276,7 @@ pub fn put_matrix<'a, T: Real, const R: usize, const C: usize>(
     fill(out, R * C, entries)
 }
 
-/// The same for one number.
+/// Writes one number to the front of `out`; returns the rest.
 #[inline]
 pub fn put_number<'a, T: Real>(out: &'a mut [T], value: &T) -> &'a mut [T] {
     fill(out, 1, [*value].into_iter())

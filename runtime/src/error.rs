@@ -76,8 +76,8 @@ pub enum Problem {
         /// The entry.
         value: f64,
     },
-    /// The matrix must be a rotation and is not: either its columns are not orthonormal, or it
-    /// turns left into right.
+    /// The matrix must be a rotation and is not: its columns are not orthonormal, or it is a
+    /// reflection.
     NotOrthogonal {
         /// Largest entry of `A^T A - 1`.
         deviation: f64,
@@ -112,7 +112,7 @@ pub enum Problem {
     OffConstraint {
         /// The constraint as the model writes it.
         equation: &'static str,
-        /// The left side less the right one.
+        /// The left side minus the right side.
         size: f64,
         /// The size of its terms.
         scale: f64,
@@ -272,7 +272,7 @@ impl fmt::Display for ParameterError {
 impl std::error::Error for ParameterError {}
 
 impl PoinsotError {
-    /// The same error as a [`ParameterError`] of the parameter `field`.
+    /// Turns this error into a [`ParameterError`] of the parameter `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
         let remedy = match self {
@@ -297,7 +297,7 @@ impl PoinsotError {
 }
 
 impl NotARotation {
-    /// The same error as a [`ParameterError`] of the initial value `field`.
+    /// Turns this error into a [`ParameterError`] of the initial value `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
         ParameterError {
@@ -309,7 +309,7 @@ impl NotARotation {
 }
 
 impl NotARigidMotion {
-    /// The same error as a [`ParameterError`] of the initial value `field`.
+    /// Turns this error into a [`ParameterError`] of the initial value `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
         match self {
@@ -327,7 +327,7 @@ impl NotARigidMotion {
 }
 
 impl NotInvertible {
-    /// The same error as a [`ParameterError`] of the initial value `field`.
+    /// Turns this error into a [`ParameterError`] of the initial value `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
         ParameterError {
@@ -436,7 +436,7 @@ pub enum StepCause {
         at: Place,
         /// Why.
         cause: &'static StepCause,
-        /// A shorter step that was tried and works, where one was found.
+        /// A smaller step size for which a trial succeeded, if there is one.
         works: Option<f64>,
     },
     /// A functional of all sites, or its derivative, is undefined where the step needs it.

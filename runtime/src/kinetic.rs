@@ -1,6 +1,6 @@
 //! Whether the kinetic energy of a model is positive where a trajectory starts. Takes the matrix of
-//! the quadratic form in all velocities together; gives what to say if it is not positive definite,
-//! with the sign convention, which is the commonest mistake.
+//! the quadratic form in all velocities together; gives a warning if it is not positive definite.
+//! The warning states the sign convention, because a wrong sign is the most common mistake.
 
 use crate::scalar::largest;
 use core::fmt;
@@ -27,17 +27,17 @@ const SWEEPS: usize = 30;
 
 impl KineticWarning {
     /// Judges the leading `count` rows and columns of a symmetric matrix, the Hessian of the kinetic
-    /// energy in the velocities at the identity. Nothing where it is positive definite.
+    /// energy in the velocities at the identity. `None` if it is positive definite.
     #[must_use]
     pub fn of<const N: usize>(form: &SMatrix<f64, N, N>, count: usize) -> Option<Self> {
         Self::of_entries(count.min(N), &|i, j| form[(i, j)])
     }
 
-    /// The same of the entries of a matrix of `n` rows.
+    /// Like `of`, for a matrix of `n` rows given by its entries.
     #[must_use]
     pub fn of_entries(n: usize, form: &dyn Fn(usize, usize) -> f64) -> Option<Self> {
-        // Velocities have units of their own: each is measured by its own energy, or, where that
-        // vanishes, by the largest of its couplings.
+        // Velocities have units of their own: each is scaled by its own energy or, if that
+        // vanishes, by its largest coupling.
         let size = |i: usize| {
             let own = form(i, i).abs();
             let row = largest((0..n).map(|j| form(i, j)));

@@ -13,7 +13,7 @@
 #[cfg_attr(doc, doc = include_str!("../../docs/tutorial.md"))]
 pub mod tutorial {}
 
-/// What clebsch does not support, the largest sizes, and what a run reports.
+/// Unsupported features, the largest sizes, and the output of a run.
 ///
 /// [reference]: crate::language
 ///

@@ -12,7 +12,7 @@ const LONGEST: usize = 1 << 24;
 #[derive(Clone, Debug)]
 pub struct Words {
     list: Vec<u64>,
-    /// The next one to put back; `None` while they are gathered.
+    /// The next word to restore; `None` while words are saved.
     next: Option<usize>,
     fits: bool,
 }

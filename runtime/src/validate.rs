@@ -50,7 +50,7 @@ pub fn finite_entries<T: Real, const R: usize, const C: usize>(
     })
 }
 
-/// The same of a matrix whose size is known when it is read: rows, columns, and its entries.
+/// Tests a matrix whose size is known only at run time, given by rows, columns and entries.
 ///
 /// # Errors
 /// Names the first entry, row by row, that is not finite.
@@ -97,7 +97,7 @@ pub fn symmetric<T: Real, const N: usize>(
     symmetric_of(field, &Dense::of(matrix))
 }
 
-/// The same of a matrix whose size is known when it is read.
+/// Like [`symmetric`], for a matrix whose size is known only at run time.
 ///
 /// # Errors
 /// As [`symmetric`].
@@ -127,7 +127,7 @@ pub fn skew<T: Real, const N: usize>(
     skew_of(field, &Dense::of(matrix))
 }
 
-/// The same of a matrix whose size is known when it is read.
+/// Like [`skew`], for a matrix whose size is known only at run time.
 ///
 /// # Errors
 /// As [`skew`].
@@ -157,7 +157,7 @@ pub fn diagonal<T: Real, const N: usize>(
     diagonal_of(field, &Dense::of(matrix))
 }
 
-/// The same of a matrix whose size is known when it is read.
+/// Like [`diagonal`], for a matrix whose size is known only at run time.
 ///
 /// # Errors
 /// As [`diagonal`].
@@ -192,7 +192,7 @@ pub fn orthogonal<T: Real, const N: usize>(
     orthogonal_of(field, &Dense::of(matrix))
 }
 
-/// The same of a matrix whose size is known when it is read.
+/// Like [`orthogonal`], for a matrix whose size is known only at run time.
 ///
 /// # Errors
 /// As [`orthogonal`].
@@ -293,7 +293,7 @@ pub fn invertible<T: Real, const N: usize>(
     invertible_of(field, &Dense::of(matrix))
 }
 
-/// The same of a matrix whose size is known when it is read.
+/// Like [`invertible`], for a matrix whose size is known only at run time.
 ///
 /// # Errors
 /// As [`invertible`].

@@ -195,7 +195,7 @@ impl Legendre {
     }
 }
 
-/// The same with variables counted from the first.
+/// These variables, numbered from the first.
 fn renumbered<'a>(part: &[Moving<'a>]) -> Vec<Moving<'a>> {
     let mut first = 0;
     let each = part.iter().map(|m| {

@@ -5,10 +5,10 @@ use clebsch_check::{Judge, Judged, Setup, Verdict};
 use clebsch_core::pipeline::parse_source;
 use clebsch_models::{Case, gallery};
 
-/// Steps of each case.
+/// The number of steps of each case.
 const STEPS: u64 = 12;
 
-/// More of them, of longer runs of the test.
+/// The number of steps in longer runs of this test.
 fn steps() -> u64 {
     let asked = std::env::var("CLEBSCH_CHECK_STEPS").ok();
     asked.and_then(|n| n.parse().ok()).unwrap_or(STEPS)
@@ -84,7 +84,7 @@ fn steps_of_the_gallery_hold() {
 /// A part of a millionth, of a number or of its neighbours.
 const WRONG: f64 = 1e-6;
 
-/// The observables that start a run, by their place: elements, momenta of the side of the statement, what is carried.
+/// The observables that start a run, by position: elements, momenta on the stated side, advected quantities.
 fn of_the_state(card: &Card) -> Vec<(Field, usize)> {
     let mut from = 0;
     let mut out = Vec::new();
@@ -187,7 +187,7 @@ fn every_number_of_a_state_that_is_wrong_is_seen() {
     });
 }
 
-/// A constant that an equation has lost: `dot(vee(O), vee(O))` is (3 - tr(O^2))/4, and a number beside it feels the 3.
+/// A constant that an equation may lose: `dot(vee(O), vee(O))` is (3 - tr(O^2))/4, and a number multiplied by it depends on the 3.
 #[test]
 fn a_step_of_a_wrong_equation_is_told() {
     let text = "model Spun {
@@ -234,7 +234,7 @@ fn a_step_of_a_wrong_equation_is_told() {
     assert_eq!(Verdict::of_numbers(&verdict.numbers()).to_string(), said);
 }
 
-/// A check whose residuals are far below rounding shares what it judges with what it is judged by.
+/// If the residuals of a check are far below rounding, the check is not independent of the stepper.
 #[test]
 fn residuals_far_below_rounding_are_a_failure() {
     let mut verdict = Verdict::default();

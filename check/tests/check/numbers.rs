@@ -3,7 +3,7 @@
 
 use clebsch_check::{Number, Slope, UNIT, function};
 
-/// A number of twice the digits.
+/// A number with twice the digits.
 #[derive(Clone, Copy, Debug)]
 struct Wide {
     high: f64,

@@ -28,8 +28,8 @@ pub(super) fn of_a_case(command: Command) -> Command {
         .arg(option(
             "case",
             "NAME|FILE.toml",
-            "Case of the model, or a .toml file. By default the first case of the model, or M.toml for a model file M.clebsch; \
-             for a model file, NAME is the case M/NAME.toml. MODEL:NAME selects the same",
+            "Case of the model, or a .toml file. The default is the first case of the model, or M.toml for a model file \
+             M.clebsch. For a model file, NAME selects the case M/NAME.toml. MODEL:NAME is a short form",
         ))
         .arg(
             option(
@@ -52,7 +52,7 @@ pub(super) fn of_a_case(command: Command) -> Command {
             option(
                 "set",
                 "NAME=VALUE",
-                "Parameter or initial value, which overrides the case: a number, a component, or any value of a case file, \
+                "Parameter or initial value that overrides the case: a number, a component, or any value of a case file, \
                  such as gU.z=0.5, gU=[0,0,1], R.angle=1 or 'R={axis=[0,0,1], angle=1}'; repeatable",
             )
             .action(ArgAction::Append),
@@ -75,8 +75,8 @@ pub(super) fn of_a_case(command: Command) -> Command {
         )
         .arg(flag(
             "compensated",
-            "Make steps of order 4, 6 or 8 of a free body symplectic with the attitude, by a constant rotation about the \
-             momentum",
+            "Add a constant rotation about the momentum to each step of order 4, 6 or 8 of a free body, so that the step is \
+             symplectic in momentum and attitude up to h^11",
         ))
         .arg(option(
             "solver",
@@ -91,7 +91,7 @@ pub(super) fn of_a_case(command: Command) -> Command {
             option(
                 "dim",
                 "N",
-                "Size of the matrices, for a model of any size: selects its first case of that size, or the size of the case \
+                "Size of the matrices, for a model of any size: selects the first case of that size, or sets the size of the case \
                  file",
             )
             .value_parser(positive_count),

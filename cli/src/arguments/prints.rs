@@ -6,7 +6,7 @@ use clap::{Arg, ArgAction, Command, value_parser};
 
 pub(super) fn plot() -> Command {
     Command::new("plot")
-        .about("Plot columns of a finished run, against time or each other")
+        .about("Plot columns of a finished run, against time or against each other")
         .after_help(
             "Examples:\n  clebsch plot out/kepler\n  clebsch plot out/kepler --x X.1 --y X.2\n  \
              clebsch plot out/kepler --y X --y invariant_energy --from 100 --to 120",
@@ -22,8 +22,8 @@ pub(super) fn plot() -> Command {
             option(
                 "x",
                 "NAME",
-                "Column along the horizontal axis, by default time. Give one for all, or one for each --y, such as for the \
-                 orbits of two bodies",
+                "Column along the horizontal axis, by default time. Give one for all --y, or one for each --y, for \
+                 example for the orbits of two bodies",
             )
             .action(ArgAction::Append),
         )
@@ -47,7 +47,7 @@ pub(super) fn plot() -> Command {
 
 pub(super) fn figures() -> Command {
     Command::new("figures")
-        .about("Draw the figures of Dixon's thesis, chapter 2 and the body of chapter 3, from named cases")
+        .about("Draw the figures of Dixon's thesis for chapter 2 and the elastic body of chapter 3, from named cases")
         .after_help("Examples:\n  clebsch figures --out out/figures")
         .arg(
             option(
@@ -74,7 +74,7 @@ pub(super) fn derive() -> Command {
                 .value_name("MODEL|FILE")
                 .required_unless_present("write")
                 .help(
-                    "Model of the gallery, or a file with the text of a model; - for standard input",
+                    "Shipped model, or a file with the text of a model; - for standard input",
                 ),
         )
         .arg(
@@ -90,7 +90,7 @@ pub(super) fn derive() -> Command {
         )
         .arg(flag(
             "explain",
-            "Show the justification of each step of the derivation",
+            "Justify each step of the derivation",
         ))
         .arg(flag(
             "second-proof",
@@ -106,6 +106,6 @@ pub(super) fn derive() -> Command {
         ))
         .arg(flag(
             "write",
-            "Write the derivations of all models of the gallery to generated/",
+            "Write the derivations of all compiled models to generated/",
         ))
 }

@@ -9,7 +9,7 @@ pub(super) fn run() -> Command {
     let checkpoint = option(
         "checkpoint",
         "SECONDS",
-        "Write a checkpoint every so many seconds in a run with --out; --resume continues from it",
+        "Time between two checkpoints of a run with --out; --resume continues from the last checkpoint",
     );
     planned(
         Command::new("run")
@@ -21,8 +21,8 @@ pub(super) fn run() -> Command {
             ),
         "Record every N-th node and the last: check invariants and write samples there. By default at most 10000 nodes are \
          recorded, so that a long run spends little time on this",
-        "Write trajectory.csv, trajectory.npz, run.json and plots into this new folder; if a step fails, they cover the run up \
-         to there",
+        "Write trajectory.csv, trajectory.npz, run.json and plots into this new folder; if a step fails, they contain the \
+         run up to that step",
     )
     .arg(
         flag(
@@ -43,8 +43,7 @@ pub(super) fn run() -> Command {
     .arg(
         flag(
             "csv",
-            "Write trajectory.csv even if it is long; by default it is written up to 500000 numbers (trajectory.npz always has \
-             all)",
+            "Write trajectory.csv even if it has more than 500000 numbers; trajectory.npz always has all numbers",
         )
         .requires("out"),
     )
@@ -56,13 +55,13 @@ pub(super) fn run() -> Command {
         )
         .requires("out"),
     )
-    .arg(flag("quiet", "Print only warnings and errors; the exit code tells how the run ended").conflicts_with_all(["json", "verbose"]))
-    .arg(flag("verbose", "Print the derived equations and how steps are solved, before the result").conflicts_with("json"))
+    .arg(flag("quiet", "Print only warnings and errors; the exit code shows how the run ended").conflicts_with_all(["json", "verbose"]))
+    .arg(flag("verbose", "Print the derived equations and the solver of a step before the result").conflicts_with("json"))
     .arg(
         option(
             "stability-limit",
             "SECONDS",
-            "Search at most this long for the stability limit of the step size, which is only reported; 0 disables the search",
+            "Longest search for the stability limit of the step size, which the run only reports; 0 disables the search",
         )
         .default_value("1")
         .value_parser(seconds),
@@ -71,8 +70,8 @@ pub(super) fn run() -> Command {
         option(
             "check",
             "STEPS",
-            "Steps to check against the stated action, independently of the derivation and the compiled step: a sample of a \
-             hundred and the last, all, or none",
+            "Steps to check against the stated action, independently of the derivation and the stepper: a sample of a hundred \
+             steps and the last step, all steps, or none",
         )
         .value_parser(["sample", "all", "none"])
         .default_value("sample"),
@@ -102,7 +101,7 @@ pub(super) fn compare() -> Command {
 pub(super) fn converge() -> Command {
     of_a_case(
         Command::new("converge")
-            .about("Measure the error at a fixed time for several step sizes, and the order")
+            .about("Measure the error at a fixed time for several step sizes, and the order of convergence")
             .after_help(
                 "Examples:\n  clebsch converge kepler --until 10\n  clebsch converge my-model.clebsch --h 0.1 --until 1 --out out/converged",
             ),

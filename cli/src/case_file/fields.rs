@@ -229,7 +229,7 @@ impl Fields<'_> {
                 format!("missing key `{name}.{key}`: {what}, of the end condition at site {site}")
             }
             false => format!(
-                "missing key `{name}.{key}` for site {index} = {site}: {what}, with numbers or expressions in {index} for all sites, or a list of such for each"
+                "missing key `{name}.{key}` for site {index} = {site}: {what}; give numbers or expressions in {index} for all sites, or a list with one entry per site"
             ),
         };
         self.file.wrong(None, &message)

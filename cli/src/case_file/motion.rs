@@ -316,7 +316,7 @@ impl Motion {
             .collect();
         zero.dedup();
         let zero = zero.into_iter().map(|name| {
-            format!("initial {name} is zero: the case gives neither this nor a velocity")
+            format!("initial {name} is zero: the case gives neither this momentum nor a velocity")
         });
         let zero: Vec<String> = zero.collect();
         let lines = out.into_iter().map(|told| {

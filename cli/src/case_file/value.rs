@@ -143,7 +143,7 @@ impl Shape {
             Self::Vector(n) => format!("a vector of {n} numbers"),
             Self::Matrix(rows, cols) => format!("a {rows}x{cols} matrix"),
             Self::Ragged => "an array that is neither a vector nor a matrix of numbers".to_owned(),
-            Self::File => format!("a table that is none of them; {OF_FILES}"),
+            Self::File => format!("a table of another form; {OF_FILES}"),
             Self::Other(kind) => format!("a value of type {kind}"),
         }
     }

@@ -30,8 +30,8 @@ pub(crate) enum WhichCase {
 }
 
 impl WhichCase {
-    /// The same case with values of the step size and of parameters inserted into its text, so that its
-    /// expressions follow.
+    /// This case with values of the step size and of parameters inserted into its text, so that expressions use
+    /// the new values.
     #[must_use]
     pub fn with(self, values: &[(String, String)]) -> Self {
         match self {

@@ -97,7 +97,7 @@ fn the_only_one<'a>(card: &Card, quantities: &'a [Quantity]) -> Option<(usize, &
     copies.next().filter(|_| copies.next().is_none())
 }
 
-/// The same for a momentum whose name omits the configuration, because nothing else moves.
+/// Like `the_only_one`, for a momentum whose name omits the configuration because the model has only one.
 fn of_the_only_one<'a>(
     field: &Field,
     (site, own): &(usize, &'a Quantity),

@@ -62,7 +62,7 @@ pub(crate) fn apply(
     if let Some(time) = until(matches) {
         case.steps = steps_to(time, case.h).ok_or_else(|| {
             Failure::Usage(format!(
-                "--until {time}: steps of {} would be too many; give a larger --h",
+                "--until {time}: this needs too many steps of {}; give a larger --h",
                 case.h
             ))
         })?;

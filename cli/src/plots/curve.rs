@@ -66,7 +66,7 @@ impl Stroke {
         }
     }
 
-    /// The same colour, for the bound of the curve.
+    /// A dashed line in this colour, for the bound of the curve.
     pub fn dashed(self) -> Self {
         Self {
             dash: Some((4, 4)),
@@ -86,7 +86,7 @@ impl Stroke {
         }
     }
 
-    /// The same with its points marked.
+    /// This curve with marked points.
     pub fn marked(self, marks: Marks) -> Self {
         Self { marks, ..self }
     }

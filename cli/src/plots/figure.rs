@@ -374,7 +374,7 @@ fn style(size: u32, color: RGBColor) -> TextStyle<'static> {
     }
 }
 
-/// The same style, centred at its position.
+/// Like `style`, with the text centred at its position.
 pub(super) fn centred(size: u32) -> TextStyle<'static> {
     TextStyle {
         pos: Pos::new(HPos::Center, VPos::Center),

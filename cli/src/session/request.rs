@@ -59,7 +59,7 @@ impl Request {
             plan.case.steps = steps_to(time, plan.case.h).ok_or_else(|| {
                 let h = plan.case.h;
                 Failure::Usage(format!(
-                    "until: steps of {h} to time {time} would be too many; give a larger h"
+                    "until: time {time} needs too many steps of {h}; give a larger h"
                 ))
             })?;
         }

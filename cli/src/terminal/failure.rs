@@ -55,7 +55,7 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Usage(message) | Self::Failed(message) => f.write_str(message),
-            Self::ReaderGone => f.write_str("the reader of the output has closed it"),
+            Self::ReaderGone => f.write_str("the program that reads the output has closed it"),
         }
     }
 }

@@ -89,7 +89,9 @@ impl Identity {
         }
         let mut pairs = own.lines().zip(found.lines());
         Some(match pairs.find(|(a, b)| a != b) {
-            Some((here, there)) => format!("it belongs to another run: {there} there, {here} here"),
+            Some((here, there)) => {
+                format!("it belongs to another run: it has {there}, but this run has {here}")
+            }
             None => "it belongs to another run, with other values".to_owned(),
         })
     }

@@ -1,4 +1,4 @@
-//! Rotations are read in every way wherever a case has one: initial values, parameters, values at sites and at ends.
+//! Every form of a rotation is accepted wherever a case has a rotation: initial values, parameters, values at sites and at ends.
 
 use crate::common::{Folder, table};
 use crate::ran::{Ran, run};
@@ -32,7 +32,7 @@ fn a_parameter_that_is_a_rotation_is_given_as_an_initial_one_is() {
     ];
     for (n, way) in ways.iter().enumerate() {
         let ran = Ran::of(MODEL, &case(way, way, way), &format!("attitudes-{n}"));
-        // At the attitude that it is drawn to it rests.
+        // It stays at rest at its equilibrium attitude.
         for node in [0, 3] {
             let found = [
                 ran.at("R_32", node),
@@ -83,7 +83,7 @@ fn a_printed_case_of_rotations_runs() {
     folder.runs("run @drawn.clebsch --case @drawn.toml --steps 2");
 }
 
-/// The clamped end of a rod and its sections, in every way.
+/// The clamped end of a rod and its sections, in every form.
 #[test]
 fn sites_and_ends_have_attitudes_too() {
     let model = "model Sections {

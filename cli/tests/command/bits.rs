@@ -1,9 +1,9 @@
 //! The bits of every shipped model and case at nodes 1, 10 and a last one, against a list. A step that is built in another
 //! way gives the same numbers to the last bit. If a change must alter bits, it alters the list in a commit of its own.
 //!
-//! `CLEBSCH_WRITE_BITS=1 cargo test --profile quick -p clebsch-cli --test command -- bits` writes the list. Chains end at
-//! node 100, since 100 steps show a changed step as well. Fluids end at node 10, and other cases at node 1000. The C library computes the sine and other functions, so the list belongs
-//! to one platform.
+//! `CLEBSCH_WRITE_BITS=1 cargo test --profile quick -p clebsch-cli --test command -- bits` writes the list. Chains end at node 100,
+//! since 100 steps show a changed step as well. Fluids end at node 10, and other cases at node 1000. The C library computes the
+//! sine and other functions, so the list belongs to one platform.
 #![cfg(all(target_arch = "x86_64", target_os = "linux", target_env = "gnu"))]
 
 use super::common::{clebsch, runs};
@@ -14,8 +14,8 @@ use std::fs;
 
 const LIST: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/command/bits");
 
-/// Models that are refused a step before node 1000, or are not resolved there: two stretches meet, where their chart is
-/// singular.
+/// Models for which a step fails before node 1000, or which are not resolved there: two stretches become equal, where
+/// the chart is singular.
 const SHORT: [&str; 3] = [
     "pseudo-rigid-anisotropic",
     "pseudo-rigid-bipolar",
@@ -54,7 +54,7 @@ fn rows(family: &str) -> String {
             let steps = last(family, name);
             let path = folder.path(&case.replace(':', "-"));
             let watch = "--every 1 --csv --quiet --check none --stability-limit 0";
-            // A run that is refused a step keeps what it has.
+            // A run whose step fails keeps its results so far.
             clebsch(&format!(
                 "run {case} --steps {steps} {watch} --force --out {path}"
             ));

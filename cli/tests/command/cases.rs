@@ -1,5 +1,5 @@
-//! Named cases beside the files of models: found by their names, printed, suggested; all that are shipped run, and two of
-//! them give the numbers of other implementations and of closed forms.
+//! Named cases next to model files: they are found by their names, printed and suggested. All shipped cases run, and two
+//! of them agree with other implementations and closed forms.
 
 use crate::common::{Folder, clebsch, runs};
 use std::fs;
@@ -14,7 +14,7 @@ fn model(name: &str) -> String {
     path.to_string_lossy().into_owned()
 }
 
-/// Model files with the names of the cases in the folders beside them.
+/// Model files with the names of the cases in the folders next to them.
 fn shipped() -> Vec<(String, Vec<String>)> {
     let mut all = Vec::new();
     for kind in ["elastic", "fluids", "lattices"] {
@@ -46,7 +46,7 @@ fn shipped() -> Vec<(String, Vec<String>)> {
     all
 }
 
-/// Long, since every shipped model with cases beside it is derived, and each case run.
+/// Long, since every shipped model with named cases is derived, and each case run.
 #[test]
 fn every_shipped_case_runs_by_its_name() {
     let all = shipped();
@@ -65,7 +65,7 @@ fn every_shipped_case_runs_by_its_name() {
     ] {
         runs(&format!("derive {}", model(name)));
     }
-    // The one that is called as its model goes by the name that it bears.
+    // A case with the name of its model is selected by this name.
     runs(&format!(
         "run {} --case swing --steps 2",
         model("lattices/hanging-chain")
@@ -164,7 +164,7 @@ fn solitons_are_displaced_by_their_encounter() {
         (fast, 20.0, shift / (2.0 * fast)),
         (slow, 40.0, -shift / (2.0 * slow)),
     ] {
-        // Alone it would have run so far, sinh(κ)/κ sites a unit of time.
+        // A single soliton moves by this distance, at sinh(κ)/κ sites per unit of time.
         let run = 80.0 * kappa.sinh() / kappa;
         // The slow one starts behind the fast one's influence.
         let start = top(before, from);

@@ -1,4 +1,4 @@
-//! Clocks of models that are driven in time: they tell the time after many steps as well.
+//! Clocks of driven models remain exact after many steps.
 
 use crate::common::Folder;
 
@@ -33,7 +33,7 @@ fn numbers_carried_by_any_rule_are_judged_by_it() {
     }
 }
 
-/// Kept in one number a clock loses a part of its own rounding at every step, which adds up: 1e-10 here.
+/// If a clock is stored in one number, its rounding errors accumulate: 1e-10 here.
 #[test]
 fn a_clock_tells_the_time_after_many_steps() {
     let folder = Folder::new("clock");
@@ -74,7 +74,7 @@ fn a_clock_tells_the_time_after_many_steps() {
     assert_eq!(samples.end("time"), 200.0);
 }
 
-/// A bead on a spring to a bead that an end holds, at rest at the start and driven by `F sin(ω t)`.
+/// A bead on a spring attached to a prescribed bead, initially at rest and driven by `F sin(ω t)`.
 #[test]
 fn a_clock_goes_on_where_an_end_prescribes_a_value() {
     let folder = Folder::new("driven-bead");

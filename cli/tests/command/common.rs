@@ -123,26 +123,26 @@ impl Done {
         self.exits(0)
     }
 
-    /// It refuses the request, and the message holds these words.
+    /// It rejects the request, and the message contains these words.
     #[track_caller]
     pub fn refuses(&self, words: impl Parts) -> &Self {
         self.ended(2).says(words)
     }
 
-    /// It was not possible, and the message holds these words.
+    /// It failed, and the message contains these words.
     #[track_caller]
     pub fn fails(&self, words: impl Parts) -> &Self {
         self.ended(1).says(words)
     }
 
-    /// Standard output holds these words.
+    /// Standard output contains these words.
     #[track_caller]
     pub fn prints(&self, words: impl Parts) -> &Self {
         holds(&self.out, &words, &self.words);
         self
     }
 
-    /// Standard error holds these words.
+    /// Standard error contains these words.
     #[track_caller]
     pub fn says(&self, words: impl Parts) -> &Self {
         holds(&self.err, &words, &self.words);
@@ -180,7 +180,7 @@ impl Done {
     }
 }
 
-/// A text holds these words.
+/// A text contains these words.
 #[track_caller]
 pub fn has(text: &str, words: impl Parts) {
     holds(text, &words, &[]);
@@ -202,7 +202,7 @@ pub fn clebsch<W: Words + ?Sized>(words: &W) -> Done {
     on(SHIPPED.get_or_init(Gallery::shipped), words)
 }
 
-/// The same, which has to succeed.
+/// Runs the command; it must succeed.
 #[track_caller]
 pub fn runs<W: Words + ?Sized>(words: &W) -> Done {
     clebsch(words).succeeds()

@@ -130,7 +130,7 @@ fn the_free_body_is_compared_with_everything() {
     };
     // The reference, which another method confirms to the rounding of a thousand steps.
     assert!(worst("verner-98-finer", "error", "body_momentum") < 1e-13);
-    // One scheme, four ways to solve it: they differ by rounding, from the truth by much more.
+    // One scheme with four solvers: they differ by rounding, and their common error is much larger.
     let error = worst("generated", "error", "body_momentum");
     assert!(error > 1e-3);
     for name in ["by-hand", "fixed-point", "newton"] {
@@ -193,7 +193,7 @@ fn wrong_requests_are_usage_errors() {
 ") {
         clebsch(request).prints_nothing().refuses(words);
     }
-    // A step beyond the bound of solvability is nobody's mistake in asking.
+    // A step beyond the bound of solvability is a failure, not wrong usage.
     let done = clebsch("compare free-body --h 5 --json").exits(1);
     assert_eq!(done.json()["exit_code"], 1);
 }

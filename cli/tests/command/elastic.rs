@@ -1,5 +1,5 @@
-//! Elastic bodies and held constraints on the command line: the shipped files derived and run, numbers of reference
-//! runs, what a trajectory says of multipliers.
+//! Elastic bodies and constraints on the command line: the shipped files are derived and run, and compared with
+//! reference runs; trajectories contain the multipliers.
 
 use crate::common::{Folder, clebsch, runs, text_of};
 
@@ -104,8 +104,8 @@ fn a_section_of_a_rod_turns_by_less_than_a_right_angle() {
     );
 }
 
-/// A case of sample values obeys what is held: it runs as it is printed. Where only bodies that turn are held they are left
-/// as they are.
+/// A case of sample values satisfies the constraints: it runs as printed. If only rotating bodies are constrained, they
+/// are unchanged.
 #[test]
 fn samples_of_held_models_lie_on_their_constraints() {
     let folder = Folder::new("held-samples");
@@ -246,7 +246,7 @@ fn multipliers_and_constraints_are_seen() {
         "--steps 100",
         &["lambda", "x_1", "x_2", "x_3"],
     );
-    // The weight of the mass along its rod, and the pull of its turn.
+    // The weight of the mass along its rod, and the centripetal force of its rotation.
     assert!((rows[1][0] + 10.76).abs() < 0.1, "{:?}", rows[1]);
     for row in &rows {
         let length = row[1..].iter().map(|x| x * x).sum::<f64>().sqrt();

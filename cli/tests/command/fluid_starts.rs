@@ -29,9 +29,9 @@ fn case(start: &str) -> String {
     )
 }
 
-/// By how much the first step is off the straight line of the velocity, of what the Coriolis force alone would turn it by. The force and
-/// the Coriolis force cancel at the start where, and only where, it is nothing: the velocity u of the step solves
-/// `u - (f h/2) R u = v + (h/2) a`, and `v` itself does for `a = -f R v`.
+/// The deviation of the first step from the direction of the velocity, relative to the deviation by the Coriolis force alone. The
+/// force and the Coriolis force cancel at the start where, and only where, it is nothing: the velocity u of the step solves `u - (f
+/// h/2) R u = v + (h/2) a`, and `v` itself does for `a = -f R v`.
 fn imbalance(model: &str, start: &str, name: &str) -> f64 {
     let ran = Ran::of(model, &case(start), name);
     let (h, f) = (0.05, ran.parameter("f"));
@@ -112,7 +112,7 @@ fn a_mesh_by_its_name_is_its_value_at_the_particle() {
     }
     // Sums of a few hundred terms of one sign.
     assert!((there / here - 1.0).abs() < 1e-13, "{there} {here}");
-    // Meshes at particles are theirs.
+    // Meshes at particles belong to these particles.
     let model = "model Cells {
         label a in 0..N; param m: Real at a; param g, α: Real; field X: Vec<2> at a on torus(L);
         mesh φ: Real at a = helmholtz_depth(X, m, α);
@@ -130,7 +130,7 @@ fn a_mesh_by_its_name_is_its_value_at_the_particle() {
     }
 }
 
-/// Long, since every number that a refusal offers is run.
+/// Long, since every number that an error suggests is run.
 #[test]
 fn a_lattice_that_cannot_fill_its_domain_evenly_is_refused_with_numbers_that_can() {
     let folder = Folder::new("fluid-starts-uneven");
@@ -163,7 +163,7 @@ fn a_lattice_that_cannot_fill_its_domain_evenly_is_refused_with_numbers_that_can
             assert!(n.abs_diff(257) < 10, "{n}");
             of(n, "").ended(0);
         }
-        // Columns that a case states are its own.
+        // Columns that a case states are used as given.
         of(257, ", columns = 257").ended(0);
     }
 }
@@ -185,7 +185,7 @@ fn equal_cases_start_alike_to_the_last_byte_and_go_on_from_a_checkpoint() {
     };
     let first = whole("first", "");
     assert!(first == whole("second", ""));
-    // A run that is complete is taken up as the same one: its start has the same numbers.
+    // A complete run is recognised as the same run, because its initial numbers are equal.
     assert!(first == whole("first", "--resume"));
 }
 
@@ -245,7 +245,7 @@ fn what_has_no_value_is_told_with_what_to_write() {
         ),
         &[
             "initial.X: ",
-            "`S` depends on the positions X, which are given here",
+            "`S` depends on the positions X, which this entry defines",
         ],
     );
     check(
@@ -271,7 +271,7 @@ fn what_has_no_value_is_told_with_what_to_write() {
     for (momentum, said) in [
         (
             "S",
-            "`S` has values at the particles `a`, but those of Y belong to `b`",
+            "`S` has values at the particles `a`, but the values of Y belong to `b`",
         ),
         ("x", "`x` has no value here"),
     ] {

@@ -1,5 +1,5 @@
-//! Fluids on the command line: derived, run from cases with domains, lattices and expressions of the place, wrong
-//! cases told by key and site.
+//! Fluids on the command line: they are derived, and run from cases with domains, lattices and expressions in the
+//! position. Errors in cases name the key and the site.
 
 use crate::common::{Folder, clebsch, models, runs, table, text_of};
 
@@ -70,7 +70,7 @@ fn arrays_are_by_sample_particle_and_component_and_particles_are_mapped() {
     let circles = map.matches("<circle").count();
     // Particles, twice.
     assert_eq!(circles, 2 * 1800, "{circles}");
-    // Below them the cells of nodes, of which those at the seam lie on both sides, with their edges.
+    // The cells of nodes follow, with their edges; cells at the seam are on both sides.
     let cells = map.matches("<polygon").count();
     assert_eq!(cells, 2 * (528 + 33), "{cells}");
 }

@@ -63,13 +63,13 @@ impl Folder {
         clebsch(&self.placed(words))
     }
 
-    /// The same, which has to succeed.
+    /// Runs the command; it must succeed.
     #[track_caller]
     pub fn runs(&self, words: &str) -> Done {
         self.clebsch(words).succeeds()
     }
 
-    /// The same on the hand-written rotor alone.
+    /// Runs `clebsch` on the hand-written rotor alone.
     #[track_caller]
     pub fn rotor(&self, words: &str) -> Done {
         rotor(&self.placed(words))
@@ -119,7 +119,7 @@ impl Samples {
     pub fn of(csv: &str) -> Self {
         let mut lines = csv.lines().filter(|line| !line.starts_with('#'));
         let names = lines.next().expect("a head").split(',').map(str::to_owned);
-        // The cells of a refused point of a sweep are empty.
+        // The cells of a rejected point of a sweep are empty.
         let number = |x: &str| match x {
             "" => f64::NAN,
             x => x.parse().unwrap_or_else(|e| panic!("{e}: {x}")),

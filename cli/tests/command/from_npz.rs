@@ -164,7 +164,7 @@ fn rods_go_on_from_what_a_run_has_written() {
     }
 }
 
-/// Where one site moves alone, its momentum has the name of its quantity too: around a ring of one, and beside ends that are given.
+/// If only one site moves, its momentum has the name of its quantity: on a ring of one site, and next to prescribed ends.
 #[test]
 fn a_single_site_goes_on_from_what_a_run_has_written() {
     let folder = Folder::new("from-npz-single-models");

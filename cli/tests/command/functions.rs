@@ -92,7 +92,7 @@ fn what_is_wrong_of_a_function_is_told_by_its_line() {
         [functions]\nb = "x"\nR = "y"            | :6: functions.R: expected a list of 2 expressions
         [functions]\nb = "cos(x"\nR = ["x", "y"] | :5: functions.b: in this expression, at character 4: this `(` is not closed
         [functions]\nb = "q"\nR = ["x", "y"]     | :5: functions.b: `q` is unknown
-        // What the derivation finds is told at the case as well, where the expression stands.
+        // Errors of the derivation are reported at the position of the expression in the case.
         [functions]\nb = "x"\nR = ["sqrt(-1 - y^2)", "y"] | :6: functions.R: the base of this root is negative for all values
         [functions]\nc = "x"\nR = ["x", "y"]     | :5: unknown key `functions.c`
 "#,
@@ -102,7 +102,7 @@ fn what_is_wrong_of_a_function_is_told_by_its_line() {
             .clebsch("run @bowl.clebsch --case @own.toml")
             .refuses(said);
     }
-    // A model that has none.
+    // A model without functions.
     folder.write("own.toml", case("[functions]\nb = \"x\""));
     let plain = BOWL
         .replace("= case;", "= \"x\";")

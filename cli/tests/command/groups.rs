@@ -1,5 +1,4 @@
-//! Models of motions of the plane, of frames and of deformable bodies, run from their texts: what is written of them and
-//! what is refused.
+//! Models of plane motions, frames and deformable bodies, run from their texts: their output, and what clebsch rejects.
 
 use crate::common::{Folder, runs};
 
@@ -24,7 +23,7 @@ fn a_motion_of_the_plane_seen_from_space_is_judged() {
         .prints("50 steps judged");
 }
 
-/// Quantities that sites carry may differ in shape where their names differ by a number alone.
+/// Advected quantities at sites may have different shapes even if their names differ only by a number.
 #[test]
 fn what_a_clamped_rod_of_frames_carries_is_written() {
     let folder = Folder::new("frames-written");

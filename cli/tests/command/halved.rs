@@ -1,4 +1,4 @@
-//! `--halve`: steps that are refused are made by parts, and the result says so.
+//! `--halve`: failed steps are subdivided, and the result reports this.
 
 use crate::common::{Folder, clebsch, runs};
 
@@ -22,7 +22,7 @@ fn a_run_with_steps_made_by_parts_says_that_it_is_not_symplectic() {
     clebsch("run free-body --steps 20 --halve").never_prints("subdivided");
 }
 
-/// A weak wall at det = 0, met at speed: half the step can be made, the whole way to the node of the step cannot.
+/// A weak barrier at det = 0 that is reached at speed: half the step succeeds, the full step does not.
 #[test]
 fn a_step_that_no_parts_make_says_that_they_were_tried() {
     let folder = Folder::new("no-parts");

@@ -1,5 +1,5 @@
-//! Models with labels on the command line: derived, run from cases with site data, wrong cases told by
-//! line and site.
+//! Models with labels on the command line: they are derived, and run from cases with site data. Errors
+//! in cases name the line and the site.
 
 use crate::common::{Folder, clebsch, has, models, runs, text_of};
 
@@ -131,7 +131,7 @@ fn ranges_and_ends_are_printed() {
             "End i = N: load",
             "i = 1, ..., N-2.",
             "∑_{i=0}^{N-1} Λ_{i,k} μ_{2,i,k}",
-            "Fluxes between neighbouring sites",
+            "fluxes between neighbouring sites",
         ],
     );
     let toda = clebsch("derive models/lattices/toda-chain.clebsch").out;
@@ -252,7 +252,7 @@ fn lists_hold_what_is_given_at_an_end_too() {
     assert_eq!(by_list.out, moving.out);
     run("u = \"i/10\"\nmomentum_u = [0.0, 0.1, 0.2, 0.0]").succeeds();
     run("u = [0.0, 0.1, 0.2]\nmomentum_u = 0.0").says("for each of the 4 sites; this list has 3");
-    // One that moves, none that does, and more than are taken.
+    // One moving site, no moving site, and too many sites.
     let one = |from: &str, to: &str, expected: &str| {
         let text = text_of("lattices/toda-chain.toml")
             .replace("i = 32", from)

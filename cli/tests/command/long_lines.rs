@@ -1,4 +1,4 @@
-//! Lines that run by loops over their sites: any number of them, with the messages of short ones.
+//! Chains that run with loops over sites: any number of sites, with the same messages as for short chains.
 
 use crate::common::{Folder, clebsch, text_of};
 
@@ -11,7 +11,7 @@ fn wave(count: usize) -> String {
     )
 }
 
-/// Long by its number of sites, whose pictures and samples are written.
+/// Long because of the number of sites, whose plots and samples are written.
 #[test]
 fn a_line_of_a_hundred_thousand_sites_runs() {
     let folder = Folder::new("lattices-long");
@@ -21,7 +21,7 @@ fn a_line_of_a_hundred_thousand_sites_runs() {
         .runs("run models/lattices/toda-chain.clebsch --case @wave.toml --out @out --verbose");
     done.prints([
         "lattice              N = 100000, periodic",
-        "one for every number of sites, with loops over them\n",
+        "one for any number of sites, with loops over the sites\n",
         "action as stated: ",
         "total_momentum",
         "within bound",
@@ -80,7 +80,8 @@ fn wrong_data_of_a_long_line_name_their_site() {
     of_order("3").refuses("2, 4, 6, 8");
 }
 
-/// Momenta that are small beside the rounding of inertia over the step, along a line whose rotations are found together.
+/// Momenta that are small compared with the rounding of the inertia divided by the step size, on a chain that solves for
+/// its rotations together.
 #[test]
 fn bodies_that_hardly_turn_are_stepped_at_any_step() {
     let folder = Folder::new("hardly-turning");

@@ -1,13 +1,13 @@
-//! The longest step that small motions about the start allow: printed before a run, sharp, and warned of beyond it.
+//! The stability limit of small motions about the start: it is printed before a run and is sharp, and larger steps cause a warning.
 
 use crate::common::{Done, Folder, clebsch, models, text_of};
 
-/// Runs the program with a search that no load of the machine cuts.
+/// Runs the program with a search that no load on the machine cuts short.
 fn searched(words: &str) -> Done {
     clebsch(&format!("{words} --stability-limit 600"))
 }
 
-/// The longest step that is printed for a model with a case, beside the frequency of which it is twice the inverse.
+/// The printed stability limit for a model with a case, and the frequency ω with which it is 2/ω.
 fn printed(model: &str, case: &str) -> f64 {
     let done = searched(&format!("run {model} --case {case} --steps 1"));
     let number = |before: &str, behind: &str| -> f64 {
@@ -42,7 +42,7 @@ fn a_straight_rod_has_the_limit_of_its_coupled_modes() {
     assert!((found / limit - 1.0).abs() < 0.01, "{found} {limit}");
     // Both limits by themselves are longer.
     assert!(limit < 0.99 * 2.0 / a.sqrt() && limit < 0.99 * 2.0 / b.sqrt());
-    // Below it the rod goes on, above it is lost within a few steps.
+    // Below the limit the rod is stable; above it, the motion diverges within a few steps.
     let run = |part: f64| {
         let h = format!("{}", part * limit);
         searched(&format!(
@@ -85,8 +85,8 @@ fn a_hanging_top_has_the_limit_of_a_pendulum() {
     }
 }
 
-/// Long, since the limit of rows of twenty tops is sought at two steps.
-/// With the sign of the thesis's printed Lagrangian the tops of a row drive one another apart.
+/// Long, since the limit of rows of twenty tops is sought at two steps. With the printed sign of
+/// the Lagrangian in the thesis, neighbouring tops repel each other.
 #[test]
 fn a_wrong_sign_between_neighbours_is_warned_of() {
     let folder = Folder::new("wrong-sign");
@@ -100,7 +100,7 @@ fn a_wrong_sign_between_neighbours_is_warned_of() {
     let wrong = text.replace("+ (h/s)*tr(C", "- (h/s)*tr(C");
     assert_ne!(wrong, text);
     let case = folder.write("case.toml", &case);
-    // However short the step: what grows there alternates from site to site.
+    // For any step size, the growing motion alternates from site to site.
     for h in ["0.04", "0.0001"] {
         for (text, warned) in [(&text, false), (&wrong, true)] {
             let model = folder.write("model.clebsch", text);
@@ -170,9 +170,10 @@ fn rows_of_springs_have_one_limit_in_all_groups() {
     }
 }
 
-/// A chain of bodies that begins far from equilibrium, its bonds turned by up to forty radians: forces turn with the frames of the bodies
-/// there, and what resists is the symmetric part of their change. The numbers are square roots of the largest and of minus the least
-/// eigenvalue of the second derivative of the energy, against the inertia tensors, by numpy: of 40 sites the latter is 1.096802.
+/// A chain of bodies that begins far from equilibrium, its bonds turned by up to forty radians: forces turn with the frames of the
+/// bodies there, and the stiffness is the symmetric part of their derivative. The numbers are square roots of the largest and of
+/// minus the least eigenvalue of the second derivative of the energy, against the inertia tensors, by numpy: of 40 sites the latter
+/// is 1.096802.
 #[test]
 fn a_bent_start_has_the_limit_of_the_symmetric_part() {
     let folder = Folder::new("bent-start");
@@ -224,7 +225,7 @@ fn of_steps_of_another_kind_nothing_is_said() {
         searched(&format!("run {model} --case {case}"))
     };
     silent(of("middle", "h*(k/2)*((q + next(q))/2)^2", "5.0"));
-    // The same spring at the node has the limit 2.
+    // A spring at the node has the limit 2.
     of("node", "h*(k/2)*q^2", "2.05").says("1.02 times the stability limit");
     silent(of("node", "h*(k/2)*q^2", "0.5"));
 }
@@ -264,14 +265,14 @@ fn of_a_step_that_is_far_too_long_the_limit_is_told() {
     for h in ["0.01", "1", "1000"] {
         run(h).says(said);
     }
-    // A rod that is struck is refused its first step.
+    // The first step of a rod that is struck fails.
 
     let refused = searched(
         "run models/lattices/circular-rod.clebsch --case models/lattices/circular-rod.toml --h 100",
     )
     .exits(1);
     refused.says(["times the stability limit", "cannot take the first step"]);
-    // The same numbers in JSON.
+    // JSON output contains equal numbers.
     let object = run("0.0005").json();
     let limit = &object["longest_step"];
     let number = |key: &str| limit[key].as_f64().expect("a number");

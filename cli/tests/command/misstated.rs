@@ -28,7 +28,7 @@ fn a_momentum_that_is_not_tangent_is_told_of_the_constraint_that_takes_it() {
         removes 5.000e-1 of its size 1.559e0, with the multiplier 0.25 for this constraint; subtract the multiplier times the \
         gradient";
     done.says(told);
-    // Without that part it runs.
+    // Without that part, the model runs.
     let done = run(
         &folder,
         PENDULA,

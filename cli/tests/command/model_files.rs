@@ -1,4 +1,4 @@
-//! Models that are run from their texts: the same tables as of built ones, and messages as good.
+//! Models that run from their texts: they give the same tables as compiled models, and equally good messages.
 
 use crate::common::{Folder, on};
 use clebsch_cli::gallery::Gallery;

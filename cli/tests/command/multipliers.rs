@@ -191,12 +191,12 @@ fn the_one_site_that_moves_has_its_momentum() {
             p[0], p[1]
         )
     };
-    // A pendulum that leans: along its circle it goes on, along its link it cannot.
+    // A tilted pendulum: a momentum along its circle is accepted, a momentum along its link is rejected.
     let leaning = "[\"0.6*i\", \"-0.8*i\"]";
     let (free, along) = (model(""), case(1, leaning, [0.8, 0.6]));
     let at = two_nodes(&folder, &free, &along);
     let (x, p) = (at("x_1_1", 1), at("momentum_x_1_1", 0));
-    // The way of a step but for a few squares of it.
+    // The displacement of a step, up to a few terms of second order.
     assert!((x - 0.6 - 0.8e-3).abs() < 3e-6 && p == 0.8, "{x} {p}");
     let refused = |last: &str, case: &str| {
         let model = folder.write("links.clebsch", model(last));
@@ -204,7 +204,7 @@ fn the_one_site_that_moves_has_its_momentum() {
         clebsch(&format!("run {model} --case {case}")).refuses("is not tangent to the constraint");
     };
     refused("", &case(1, leaning, [0.6, -0.8]));
-    // Between two ends that are held the joint of two links in the plane cannot move.
+    // Between two prescribed ends, the joint of two links in the plane cannot move.
     let joint = "[\"0.6*i\", \"-0.8*i*(2 - i)\"]";
     let held = "end i = N { pinned { x = given; } }";
     refused(held, &case(2, joint, [0.1, 0.0]));

@@ -5,7 +5,7 @@ use crate::common::{Done, Folder, rotor, with};
 /// A colour, a cleared screen, a line that claims success, a bell, a C1 control, a turned direction.
 const NAME: &str = "x\u{1b}[31m\u{1b}[2J\nclebsch: done\r\u{7}\u{9b}1m\u{7f}\u{202e}y";
 
-/// The same written out.
+/// The escaped form of these characters.
 const SHOWN: &str =
     "x\\u001b[31m\\u001b[2J\\u000aclebsch: done\\u000d\\u0007\\u009b1m\\u007f\\u202ey";
 

@@ -40,7 +40,7 @@ fn a_start_on_its_constraint_stays_and_one_that_is_far_off_is_rejected() {
     pendulum("[0.6001, 0, -0.8]").refuses("1.2001");
 }
 
-/// Links of a chain answer to one another, and bodies turn onto what holds them.
+/// The links of a chain are corrected together, and bodies are rotated onto their constraints.
 #[test]
 fn chains_and_bodies_are_moved_too() {
     let chain = "model Chain {

@@ -97,7 +97,7 @@ fn expressions_follow_what_options_set() {
     assert_eq!(set, last("typed", &case("\"k/40\"", "1"), ""));
     let step = last("step", &plain, "--h 0.02 --steps 10");
     assert_eq!(step, last("step-typed", &case("0.02", "2"), "--steps 10"));
-    // And so is a point of a sweep.
+    // A point of a sweep is also that run.
     let out = folder.path("sweep");
     folder.write("from.toml", case("0.025", "2"));
     folder.runs(&format!(
@@ -210,7 +210,7 @@ fn a_run_prints_as_much_as_it_is_asked_to() {
             .out
             .ends_with(plain.out.split_once('\n').expect("lines").1)
     );
-    // A bound that is exceeded is still told.
+    // A run still reports an exceeded bound.
     clebsch("run kepler --h 0.2 --quiet")
         .exits(3)
         .prints_nothing()
@@ -228,10 +228,10 @@ fn invariants_are_looked_at_where_it_was_asked() {
             .as_f64()
             .expect("a drift")
     };
-    // The energy swings: the last node is not its farthest.
+    // The energy oscillates: its deviation is not largest at the last node.
     assert!(run("1") > run("1000"));
     clebsch("run kepler --steps 100 --every 10")
-        .prints("drifts: sampled at every 10 nodes and at the last");
+        .prints("drifts: sampled every 10 nodes and at the last");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! A command line of one's own: the example that the book shows, compiled here and run.
+//! A command line of your own: the example in the book is compiled and run.
 
 // Users need not document the code in their own crate.
 #![allow(missing_docs)]
@@ -53,7 +53,7 @@ fn the_book_shows_it_whole() {
     );
 }
 
-/// A name that no model can have is refused before anything is written; the others run.
+/// An invalid model name is rejected before anything is written; valid names run.
 #[test]
 fn a_new_model_has_a_name_that_models_can_have() {
     let folder = Folder::new("own-models-names");

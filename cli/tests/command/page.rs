@@ -116,7 +116,7 @@ fn a_body_of_a_segment_is_midway_between_its_nodes() {
             let value = value.unwrap_or_else(|| panic!("{name}: {run}")).iter();
             value.map(|x| x.as_f64().expect("a number")).collect()
         };
-        // A line is drawn to what its ends hold, and a ring around.
+        // A line is drawn to the prescribed ends, and closed for a ring.
         let last = points.len() - 1;
         match held {
             1 => assert_eq!(points[0], given("x_0".to_owned())),

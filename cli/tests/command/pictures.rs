@@ -83,7 +83,7 @@ fn pictures_for_a_paper_are_there_as_pdf() {
             .parse()
             .expect("a number");
         assert!((width - 86.0 / 25.4 * 72.0).abs() < 0.75, "{name}: {width}");
-        // Text is set, not left out: fonts are embedded.
+        // Text is present, because fonts are embedded.
         assert!(
             text.contains("/FontDescriptor") || text.contains("/Type0"),
             "{name} has no text"

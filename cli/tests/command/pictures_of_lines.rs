@@ -1,4 +1,4 @@
-//! Pictures of what lines have at their sites: maps, chosen spheres, what is zero.
+//! Pictures of quantities at the sites of chains: maps, selected spheres, and notes on zeros.
 
 use crate::common::{Folder, has, runs, text_of};
 use std::fs;

@@ -90,7 +90,7 @@ fn a_left_bound_is_code_three_and_the_results_are_written() {
     assert_eq!(names(&out), FILES);
     let json = folder.read("out/run.json");
     assert!(json.contains("\"kept\": false"));
-    // The same where the run is found complete.
+    // Checks a run that is already complete.
     let arguments = ["run", "harmonic-rotor", "--case", &file, "--out", &out];
     let again = rotor(&[&arguments[..], &["--resume"]].concat()).exits(3);
     assert!(again.out.starts_with("complete already: "), "{}", again.out);

@@ -82,7 +82,7 @@ fn random(seed: &mut u64) -> f64 {
     (*seed >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Runs that are met by signals again and again end as one that is left alone.
+/// Runs that are interrupted repeatedly give the results of an uninterrupted run.
 fn killed_and_resumed(signals: &[&str]) {
     let folder = Folder::new(&format!("resumed{}", signals.concat()));
     let mut all = 0;
@@ -100,7 +100,7 @@ fn killed_and_resumed(signals: &[&str]) {
     );
 }
 
-/// Long, since six runs are met by six signals each, and gone on with.
+/// Long, since six runs are interrupted by six signals each, and resumed.
 #[test]
 fn killed_runs_end_bit_equal() {
     killed_and_resumed(&["-KILL"]);
@@ -202,7 +202,7 @@ fn a_checkpoint_that_is_damaged_or_of_another_run_is_refused() {
         bytes[place] ^= 1;
         fs::write(&path, &bytes).expect("written");
         run(LONG, &out, "--resume").refuses(says);
-        // Where the checkpoint itself is whole, the folder was taken up, and is put back.
+        // If the checkpoint is intact, the run has taken the folder, and restores it.
         fs::write(&path, &before[file]).expect("put back");
     }
     run(LONG, &out, "").refuses("--force");
@@ -217,7 +217,7 @@ fn a_killed_run_is_not_begun_anew_by_mistake() {
     ended_by("-KILL", child);
     let short = "heavy-top --steps 10";
     run(short, &out, "").refuses("--resume");
-    // By force it is, and the hidden folder goes.
+    // With --force it is replaced, and the hidden folder is removed.
     run(short, &out, "--force").ended(0);
     assert_eq!(folder.names(), ["out"]);
     // A complete run stays unchanged, and a different run is detected.

@@ -1,4 +1,4 @@
-//! Rods and lines with held ends from the command line: thresholds of theory, reference runs, what either end has.
+//! Rods and chains with prescribed ends on the command line: theoretical thresholds, reference runs, quantities at both ends.
 
 use crate::common::{Folder, runs, text_of};
 

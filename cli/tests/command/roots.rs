@@ -1,6 +1,6 @@
-//! Steps whose equations have several roots: a step takes the one that follows from rest, or is refused at the fold.
-//! Reference numbers come from a continuation in small parts of the momentum, in two million parts for the hoop, or by
-//! arclength; those for one field come from its momentum at 400,000 velocities.
+//! Steps whose equations have several roots: a step takes the principal root, or fails at the fold. Reference numbers
+//! come from a continuation in small parts of the momentum, in two million parts for the hoop, or by arclength; those
+//! for one field come from its momentum at 400,000 velocities.
 
 use crate::common::{Folder, rotor};
 
@@ -16,7 +16,7 @@ fn stepped(folder: &Folder, model: &str, case: &str) -> Vec<f64> {
         .collect()
 }
 
-/// One step of a model from a case; the run must refuse it at this part of the momentum.
+/// One step of a model from a case; it must fail at this share of the momentum.
 fn folds(name: &str, model: &str, case: &str, share: &str) {
     let folder = Folder::new(name);
     let model = folder.write(&format!("{name}.clebsch"), model);
@@ -27,7 +27,7 @@ fn folds(name: &str, model: &str, case: &str, share: &str) {
     assert!(done.err.contains(&words), "{}", done.err);
 }
 
-/// Straight ahead lies another root, where the bead has crossed the axis of the hoop.
+/// Another root is straight ahead, on the other side of the axis of the hoop.
 #[test]
 fn a_bead_on_a_free_hoop_turns_back_before_the_axis() {
     let folder = Folder::new("hoop");
@@ -50,7 +50,7 @@ fn a_bead_on_a_free_hoop_turns_back_before_the_axis() {
     );
 }
 
-/// The mass grows a hundredfold in the middle of the way; beyond the fold lies another root.
+/// The mass grows a hundredfold in the middle of the path; there is another root beyond the fold.
 #[test]
 fn a_heavy_place_on_the_way_is_not_passed_over() {
     let model = "model Bump { param a, w: Real; field x: Real; let d = next(x) - x; let c = (x + next(x))/2;
@@ -82,7 +82,7 @@ fn a_heavy_place_on_the_way_is_not_passed_over() {
 }
 
 /// A bead is carried through the axis of its hoop several times; about the axis it would turn a hundred times as fast.
-/// The first correction ends before a bump, and the solution found lies behind it. The first root of `T = 1`, where
+/// The first correction ends before a bump, and the computed solution is behind it. The first root of `T = 1`, where
 /// `T = (1 + e) d + x e d²/(4 w²)`, `x = d/2 - c` and `e = -exp(-x²/(2 w²))/2`, lies before it.
 #[test]
 fn a_bump_beyond_the_first_correction_is_not_passed_over() {

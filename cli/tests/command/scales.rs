@@ -173,8 +173,8 @@ fn no_value_is_larger_than_its_scale() {
     assert!(compared > 1000, "{compared}");
 }
 
-/// A top that hangs where nothing moves it, along no axis: the impulses of its weight leave their rounding as its momentum,
-/// by which that is not measured.
+/// A top that hangs in equilibrium in a general direction: its momentum is the rounding of the impulses of its weight, and
+/// is not used as its own scale.
 #[test]
 fn a_top_at_equilibrium_is_within_its_bounds() {
     let mut gallery = Gallery::shipped();

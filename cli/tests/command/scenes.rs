@@ -146,7 +146,7 @@ fn a_body_without_a_place_is_beside_the_others() {
             "{b:?} {x:?}"
         );
     }
-    // One body seen from another is none.
+    // A relative attitude is not a body.
     let folder = Folder::new("scene-seen-from");
     let out = folder.path("out");
     runs(&format!("run coupled-bodies --steps 40 --out {out}"));

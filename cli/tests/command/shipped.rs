@@ -48,7 +48,7 @@ fn a_shipped_model_runs_by_its_name_as_by_its_file() {
     let by_path = clebsch(&format!("run {path} --case two-solitons --steps 20"));
     assert_eq!((named.code, &named.err), (0, &String::new()));
     assert_eq!(named.out, by_path.out);
-    // The file beside it is its default case.
+    // The file next to it is its default case.
     let first = clebsch("run toda-chain --steps 20");
     let beside = clebsch(&format!("run {path} --steps 20"));
     assert_eq!((first.code, first.out), (0, beside.out));
@@ -103,7 +103,7 @@ fn a_new_model_runs_wherever_it_was_copied_from() {
             .says_nothing()
             .prints("first step: solved");
         runs(&format!("run {model} --steps 3"));
-        // A second time nothing is replaced.
+        // A second call replaces nothing.
         let before = fs::read_to_string(&model).expect("the model");
         clebsch(&arguments).refuses("exists");
         assert_eq!(fs::read_to_string(&model).expect("the model"), before);

@@ -1,4 +1,4 @@
-//! The program as a process that receives signals at work. The hidden folder beside its results shows its progress.
+//! The program as a process that receives signals at work. The hidden folder next to its results shows its progress.
 #![cfg(unix)]
 #![allow(missing_docs)]
 

@@ -330,7 +330,7 @@ fn many_runs_at_once_lose_nothing() {
                 .map(|run| run.join().expect("no panic"))
                 .collect()
         });
-        // A run that found the folder at its start was refused then, and computed nothing.
+        // A run that found the folder at its start was rejected, and computed nothing.
         let computed = codes.iter().filter(|code| **code != 2).count();
         assert!(codes.contains(&0), "{codes:?}");
         let name = format!("out-{force}");
@@ -341,13 +341,13 @@ fn many_runs_at_once_lose_nothing() {
         let mut steps: Vec<u64> = folders.map(|one| steps_in(&folder.path(&one))).collect();
         steps.sort_unstable();
         steps.dedup();
-        // With --force a run that starts when another has ended replaces it, as it was told to.
+        // With --force, a run that starts after another has ended replaces it, as requested.
         let replaced = codes.iter().filter(|code| **code == 0).count() - 1;
         assert!(
             steps.len() + replaced * usize::from(force) >= computed,
             "{steps:?} {codes:?}"
         );
-        // Set aside by one that found the name taken then, the earlier run may be beside, too.
+        // If another run has moved it, the earlier run may also be in a neighbouring folder.
         steps.retain(|steps| !force || *steps != 5);
         assert!(steps.iter().all(|steps| *steps >= 100), "{steps:?}");
         let hidden = folder

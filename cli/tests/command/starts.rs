@@ -9,14 +9,14 @@ use clebsch::card::{OpenError, Settings, Trajectory};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// How many inquiries were made of the rotor, one test at a time.
+/// The number of probe trajectories of the rotor, one test at a time.
 static INQUIRIES: AtomicUsize = AtomicUsize::new(0);
 static ALONE: Mutex<()> = Mutex::new(());
 
 /// How many runs have a folder.
 static RUNS: AtomicUsize = AtomicUsize::new(0);
 
-/// The rotor, whose inquiries are counted.
+/// The rotor, with a count of its probe trajectories.
 fn counted(
     parameters: &[Vec<f64>],
     initial: &[Vec<f64>],
@@ -28,7 +28,7 @@ fn counted(
     (crate::rotor::CARD.open)(parameters, initial, settings)
 }
 
-/// A run of it, and the inquiries made.
+/// A run of the rotor, and the number of probe trajectories.
 fn inquired(words: &str) -> (Done, usize) {
     let _alone = ALONE.lock();
     INQUIRIES.store(0, Ordering::SeqCst);
@@ -51,7 +51,7 @@ fn the_search_for_the_stability_limit_ends_when_its_time_is_over() {
     let (found, all) = run("600");
     found.ended(0).never_prints("not found within");
     assert!(inquiries < all, "{inquiries} {all}");
-    rotor("run --help").prints("only reported; 0 disables the search [default: 1]");
+    rotor("run --help").prints("0 disables the search [default: 1]");
     // The trajectory is the one of a run without a search.
     let (unsearched, inquiries) = run("0");
     assert_eq!(inquiries, 0);
@@ -259,7 +259,7 @@ body_momentum_B = [0.0, 0.0, 0.0]"#;
     );
 }
 
-/// No momentum makes a particle faster than light: of large ones a step says nothing of small motions.
+/// No momentum makes a particle faster than light, so a step with a large momentum does not describe small motions.
 #[test]
 fn a_relativistic_particle_starts() {
     let model = r#"model Rel1 {

@@ -1,5 +1,5 @@
-//! Runs that do not come to their end: refused before the first step they leave nothing, stopped after it they leave
-//! what was computed, and say so wherever it is read.
+//! Incomplete runs: if the first step fails, nothing is written. If a later step fails, the results so far are
+//! written and marked as incomplete.
 
 use crate::common::{Done, Folder, on, rotor};
 use clebsch_cli::gallery::Gallery;
@@ -109,7 +109,7 @@ fn a_run_that_stops_keeps_the_earlier_results() {
     let before = read(&out, "run.json");
     let done = run(&file, &["--out", &out, "--force"]).exits(1);
     assert_eq!(read(&out, "run.json"), before);
-    // Its own are beside them.
+    // Its own results are next to them.
     assert_eq!(folder.names(), ["failing.toml", "out", "out-2"]);
     let kept = folder.path("out-2");
     done.prints(format!("written to {kept}: "));
@@ -191,7 +191,7 @@ fn a_refused_first_step_says_what_is_wrong_with_the_kinetic_energy() {
             let object = json(&done.out);
             let said = object["error"].as_str().expect("a message");
             assert!(said.contains(&words), "{model}: {said}");
-            // Other commands that begin with a step.
+            // Other commands whose first action is a step.
             on(&gallery, &["compare", model, "--steps", "5"]).says(&words);
         }
     }
@@ -232,7 +232,7 @@ fn a_comparison_that_stops_leaves_what_it_computed() {
         let step: u64 = every.parse().expect("a number");
         assert_eq!(times.len() as u64, node / step, "{text}");
         assert!(Path::new(&format!("{out}/comparison.svg")).exists());
-        // The same as an object.
+        // The same values in the JSON object.
         let done = rotor(&[&arguments[..], &["--json"]].concat()).exits(1);
         let object = json(&done.out);
         assert_eq!(object["exit_code"], 1);

@@ -37,7 +37,7 @@ fn a_row_is_the_run_of_its_point() {
     assert_eq!(values[..4], [0.0, 0.0, 0.0, 0.25]);
     assert_eq!(column(&out, "h")[..4], [0.1, 0.05, 5.0, 0.1]);
     assert_eq!(column(&out, "status")[..4], [0.0, 0.0, 2.0, 0.0]);
-    // The same point by a case file: number four of the grid.
+    // Point number four of the grid, given by a case file.
     let case = clebsch("case heavy-top").out;
     let lines = case.lines().map(|line| match line.starts_with("gU = ") {
         true => "gU = [0.0, 0.0, 0.25]".to_owned(),
@@ -204,7 +204,7 @@ fn killed_sweeps_go_on_with_what_is_left() {
     for signal in ["-KILL", "-INT", "-KILL", "-TERM"] {
         let before = written(&out, "samples.bin");
         let mut child = begun(&words(&out));
-        // There is something to be gone on from, and more than before.
+        // There is a checkpoint, and it contains more points than before.
         wait_for(&mut child, &out, "checkpoint", |bytes| !bytes.is_empty());
         wait_for(&mut child, &out, "samples.bin", |bytes| bytes != before);
         ended_by(signal, child);

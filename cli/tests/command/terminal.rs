@@ -125,7 +125,7 @@ fn tables_fit() {
             let run = ["run", model, "--steps", "20"];
             let done = with(&Gallery::shipped(), &run, "", Some(width)).succeeds();
             fits(&done.out, width, model);
-            // The same words as without a limit.
+            // The words are unchanged without a width limit.
             let wide = on(&Gallery::shipped(), &run).out;
             for word in wide
                 .split_whitespace()

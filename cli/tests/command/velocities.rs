@@ -34,7 +34,7 @@ fn a_velocity_is_that_of_the_start_to_the_order_of_the_method() {
         let said = "initial momentum from velocity_x: (0, 0.3)";
         assert!(ran.out.contains(said), "{}", ran.out);
         let h = std::f64::consts::TAU / f64::from(count);
-        // The first step goes by h v and half of the acceleration times h^2.
+        // The displacement of the first step is h v plus half of the acceleration times h^2.
         let first = ran.at("x_1", 1) - 1.0;
         assert!((first / (h * h) + 0.5).abs() < 1e-3, "{first}");
         let last = usize::try_from(count).expect("few");
@@ -273,7 +273,7 @@ fn velocities_that_leave_a_constraint_are_refused() {
     done.says(said);
 }
 
-/// Particles beside another field: both start with velocities.
+/// Particles together with another field: both start with velocities.
 #[test]
 fn every_configuration_of_a_fluid_has_a_velocity() {
     let model = "model Mixed {

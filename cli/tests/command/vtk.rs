@@ -260,7 +260,7 @@ fn the_folder_is_replaced_with_the_other_results_and_never_with_what_is_not_of_a
     let out = folder.path("out");
     run("harmonic-rotor", None, &["--steps", "10"], &out);
     let first = fs::read(format!("{out}/vtk/bodies-05.vtp")).expect("a file");
-    // The same bytes again, fewer files with fewer samples, none where none are asked for.
+    // A repeated run gives the same bytes; fewer samples give fewer files; without the option there are none.
     run("harmonic-rotor", None, &["--steps", "10", "--force"], &out);
     let again = fs::read(format!("{out}/vtk/bodies-05.vtp")).expect("a file");
     assert!(first == again);
@@ -340,7 +340,7 @@ fn an_interrupted_run_is_gone_on_with_to_the_same_files() {
     let mut child = begun(&words(&out, "--checkpoint 0.001"));
     wait_for(&mut child, &out, "checkpoint", |bytes| !bytes.is_empty());
     ended_by("-INT", child);
-    // Whether it was met in the middle or had come to its end.
+    // Whether the signal arrived during the run or after its end.
     assert!(succeeds(&words(&out, "--resume")));
     let contents = |name: &str| -> Vec<(String, Vec<u8>)> {
         let files = names_in(folder.path(&format!("{name}/vtk"))).into_iter();

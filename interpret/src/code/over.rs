@@ -6,7 +6,7 @@ use crate::value::Value;
 use clebsch::Real;
 use std::sync::{Arc, OnceLock};
 
-/// Deepest nesting of functions that is followed.
+/// The largest depth of nested functions.
 const DEEPEST: usize = 64;
 
 impl<T: Real> Routine<T> {

@@ -12,17 +12,17 @@ use clebsch::line;
 /// How a loop uses the values of its body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// `fill`: they are put into a list.
+    /// `fill`: writes the values to a list.
     Fill,
-    /// `try_fill`: the same, up to the first that is an error.
+    /// `try_fill`: writes the values to a list, up to the first error.
     TryFill,
-    /// `update`: put into one list, with another value kept; up to the first that is none.
+    /// `update`: writes one part of each value to a list and keeps the other part, up to the first `None`.
     Update,
     /// `try_each`: tests, up to the first error.
     TryEach,
     /// `sum` and `total`.
     Sum(Terms),
-    /// The same sum over the sizes of the terms, which is a scale for the sum.
+    /// The sum of the sizes of the terms, which is a scale for the sum.
     Sizes(Terms),
 }
 
@@ -42,7 +42,7 @@ pub struct Slice {
     pub list: Code<f64>,
     /// The first site.
     pub from: Option<Code<f64>>,
-    /// The one after the last.
+    /// The site after the last.
     pub to: Option<Code<f64>>,
 }
 
@@ -150,7 +150,7 @@ impl Sweep {
         let mut all = Column::Values(Vec::new());
         let mut i = from;
         while i < to {
-            // The first says of what kind they are.
+            // The first value determines their kind.
             if i > from {
                 let mut lists = Lists {
                     gathered: Some(&mut all),

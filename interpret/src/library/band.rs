@@ -1,5 +1,5 @@
-//! Velocities of all sites together: the search of the runtime over lists of numbers, with what sites and terms of
-//! neighbours add executed.
+//! Solves for the velocities of all sites together: the search of the runtime, over lists of numbers, with the
+//! contributions of sites and coupling terms from the interpreter.
 
 use crate::code::{Code, Exit, Native, Places, Special, unfit};
 use crate::failure::Failure;
@@ -74,7 +74,7 @@ fn range<T: Real>(places: &mut Places<T>, code: &Code<T>) -> Result<[usize; 2], 
     }
 }
 
-/// Sites that a term touches.
+/// The sites of a term.
 fn touched<T: Real>(list: &Value<T>) -> Option<Vec<usize>> {
     match list {
         Value::List(all) => all.iter().map(Value::count).collect(),
@@ -82,7 +82,7 @@ fn touched<T: Real>(list: &Value<T>) -> Option<Vec<usize>> {
     }
 }
 
-/// An array of as many numbers.
+/// An array of this many numbers.
 fn numbers<T: Real>(value: &Value<T>, count: usize) -> Option<Vec<T>> {
     let all = value.dense()?.data;
     (all.len() == count).then_some(all)
@@ -162,7 +162,7 @@ impl<T: Real> Terms<'_, T> {
         Ok(())
     }
 
-    /// Adds what one term gives to its sites.
+    /// Adds the contribution of one term to its sites.
     fn put(&self, one: &Value<T>, sums: &mut Sums<'_, T>) -> Option<()> {
         let n = self.n;
         let Value::List(both) = one else { return None };
@@ -187,7 +187,7 @@ impl<T: Real> Terms<'_, T> {
         Some(())
     }
 
-    /// Solves for the velocities of momenta that are known.
+    /// Solves for the velocities of known momenta.
     fn solve(
         &self,
         places: &mut Places<T>,
@@ -205,7 +205,7 @@ impl<T: Real> Terms<'_, T> {
         let mut stopped = None;
         let solved = band.solve(n, [first, last], |sums| {
             if let Err(exit) = self.add(places, sums) {
-                // No number is any more.
+                // NaN ends the search.
                 sums.add(n, 0, &vec![T::from_f64(f64::NAN); n]);
                 stopped.get_or_insert(exit);
             }

@@ -1,4 +1,4 @@
-//! Where functions are defined, and what a step leaves of its equations.
+//! Domains of functions, and residuals of the equations of a step.
 
 use crate::code::Native;
 use crate::value::{Kept, Value};
@@ -50,7 +50,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             [Value::Domain(d), Value::Real(x)] => Some(Value::Bool(d.admits(*x))),
             _ => None,
         },
-        // Rows of a momentum, by the impulse that they get.
+        // Rows of a momentum, with the impulse that they receive.
         ("not_less", 3) => |a, _| match a {
             [momentum, Value::List(rows), Value::Real(impulse)] => {
                 let m = momentum.dense()?;

@@ -12,13 +12,13 @@ pub(crate) fn turned<T: Real>(a: &Dense<T>, b: &Dense<T>) -> Dense<T> {
     a.product(b).orthonormalised()
 }
 
-/// The inverse of an invertible map; all NaN where a step has made the matrix singular.
+/// The inverse of an invertible map; all NaN if a step has made the matrix singular.
 pub(crate) fn linear_inverse<T: Real>(a: &Dense<T>) -> Dense<T> {
     a.small_inverse()
         .unwrap_or_else(|| Dense::unknown(a.rows, a.cols))
 }
 
-/// The inverse of an element kept as its matrix.
+/// The inverse of an element stored as a matrix.
 pub(crate) fn inverse_kept<T: Real>(kept: Kept, a: &Dense<T>) -> Dense<T> {
     match kept {
         Kept::Orthogonal => a.transpose(),
@@ -27,7 +27,7 @@ pub(crate) fn inverse_kept<T: Real>(kept: Kept, a: &Dense<T>) -> Dense<T> {
     }
 }
 
-/// The product of two elements kept as their matrices.
+/// The product of two elements stored as matrices.
 pub(crate) fn composed_kept<T: Real>(kept: Kept, a: &Dense<T>, b: &Dense<T>) -> Dense<T> {
     match kept {
         Kept::Orthogonal => turned(a, b),
@@ -132,7 +132,7 @@ fn numbers<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
     Some(Value::List(rows.into_iter().map(Value::Real).collect()))
 }
 
-/// The rest of a place as the static type takes it.
+/// The rest of a position, for the static type.
 fn way<T: Real, const R: usize>(a: &Value<T>) -> Option<SMatrix<T, R, 1>> {
     Some(a.dense()?.fixed())
 }

@@ -12,7 +12,7 @@ use std::cell::RefCell;
 
 type Done<T> = Result<Value<T>, Exit<T>>;
 
-/// How many values a list has.
+/// The number of values in a list.
 fn length<T: Real>(list: &Value<T>) -> Option<usize> {
     match list {
         Value::Sites(column) => Some(column.len()),
@@ -193,7 +193,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
     })
 }
 
-/// The shorter step that can be made, if there is one.
+/// A smaller step size that succeeds, if there is one.
 #[allow(clippy::option_option)] // `None` marks a value of another kind.
 fn shorter_step<T: Real>(works: &Value<T>) -> Option<Option<f64>> {
     match works {
@@ -245,7 +245,7 @@ fn agree<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     Ok(Value::Unit)
 }
 
-/// Attitudes as the runtime changes them.
+/// Operations of the runtime that change attitudes.
 fn changed<T: Real>(
     list: &mut Vec<line::Attitude<T>>,
     change: impl FnOnce(&mut line::Attitudes<T>),

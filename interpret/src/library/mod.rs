@@ -21,7 +21,7 @@ use crate::value::Value;
 use clebsch::Real;
 use clebsch::linalg::Dense;
 
-/// The numbers of field names that mean something to the runtime's own types.
+/// The numbers of field names that the runtime's own types use.
 pub const NAMES: [&str; 12] = [
     "rotation",
     "translation",
@@ -76,8 +76,8 @@ pub fn inner<T: Real>(value: &Value<T>) -> Option<Value<T>> {
     }
 }
 
-/// The function of the runtime with this name, as it is called with so many arguments; a method
-/// counts what it is a method of.
+/// The function of the runtime with this name and number of arguments; for a method, the receiver
+/// counts as an argument.
 pub fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
     algebra::native(name, arguments)
         .or_else(|| functions::native(name, arguments))
@@ -99,7 +99,7 @@ pub fn kernel<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
         .or_else(|| groups::native(name, arguments))
 }
 
-/// The same for those that change their first argument, or call back.
+/// Like `kernel`, for functions that change their first argument or call back.
 pub fn special<T: Real>(name: &str) -> Option<Special<T>> {
     special::kernel(name)
         .or_else(|| special::special(name))

@@ -11,7 +11,7 @@ use clebsch::{
 };
 use nalgebra::Vector3;
 
-/// A covector between the frames by an element kept as its matrix: to space, or to the body.
+/// Transforms a covector with an element stored as a matrix: to space, or to the body.
 fn by_matrix<T: Real>(element: &Value<T>, covector: &Dense<T>, to_space: bool) -> Option<Dense<T>> {
     let Value::Element(kept, g) = element else {
         return None;
@@ -28,7 +28,7 @@ fn by_matrix<T: Real>(element: &Value<T>, covector: &Dense<T>, to_space: bool) -
     })
 }
 
-/// A covector between the frames by any element.
+/// Transforms a covector with any element.
 macro_rules! covector {
     ($method:ident, $to_space:literal) => {
         |a, _| {

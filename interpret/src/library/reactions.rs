@@ -84,7 +84,7 @@ fn at<T>((size, all): (usize, &[T]), site: usize) -> &[T] {
     all.get(site * size..(site + 1) * size).unwrap_or_default()
 }
 
-/// Takes the search out of its place for as long as it works on lists.
+/// Takes the search out of its place while it works on lists.
 fn with<T: Real>(
     places: &mut Places<T>,
     own: &Code<T>,
@@ -104,7 +104,7 @@ fn components<T: Real>(places: &Places<T>, list: &Code<T>) -> Option<usize> {
     numbers(list.place(places)?).map(|(n, _)| n)
 }
 
-/// Puts the impulses out, around a ring once more on either side.
+/// Writes the impulses, on a ring with one more copy on either side.
 fn put<T: Real>(search: &Multipliers<T>, places: &mut Places<T>, out: &Code<T>) -> Option<()> {
     let Value::Sites(Column::Arrays([rows, cols], all)) = out.place_mut(places)? else {
         return None;

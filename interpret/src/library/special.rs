@@ -1,4 +1,4 @@
-//! Functions that change what they are given, and those that call back.
+//! Functions that change their arguments or call back.
 
 use super::algebra::numbers;
 use crate::code::{Code, Exit, Places, Special, unfit};
@@ -27,7 +27,7 @@ fn as_mut_slice<T: Real>(_: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     Ok(Value::Part(at, 0))
 }
 
-/// Writes numbers behind one another into an array.
+/// Writes numbers one after another into an array.
 fn put_numbers<T: Real>(places: &mut Places<T>, rest: &Value<T>, list: Vec<T>) -> Done<T> {
     let Value::Part(at, from) = *rest else {
         return Err(missing());
@@ -309,7 +309,7 @@ fn from_fn<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     Ok(Value::of(Dense { rows, cols, data }))
 }
 
-/// `columns(|axis| ...)`: a square matrix, whose first column says how many there are.
+/// `columns(|axis| ...)`: a square matrix, whose first column determines its size.
 fn columns<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     let [closure] = a else {
         return Err(missing());

@@ -10,7 +10,7 @@ fn told<T: Real>(r: Result<(), ParameterError>) -> Option<Value<T>> {
     Some(Value::result(r.map(|()| Value::Unit)))
 }
 
-/// A question to a square matrix.
+/// A check of a square matrix.
 macro_rules! square {
     ($f:path) => {
         |a, _| {
@@ -23,7 +23,7 @@ macro_rules! square {
     };
 }
 
-/// A question to an argument of a function.
+/// A check of an argument of a function.
 macro_rules! argument {
     ($f:path) => {
         |a, _| match a {
@@ -118,7 +118,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             )),
             _ => None,
         },
-        // Whether the impulse is known that the momentum is projected with, whatever is taken.
+        // Whether the impulse of the projection is determined.
         ("validate::is_determined", 5) => |a, _| match a {
             [
                 Value::Text(name),

@@ -31,9 +31,9 @@ pub struct Place {
 pub struct Carded {
     /// The program.
     pub model: Arc<LineModel>,
-    /// How many sites, and how it ends.
+    /// The number of sites and the end conditions.
     pub choice: Choice,
-    /// The card; its functions are put in by who opens it.
+    /// The card; the caller that opens it sets its functions.
     pub card: Card,
     /// The places of the parameters.
     pub parameters: Vec<Place>,
@@ -282,8 +282,9 @@ fn of_all_sites<'a>(summary: &str, names: impl Iterator<Item = &'a str>) -> Stri
 
 /// Describes how a chain is run, and lists the quantities that are not computed.
 fn told(left_out: &[String]) -> String {
-    let mut told =
-        String::from("\nprogram              one for every number of sites, with loops over them");
+    let mut told = String::from(
+        "\nprogram              one for any number of sites, with loops over the sites",
+    );
     if !left_out.is_empty() {
         told.push_str("; not computed: ");
         told.push_str(&left_out.join(", "));
@@ -337,7 +338,7 @@ impl Short<'_> {
             return None;
         };
         let name = ascii(&own.name.text);
-        // Where an end holds it at the first site it moves at another.
+        // If an end condition prescribes it at the first site, it moves at another site.
         let mut places = fields.iter().filter_map(|place| {
             let (of, site) = place.ascii.rsplit_once('_')?;
             site.parse().ok().filter(|_| of == name)
@@ -372,7 +373,7 @@ impl Short<'_> {
         each.collect()
     }
 
-    /// The place of a field, with the quantity that the field is a copy of.
+    /// The place of a field, with the quantity of which the field is a copy.
     fn placed(&self, field: &Field, fields: &[Field]) -> Option<Placed> {
         if let Some(alone) = self.alone(field, fields) {
             return Some(alone);

@@ -21,7 +21,7 @@ pub(super) struct Composed {
 }
 
 impl LineTrajectory {
-    /// The same chain, with steps of size `h` that are composed to this order.
+    /// This chain, with steps of size `h` composed to the given order.
     ///
     /// # Errors
     /// If the first step fails. The error contains a smaller step that succeeds, if one is found.

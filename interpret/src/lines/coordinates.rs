@@ -17,9 +17,9 @@ use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 /// The role of a variable of the program in the form that users see.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Of {
-    /// Users see the element in its place.
+    /// Users see the element instead.
     Element,
-    /// Users see the momentum of the element in its place.
+    /// Users see the momentum of the element instead.
     Momentum,
     /// The element or its momentum already contains it.
     Rest,
@@ -116,7 +116,7 @@ pub(super) fn fields(
         .collect()
 }
 
-/// Whether every element that is given is one.
+/// Whether every given matrix is an element.
 pub(super) fn admit(c: &Coordinates, numbers: &Numbers<'_>) -> Result<(), Unstarted> {
     let quantity = text(&c.name);
     let missing = || Unstarted::Missing(c.name.clone());
@@ -184,7 +184,7 @@ fn of_space(one: &[f64]) -> Option<(Matrix3<f64>, Vector3<f64>)> {
     ))
 }
 
-/// The same of the plane.
+/// Like `of_space`, for the plane.
 fn of_plane(one: &[f64]) -> Option<(Matrix2<f64>, Vector2<f64>)> {
     let [a, b, x, c, d, y, ..] = *one else {
         return None;

@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// order.
 pub type Numbers<'a> = dyn Fn(&str) -> Option<Vec<f64>> + 'a;
 
-/// How a field is read.
+/// The form in which a field is read.
 #[derive(Clone, Debug)]
 enum Read {
     /// An array of rows and columns.
@@ -41,7 +41,7 @@ enum Read {
     Ends,
     /// A number of sites.
     Count,
-    /// Numbers that are f64 whatever the scalar.
+    /// Numbers that are f64 for any scalar.
     Doubles(usize),
     /// Cells along each direction.
     Cells(usize),
@@ -51,7 +51,7 @@ enum Read {
     Marker,
 }
 
-/// A struct that is given.
+/// A struct of input data.
 #[derive(Clone, Debug)]
 pub struct Given {
     layout: Arc<Layout>,
@@ -154,7 +154,7 @@ impl Read {
         }
     }
 
-    /// The value of one site, or of all.
+    /// The value at one site, or at all sites.
     fn one(&self, name: &'static str, list: &[f64]) -> Result<Value<f64>, ParameterError> {
         let matrix = |rows, cols| {
             let entry = |i: usize, j: usize| list.get(i * cols + j).copied().unwrap_or(f64::NAN);
@@ -242,7 +242,7 @@ impl Given {
         })
     }
 
-    /// The fields that say where particles live, with how many numbers each is.
+    /// The fields that describe the domain of particles, with the number of their components.
     pub fn space(&self) -> impl Iterator<Item = (&str, usize)> {
         self.fields.iter().filter_map(|(name, read)| match read {
             Read::Doubles(_) | Read::Cells(_) | Read::Box(_) => Some((name.as_str(), read.count())),

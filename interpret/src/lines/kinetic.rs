@@ -1,5 +1,5 @@
-//! Whether the kinetic energy of the particles of a fluid is positive where a run starts. Takes the momenta that a
-//! model gives to velocities; gives the warning of other models, summed over particles.
+//! Checks whether the kinetic energy of the particles of a fluid is positive at the start of a run. Takes the
+//! momenta as functions of velocities; gives the same warning as for other models, summed over particles.
 
 use super::{LineModel, Numbers};
 use clebsch::kinetic::KineticWarning;
@@ -14,7 +14,7 @@ impl LineModel {
         numbers: &Numbers<'_>,
         sites: impl Fn(&str) -> Option<usize>,
     ) -> Option<KineticWarning> {
-        // Elsewhere neighbours may share their kinetic energy.
+        // In other models, neighbours may share a kinetic energy.
         self.space().next()?;
         let (name, _) = self.momenta.first()?;
         let field = name.strip_prefix("momenta_of_")?;
@@ -24,7 +24,7 @@ impl LineModel {
             let found = self.momenta(choice, numbers, field, velocities);
             found.ok().flatten().filter(|p| p.len() == count * size)
         };
-        // A vector potential adds what no velocity makes.
+        // A vector potential adds a term that does not depend on velocities.
         let at_rest = momenta(&vec![0.0; count * size])?;
         let along = |d: usize| {
             let unit: Vec<f64> = (0..count * size)

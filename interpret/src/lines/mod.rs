@@ -1,5 +1,5 @@
 //! Models with labels for every number of sites: the program with loops over sites that is emitted for
-//! them, executed. Takes the text of a model; gives lines that start from data at sites, and run.
+//! them, executed. Takes the text of a model; gives chains that start from data at sites, and run.
 
 mod asked;
 mod card;
@@ -44,9 +44,9 @@ pub enum Unstarted {
     Components {
         /// The quantity.
         quantity: String,
-        /// How many numbers a value has.
+        /// The number of components of a value.
         components: usize,
-        /// How many there are.
+        /// The number of components found.
         found: usize,
     },
     /// A value is not valid, or the first step fails.
@@ -86,7 +86,7 @@ type Asked = Vec<(String, Routine<f64>)>;
 pub struct LineModel {
     /// The name of the model.
     name: String,
-    /// The names of the numbers of sites, a label each, and whether one of them is a line.
+    /// The names of the numbers of sites, one for each label, and whether one label is a chain.
     counts: Vec<String>,
     has_line: bool,
     parameters: Given,
@@ -95,18 +95,18 @@ pub struct LineModel {
     initial: Given,
     new: Routine<f64>,
     start: Routine<f64>,
-    /// The same, with initial momenta projected on the constraints, if there are any.
+    /// Like `start`, with initial momenta projected on the constraints; `None` without constraints.
     projecting: Option<Routine<f64>>,
     step: Routine<f64>,
     workspace: Routine<f64>,
-    /// Whether velocities of all sites are found together.
+    /// Whether a step solves for the velocities of all sites together.
     together: bool,
-    /// Where the energy of small steps is known.
+    /// The energy in the limit of small steps, if it is known.
     energies: Option<Routine<f64>>,
     energy_sizes: Option<Routine<f64>>,
     totals: Asked,
     total_sizes: Asked,
-    /// The state as sizes are taken of it, where impulses act at nodes.
+    /// The state that measures sizes, if impulses act at nodes.
     enlarged: Option<Routine<f64>>,
     observers: Asked,
     functionals: Asked,
@@ -439,7 +439,7 @@ impl LineModel {
         self.start_by(&self.start, choice, h, numbers)
     }
 
-    /// The same, but projects the momenta on the constraints, however large their normal part is.
+    /// Like [`LineModel::start`], but projects the momenta on the constraints, however large their normal part is.
     ///
     /// # Errors
     /// As [`LineModel::start`].

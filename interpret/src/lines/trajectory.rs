@@ -46,7 +46,7 @@ impl LineTrajectory {
         self.step_in_parts(&mut |_, _| {})
     }
 
-    /// The same. After each of the chain's own steps, calls `seen` with its share of the whole step and the chain.
+    /// Takes a step. After each of the chain's own steps, calls `seen` with its share of the whole step and the chain.
     ///
     /// # Errors
     /// As [`LineTrajectory::step`].

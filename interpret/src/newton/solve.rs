@@ -75,7 +75,7 @@ pub struct Solve {
     pub settled: Settled,
     /// The residual as a separate function of parameters, step, values of the node, momenta and trial.
     pub residual_at: Function,
-    /// The same residual over numbers with their rounding.
+    /// The residual over numbers with their rounding.
     pub rounded_at: Routine<Rounded>,
     /// The tangent as a separate function of parameters, step, values of the node and trial.
     pub tangent_at: Function,
@@ -340,8 +340,8 @@ impl Solve {
         Ok(rows.filter_map(|i| all.get(i).copied()).collect())
     }
 
-    /// The solution to be taken where the one found is not known to be principal, or none was found.
-    /// None where the iteration begins again, at the principal root.
+    /// The solution to use if the iteration has found none, or one that is not known to be principal.
+    /// `None` if the iteration starts again, at the principal root.
     #[cold]
     fn settle(
         &self,
@@ -415,7 +415,7 @@ impl Solve {
         })
     }
 
-    /// Says which equation is worst, and which step could be solved.
+    /// Reports the equation with the largest residual, and the step size that could be solved.
     #[cold]
     fn refused(
         &self,

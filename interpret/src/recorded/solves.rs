@@ -72,7 +72,7 @@ pub struct RecordedSolve {
 }
 
 impl RecordedSolve {
-    /// The same equations; nothing if the search or the node is not found by places alone.
+    /// Records these equations. Returns `None` if places alone do not give the search or the node.
     pub fn of(with: Arc<Solve>) -> Option<Self> {
         let at_trial = |what: &AtTrial| what.body.over(Traced::constant);
         Some(RecordedSolve {
@@ -292,7 +292,7 @@ pub fn remember(
     let mut all = Vec::new();
     unfit(numbers(unfit(found.values.first())?, &mut all))?;
     let (node, first) = (unfit(count(&node))?, unfit(first_count(places))?);
-    // The state has gone on by one node.
+    // The state has advanced by one node.
     let node = node - (first - 1);
     let is_noted = with_newest_cut(|cut| {
         let solved = &mut cut.solved;

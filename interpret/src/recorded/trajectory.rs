@@ -79,7 +79,7 @@ pub struct Fixed {
 }
 
 impl Fixed {
-    /// The same, for steps of `h`.
+    /// These values, for steps of size `h`.
     pub fn with_step(&self, h: f64) -> Self {
         Fixed {
             step: Value::Real(h),

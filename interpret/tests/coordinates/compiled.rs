@@ -1,4 +1,4 @@
-//! Lines of linear maps and of frames as they are compiled, in coordinates, beside the same from their text.
+//! Compiled chains of linear maps and of frames, in coordinates, compared with the same chains from their text.
 
 use super::models::{Chain, H, ellipsoids, hanging, scattered};
 use super::started;

@@ -4,7 +4,7 @@
 use super::matrix::{A, D, real};
 use clebsch::Real;
 
-/// The step of all.
+/// The step size of all models.
 pub const H: f64 = 0.02;
 
 /// A line.
@@ -13,26 +13,26 @@ pub struct Chain {
     /// The moving quantity, and the number of rows of its matrix.
     pub element: &'static str,
     pub rows: usize,
-    /// How it ends; none around a ring.
+    /// Its end conditions; `None` for a ring.
     pub ends: Option<[&'static str; 2]>,
-    /// Numbers by name, for so many nodes.
+    /// Numbers by name, for this number of nodes.
     pub given: fn(&str, usize) -> Option<Vec<f64>>,
     /// The action of an edge, by elements at its two ends.
     pub action: fn(&[A], &[A], bool) -> D,
-    /// Directions of variation, seen from the side of the velocity, and where their component of the momentum stands.
+    /// Directions of variation on the side of the velocity, and the positions of their components in the momentum.
     pub directions: fn() -> Vec<(Vec<f64>, usize)>,
     pub spatial: bool,
-    /// How many of its first nodes an end holds.
+    /// The number of first nodes that an end condition prescribes.
     pub held: usize,
 }
 
 impl Chain {
-    /// How many nodes there are with so many segments.
+    /// The number of nodes for a number of segments.
     pub fn nodes(&self, n: usize) -> usize {
         n + usize::from(self.ends.is_some())
     }
 
-    /// How many numbers a momentum has.
+    /// The number of components of a momentum.
     pub fn momentum(&self) -> usize {
         match (self.element, self.rows) {
             ("Q" | "R", n) => n * n,
@@ -89,7 +89,7 @@ fn sum(terms: impl Iterator<Item = D>) -> D {
 
 const I0: [f64; 3] = [1.0, 0.7, 0.5];
 
-/// Neo-Hookean ellipsoids whose centres are tied, each by its deformation.
+/// Neo-Hookean ellipsoids with coupled centres, each with its deformation.
 pub fn ellipsoids() -> Chain {
     fn given(name: &str, nodes: usize) -> Option<Vec<f64>> {
         Some(match name {
@@ -147,7 +147,7 @@ pub fn ellipsoids() -> Chain {
 
 const C0: [f64; 4] = [1.2, 0.3, 0.3, 0.9];
 
-/// Ellipses of the plane seen from space, around a ring, neighbours tied by their second moments.
+/// Ellipses of the plane in the space frame, on a ring, with neighbours coupled by their second moments.
 pub fn ellipses() -> Chain {
     fn given(name: &str, nodes: usize) -> Option<Vec<f64>> {
         Some(match name {
@@ -210,7 +210,7 @@ fn turns(count: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Rotors of the plane in a field, each turned towards its neighbours; the first one may be held.
+/// Rotors of the plane in a field, each coupled to its neighbours; the first one may be prescribed.
 pub fn rotors(ends: Option<[&'static str; 2]>) -> Chain {
     fn given(name: &str, nodes: usize) -> Option<Vec<f64>> {
         Some(match name {
@@ -420,7 +420,7 @@ pub fn frames(ends: Option<[&'static str; 2]>, spatial: bool) -> Chain {
     }
 }
 
-/// The same without the fluid, with its weight by `pos`.
+/// The rod without the fluid, with its weight stated by `pos`.
 pub fn hanging(ends: Option<[&'static str; 2]>) -> Chain {
     Chain {
         source: "model HangingFrames {

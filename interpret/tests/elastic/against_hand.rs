@@ -32,7 +32,7 @@ struct State {
 
 /// A shipped model with its stepper by hand.
 struct System {
-    /// How many states are tried.
+    /// The number of states.
     states: u64,
     /// The error that rounding leaves, divided by the conditioning.
     rounding: f64,
@@ -40,7 +40,7 @@ struct System {
     draw: fn(&mut Source) -> State,
     /// The values that are compared after a step, computed by hand from the data.
     by_hand: fn(&State) -> Option<Vec<f64>>,
-    /// The same values from the output of the card. A model with a constraint also shows its multiplier.
+    /// The values from the output of the card. A model with a constraint also shows its multiplier.
     shown: fn(&[Vec<f64>]) -> Vec<f64>,
     /// Numbers of parameters and initial values that may be mistaken without leaving the constraints.
     free: (&'static [usize], &'static [usize]),
@@ -146,7 +146,7 @@ const MOONEY_RIVLIN: System = System {
             of: Of::Metric,
         };
         let [q, p] = [0, 1].map(|k| Square(square(&state.initial[k])));
-        // By hand the momentum is seen from the body.
+        // The hand-written stepper uses the body momentum.
         let seen = (q.transpose() * p).0;
         let mut body = ElasticEllipsoid::start(&body, &q.0, &seen, state.h).ok()?;
         body.step().ok()?;
@@ -166,7 +166,7 @@ const FLUID: System = System {
         let q = near_one(source, 0.3);
         let size = q.determinant().cbrt();
         let q = q.scaled(1.0 / size);
-        // The model takes the reference for a ball.
+        // The model assumes that the reference is a ball.
         let own = Square::identity().scaled(source.between(0.5, 2.0));
         // A velocity Q L with tr L = 0 keeps the determinant.
         let turning = source.matrix::<3>().scaled(0.5);

@@ -1,13 +1,13 @@
-//! The bipolar chart near equal stretches: the tangent at rest is singular to the square of their difference and grows
-//! along the curve from rest, so that the principal root of a step exists. The thesis's run of figures 3.1 to 3.3 comes to
-//! stretches that differ by 4.1e-5 at node 949. The roots here are ends of that curve, followed with forty digits by another program, in which the
+//! The bipolar chart near equal stretches: the tangent at rest is singular to the square of their difference and grows along the
+//! curve from rest, so that the principal root of a step exists. The thesis's run of figures 3.1 to 3.3 comes to stretches that
+//! differ by 4.1e-5 at node 949. The roots here are ends of that curve, followed with forty digits by another program, in which the
 //! determinant of the tangent is nowhere smaller than at rest.
 
 use clebsch::card::{Settings, Trajectory};
 
 const MODEL: &str = include_str!("../../../models/elastic/pseudo-rigid.clebsch");
 
-/// A step from stretches of which the first two differ so.
+/// A step from stretches whose first two differ by this amount.
 fn step(apart: f64) -> Result<Box<dyn Trajectory>, String> {
     let card = clebsch_interpret::card(MODEL).expect("is read");
     let one = vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
@@ -75,8 +75,7 @@ fn steps_near_equal_stretches_take_their_principal_root() {
     }
 }
 
-/// Where stretches agree, to the rounding of the tangent, no velocity is determined at rest: the step is refused, whatever the
-/// momenta.
+/// If stretches agree to the rounding of the tangent, the velocity at rest is not determined: the step fails for all momenta.
 #[test]
 fn steps_at_equal_stretches_are_refused() {
     for apart in [0.0, 4e-7] {

@@ -58,7 +58,7 @@ impl Function {
         }
     }
 
-    /// One that grows slowly, so that products of two do not throw a body apart.
+    /// A function that grows slowly, so that products of two do not disrupt a body.
     fn slow(source: &mut Source) -> Self {
         match source.below(4) {
             0 => Self::Log(1),
@@ -90,7 +90,7 @@ impl Function {
 }
 
 impl Energy {
-    /// Three to five terms, and one that keeps determinants away from zero.
+    /// Three to five terms, and a term that keeps determinants away from zero.
     pub fn random(source: &mut Source) -> Self {
         let mut terms = vec![Term {
             hundredths: -50 - source.below(100) as i32,
@@ -129,7 +129,7 @@ impl Energy {
         self.0.iter().map(term).collect::<Vec<_>>().join(" + ")
     }
 
-    /// The same with the exponent, or the share, of one factor another one.
+    /// The energy with another exponent or share in one factor.
     pub fn changed(&self, source: &mut Source) -> Self {
         let mut terms = self.0.clone();
         let at = source.below(terms.len());

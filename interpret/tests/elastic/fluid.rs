@@ -1,6 +1,6 @@
 //! Homogeneous fluid ellipsoids of Dirichlet and Riemann against what is known of them: the modes of a sphere, where Maclaurin's
-//! spheroids lose their stability, the pressure of a sphere at rest, what a motion of any kind keeps.
-//! Density and constant of gravitation are one, the reference is a unit ball.
+//! spheroids lose their stability, the pressure of a sphere at rest, the invariants of any motion. Density and constant of
+//! gravitation are one, the reference is a unit ball.
 
 use clebsch::card::{Card, Settings, Trajectory};
 use core::f64::consts::PI;

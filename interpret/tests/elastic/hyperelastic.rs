@@ -253,7 +253,7 @@ fn step(
     off(&left, &before, size).max(off(&right, &after, other))
 }
 
-/// Short enough for any of these forces to leave placements invertible.
+/// Short enough that placements stay invertible under each of these forces.
 const STEP: f64 = 2e-3;
 
 /// Rounding leaves 1e-14 of the sum of all terms; inverses and fractional powers near their ends some digits more.

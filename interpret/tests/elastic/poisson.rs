@@ -238,7 +238,7 @@ impl Rod {
         fields.map(|field| value(&seen, field.ascii)).collect()
     }
 
-    /// How a state lies beside another in the coordinates of the bracket: momenta, then places and rotations.
+    /// The difference between two states in the coordinates of the bracket: momenta, then positions and rotations.
     fn beside(&self, state: &State, other: &State) -> Vec<f64> {
         let mut all = Vec::new();
         for (a, b) in state.iter().zip(other).skip(1).step_by(2) {
@@ -258,7 +258,7 @@ impl Rod {
         all
     }
 
-    /// The state that lies so beside another one, to first order.
+    /// The state with this difference from another state, to first order.
     fn moved(&self, state: &State, by: &[f64]) -> State {
         let mut out = state.clone();
         let mut next = by.iter();

@@ -1,12 +1,12 @@
-//! A chain whose ends hold rotations is the shorter chain between walls at these attitudes: clocks and what rotations carry
-//! go on beside them. A rod that hangs from an end that moves no more is driven as the pendulum typed by hand.
+//! A chain whose ends prescribe rotations equals the shorter chain between walls at these attitudes. Its clocks and
+//! advected quantities evolve unchanged. A driven rod that hangs from a fixed end moves like the pendulum typed by hand.
 
 use super::{card, observed, started};
 use clebsch::card::Card;
 
 const H: f64 = 0.05;
 
-/// Bodies that springs turn towards one another, of a stiffness that a clock at segments sets.
+/// Bodies coupled by torsion springs, whose stiffness depends on a clock at segments.
 const BODIES: &str = "model Bodies {
     label i in 0..N;
     param J: Sym<3> at nodes;
@@ -96,7 +96,7 @@ fn an_end_that_holds_a_rotation_is_a_wall_beside_a_shorter_chain() {
                 }
             }
         }
-        // The clocks of sites that are held go on as well.
+        // The clocks of prescribed sites advance, too.
         for (held, site) in [(first, 0), (last, n)] {
             if held == 1 {
                 let told = observed(&*a, &format!("tau_{site}"));

@@ -12,11 +12,11 @@ const STEPS: usize = 60;
 enum Beside {
     /// Constant forces.
     Forces,
-    /// Those, and what a field carries.
+    /// These additions, and a quantity that a field advects.
     Carried,
     /// A clock at every node drives it, and so do its ends.
     Clock,
-    /// Clocks of every kind, and what fields carry at nodes and at segments.
+    /// Clocks of every kind, and quantities that fields advect at nodes and at segments.
     Everything,
 }
 
@@ -227,11 +227,11 @@ impl Hand {
     }
 }
 
-/// Steps a chain beside its equations by hand, all that is observed compared.
+/// Steps a chain and its hand-written equations, and compares all observables.
 fn agrees(beside: Beside, n: usize, ends: Option<[&'static str; 2]>) {
     let card = card(&beside.model(), n, ends.is_none(), ends.unwrap_or_default());
     let mut hand = Hand::new(n, ends, beside);
-    // A lone momentum is named without its site.
+    // The name of a single momentum omits its site.
     let alone = (0..hand.x.len()).find(|j| !hand.is_given(*j));
     let of = |name: &str, site: Option<usize>| match name {
         "momentum" => vec![value(name, alone)],
@@ -311,7 +311,7 @@ fn what_a_field_carries_goes_on_beside_an_end_that_holds_it() {
     }
 }
 
-/// Loops over sites keep no values from step to step beside places and momenta: longer lines are refused whatever ends hold.
+/// Loops over sites store only positions and momenta between steps, so longer chains are rejected for any end conditions.
 #[test]
 fn lines_that_loops_do_not_take_are_refused_with_the_reason() {
     for (beside, why) in [

@@ -1,4 +1,4 @@
-//! Lines that run from their text beside what they must equal: the compiled ones, and their bodies written out.
+//! Chains that run from their text, compared with compiled chains and with bodies expanded site by site.
 
 use crate::compiled::{Case, Compiled, Data, Line};
 use clebsch::card::{Card, Field, Settings, Trajectory};
@@ -34,7 +34,7 @@ pub fn bits(list: &[f64]) -> Vec<u64> {
     list.iter().map(|x| x.to_bits()).collect()
 }
 
-/// Compares all that both show.
+/// Compares all observables.
 pub fn same(line: &mut LineTrajectory, built: &dyn Compiled, model: &LineModel, what: &str) {
     assert_eq!(line.node(), built.node(), "{what}");
     for name in model.observers() {
@@ -68,7 +68,7 @@ pub fn values(fields: &[Field], data: &Data) -> Vec<Vec<f64>> {
         let (key, site) = split(field);
         let list = data.of_ascii(key).expect("is given");
         let at = match list.len() == field.count() {
-            // The same at every site, or of an end.
+            // The same value at every site, or a value of an end.
             true => 0,
             false => site.expect("has a site") * field.count(),
         };
@@ -151,7 +151,7 @@ pub fn opened(
     (card, line.expect("starts"))
 }
 
-/// Lines from their text equal the compiled ones to the last bit.
+/// Chains from their text equal compiled chains bit for bit.
 pub fn equal_to_the_last_bit(lines: impl IntoIterator<Item = Line>) {
     for own in lines {
         let model = LineModel::read(own.source).expect("is read");
@@ -173,7 +173,7 @@ pub fn equal_to_the_last_bit(lines: impl IntoIterator<Item = Line>) {
     }
 }
 
-/// Lines move as their bodies do, written out.
+/// Chains move as the expanded bodies do.
 pub fn move_as_bodies_do(lines: impl IntoIterator<Item = Line>, sites: usize) {
     for own in lines {
         let source = own.source;
@@ -206,7 +206,7 @@ pub fn move_as_bodies_do(lines: impl IntoIterator<Item = Line>, sites: usize) {
     }
 }
 
-/// Lines are written down and go on to the last bit.
+/// Chains are saved and restored bit for bit.
 pub fn go_on(lines: impl IntoIterator<Item = Line>) {
     for own in lines {
         let source = own.source;
@@ -275,7 +275,7 @@ pub fn go_on_composed(lines: impl IntoIterator<Item = Line>) {
     }
 }
 
-/// A statement with another term, run beside the compiled line that has the right one, shows other numbers.
+/// A statement with a different term gives numbers that differ from the compiled chain.
 pub fn another_term_is_seen(lines: &[Line], source: &str, term: &str, rest: &str) {
     let mutated = source.replacen(term, rest, 1);
     assert_ne!(mutated, source, "{term}");

@@ -16,7 +16,7 @@ const SINE: &str = include_str!("../../../models/lattices/sine-gordon.clebsch");
 pub const ROD: &str = include_str!("../../../models/lattices/geometrically-exact-rod.clebsch");
 pub const WATER: &str = include_str!("../../../models/lattices/shallow-water-1d.clebsch");
 
-/// A number of sites and how the line ends; a ring where that is not said.
+/// A number of sites and the end conditions; a ring if there are none.
 #[derive(Clone, Debug)]
 pub struct Case {
     pub n: usize,
@@ -140,7 +140,7 @@ impl Random {
     }
 }
 
-/// A compiled line on its way.
+/// A running compiled chain.
 pub trait Compiled {
     fn step(&mut self) -> Result<(), String>;
     fn node(&self) -> u64;
@@ -153,7 +153,7 @@ pub trait Compiled {
 /// Totals by their names.
 pub type Named = Vec<(&'static str, Vec<f64>)>;
 
-/// A compiled line by the names of its fields: what it takes, how it ends, and what it shows. Ends are the variants of the
+/// A compiled chain by the names of its fields: input, end conditions and observables. Ends are the variants of the
 /// emitted types in lower case.
 macro_rules! compiled {
     (
@@ -169,7 +169,7 @@ macro_rules! compiled {
         pub struct $line($model, $state, $work);
 
         impl $line {
-            /// The line of these data, or why they are refused.
+            /// The chain with these data, or why they are rejected.
             pub fn of(case: &Case, data: &Data) -> Result<Box<dyn Compiled>, String> {
                 let ends = match case.ends {
                     $(None => $ends::Ring { $($around: data.value(stringify!($around)),)* },)?
@@ -291,7 +291,7 @@ compiled!(
     ]
 );
 
-/// A compiled line of some data, or why they are refused.
+/// A compiled chain with some data, or why they are rejected.
 pub type Make = fn(&Case, &Data) -> Result<Box<dyn Compiled>, String>;
 
 /// A line with data.

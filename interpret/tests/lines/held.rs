@@ -1,4 +1,4 @@
-//! Lines with held constraints, with data that are on them: a rod that cannot be stretched, a chain of rigid links.
+//! Chains with constraints, with data that satisfy them: an inextensible rod, a chain of rigid links.
 
 use super::*;
 use clebsch_models::lattices::hanging_chain::*;
@@ -8,8 +8,8 @@ pub const ROD: &str = include_str!("../../../models/lattices/kirchhoff-rod.clebs
 pub const CHAIN: &str = include_str!("../../../models/lattices/hanging-chain.clebsch");
 
 clebsch::model! {
-    /// Charged beads in the plane at distances that do not change, each with a number that follows from its place and whose
-    /// velocity stands beside that of the place.
+    /// Charged beads in the plane at constant distances. Each bead has a number that is advected by its position, and whose
+    /// velocity is coupled to the bead's velocity.
     pub model ChargedLinks {
         label i in 0..N;
         periodic;
@@ -180,7 +180,7 @@ fn charged(case: &Case) -> Data {
 pub fn all() -> [Line; 3] {
     let of_rod = pairs(&["free", "pinned", "clamped"], &["free", "pinned", "load"]);
     let pinned = pairs(&["free", "pinned"], &["free", "pinned"]);
-    // Two links between the same two beads hold one distance.
+    // Two links between the same two beads constrain the same distance.
     let beyond_two = |ends: &[[&'static str; 2]]| {
         let all = cases(true, ends).into_iter();
         all.filter(|c| c.n > 2).collect()

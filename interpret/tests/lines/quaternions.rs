@@ -6,7 +6,7 @@ use clebsch_models::lattices::quaternion_rod::*;
 pub const ROD: &str = include_str!("../../../models/lattices/quaternion-rod.clebsch");
 
 clebsch::model! {
-    /// Bodies along a line in unit quaternions, whose kinetic energy and whose coupling see how they have come round.
+    /// Bodies of a chain in unit quaternions, with a kinetic energy and a coupling that depend on the sign.
     pub model Twisted {
         label i in 0..N step s;
         periodic;
@@ -93,7 +93,7 @@ fn rod(case: &Case) -> Data {
     ]))
 }
 
-/// Bodies that see how they have come round.
+/// Bodies that depend on the sign of their quaternion.
 fn twisted(case: &Case) -> Data {
     let nodes = case.nodes();
     let mut r = Random(9 + case.n as u64);

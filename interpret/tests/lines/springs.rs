@@ -1,9 +1,9 @@
-//! Beads in space that springs join: totals about places that ends hold, of one end or of both.
+//! Beads in space that are joined by springs: totals about positions that one or both ends prescribe.
 
 use super::*;
 
 clebsch::model! {
-    /// Beads in space that springs join.
+    /// Beads in space that are joined by springs.
     pub model Strung {
         label i in 0..N;
         param m: Real at nodes;

@@ -1,4 +1,4 @@
-//! Lines whose velocities are found together.
+//! Chains that solve for all velocities together.
 
 use super::*;
 use clebsch_models::lattices::coupled_body_chain::*;
@@ -6,7 +6,7 @@ use clebsch_models::lattices::coupled_body_chain::*;
 const BODIES: &str = include_str!("../../../models/lattices/coupled-body-chain.clebsch");
 
 clebsch::model! {
-    /// Beads whose velocities are joined, by an amount that depends on where they are.
+    /// Beads with coupled velocities; the coupling depends on their positions.
     pub model Woven {
         label i in 0..N;
         end i = 0 { free; pinned { q = given; } }

@@ -82,7 +82,7 @@ fn parameter(row: &Row, field: &Field, draw: &Draw, source: &mut Source) -> Vec<
     out
 }
 
-/// How an initial value moves.
+/// The kind of motion of an initial value.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Moves {
     Not,

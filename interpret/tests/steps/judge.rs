@@ -1,4 +1,4 @@
-//! One model judged: random draws, each step run from the text and solved by the oracle; data that are wrong must be seen.
+//! Judges one model: from random data, each step is run from the text and solved by the oracle. Wrong data must be detected.
 
 use super::data::{Data, Draw, drawn};
 use super::posed::{observed, problem, turned};
@@ -15,7 +15,7 @@ pub const WANTED: f64 = 1e-12;
 /// a datum changed by its last bit.
 pub const OPERATIONS: f64 = 32.0;
 
-/// A wrong datum is this much wrong, of its size.
+/// The relative error of a wrong datum.
 pub const FAULT: f64 = 1e-6;
 
 /// Steps, and scales of masses and momenta.
@@ -41,15 +41,15 @@ pub struct Found {
     pub made: usize,
     /// The reasons why steps failed.
     pub refused: Vec<String>,
-    /// Steps that were made, whose root the oracle does not reach from rest.
+    /// Successful steps whose root the oracle does not reach from rest.
     pub lost: usize,
     pub wrong: Vec<Wrong>,
-    /// Data that may be wrong unseen.
+    /// Data whose errors remain undetected.
     pub unseen: usize,
     pub unseen_names: Vec<String>,
 }
 
-/// The end of one step of the model; why it is refused.
+/// The end of one step of the model, or why it fails.
 fn stepped(card: &Card, data: &Data, h: f64) -> Result<Vec<f64>, String> {
     let opened = (card.open)(&data.parameters, &data.initial, Settings::step(h));
     let mut trajectory = opened.map_err(|e| e.to_string())?;
@@ -127,7 +127,7 @@ fn step(row: &Row, card: &Card, draw: &Draw, data: &Data, source: &mut Source, f
             .wrong
             .push(Wrong(format!("{what}: {off:?}, allowed {bound:?}")));
     }
-    // Forces are seen where the step is long.
+    // Long steps make errors in forces visible.
     if draw.h == STEPS[0] && draw.mass == 1.0 && draw.momentum == 1.0 {
         let turned = turned(card, data, &problem, FAULT);
         for (name, wrong) in faults(card, data, source).into_iter().chain(turned) {
@@ -172,7 +172,7 @@ fn faults(card: &Card, data: &Data, source: &mut Source) -> Vec<(String, Data)> 
     out
 }
 
-/// Makes one number wrong; what is symmetric or skew stays so.
+/// Makes one number wrong; symmetric and skew matrices stay so.
 fn spoil(field: &Field, list: &mut [f64], k: usize) {
     let (r, c) = (k / field.cols, k % field.cols);
     let across = match field.rows == field.cols {

@@ -26,7 +26,7 @@ pub struct Line {
     pub sites: &'static [Sites],
     /// The largest distance of sites whose velocities appear in one term.
     pub reach: usize,
-    /// How many of the steps are refused, and what is off beyond the bound where that is known.
+    /// The number of failed steps, and the known deviations beyond the bound.
     pub refused: usize,
     pub known: Option<f64>,
 }
@@ -56,7 +56,7 @@ impl Line {
         words.next().unwrap_or("")
     }
 
-    /// Whether an end holds this quantity at this site.
+    /// Whether an end condition prescribes this quantity at this site.
     fn is_held(&self, name: &str, at: At, site: usize, sites: Sites) -> bool {
         let Some([first, last]) = sites.1 else {
             return false;
@@ -86,7 +86,7 @@ impl Line {
     fn problem(&self, draw: &Draw, numbers: &Numbers) -> Problem {
         let (mut names, mut moving) = (Table::default(), Table::default());
         let exact = |list: &[f64]| list.iter().map(|x| Pair::constant(*x)).collect::<Vec<_>>();
-        // How many segments, and whether they close: no datum of the model.
+        // The number of segments, and whether they form a ring; these are not data of the model.
         names.push("N", 1, [1, 1]);
         names.push("ring", 1, [1, 1]);
         let is_ring = f64::from(u8::from(draw.sites.1.is_none()));

@@ -99,7 +99,7 @@ fn verdict(row: &Judged) -> Vec<String> {
             let all = found.wrong.iter();
             out.extend(all.map(|Wrong(what)| format!("{name}: {what}")));
         }
-        // A known miss may shrink; it does not grow.
+        // A known defect may shrink, but must not grow.
         Some(known) => {
             let worst = found.off.increment.max(found.off.momentum);
             if worst > 4.0 * known {

@@ -102,7 +102,7 @@ pub fn turned(card: &Card, data: &Data, problem: &Problem, by: f64) -> Vec<(Stri
     out
 }
 
-/// The same as a problem of the oracle.
+/// These data as a problem of the oracle.
 pub fn problem(row: &Row, card: &Card, draw: &Draw, data: &Data) -> Problem {
     let mut names = Table::default();
     let mut given = Vec::new();

@@ -24,11 +24,11 @@ pub enum What {
     Mass,
     /// A positive matrix of three rows.
     Stiffness,
-    /// The same, of the scale of masses.
+    /// A positive matrix of the scale of masses.
     Moments,
     /// A rotation of space, near the identity of its neighbours.
     Turn,
-    /// A unit quaternion, likewise.
+    /// A unit quaternion, near the quaternions of its neighbours.
     Quaternion,
 }
 

@@ -16,18 +16,18 @@ pub struct Row {
     pub inertias: &'static [&'static str],
     /// Numbers and places that stay positive.
     pub positive: &'static [&'static str],
-    /// Puts random data where constraints hold them.
+    /// Moves random data onto the constraints.
     pub settle: fn(&mut Named),
     /// Data on which no motion depends.
     pub idle: &'static [&'static str],
-    /// How many of the steps are refused.
+    /// The number of failed steps.
     pub refused: usize,
     /// The known error, if it exceeds the bound.
     pub known: Option<f64>,
 }
 
 impl Row {
-    /// A model whose steps are all made.
+    /// A model whose steps all succeed.
     pub const fn of(text: &'static str, action: Action, inertias: &'static [&'static str]) -> Self {
         Self {
             text,
@@ -41,13 +41,13 @@ impl Row {
         }
     }
 
-    /// With what stays positive.
+    /// With numbers that stay positive.
     #[must_use]
     pub const fn positive(self, positive: &'static [&'static str]) -> Self {
         Self { positive, ..self }
     }
 
-    /// With data that are put where constraints hold them.
+    /// With data that are moved onto the constraints.
     #[must_use]
     pub const fn settled(self, settle: fn(&mut Named)) -> Self {
         Self { settle, ..self }
@@ -59,13 +59,13 @@ impl Row {
         Self { idle, ..self }
     }
 
-    /// With so many steps that are refused.
+    /// With this number of failed steps.
     #[must_use]
     pub const fn refused(self, refused: usize) -> Self {
         Self { refused, ..self }
     }
 
-    /// With what it misses.
+    /// With a known defect.
     #[must_use]
     pub const fn misses(self, off: f64) -> Self {
         Self {

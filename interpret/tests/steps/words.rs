@@ -47,12 +47,12 @@ pub fn mass<T: Number, const N: usize>(e: &Edge<'_, T>, mass: &str, place: &str)
     e.given.real(mass) * norm(&e.changes::<N>(place)) / (of::<T>(2.0) * e.h)
 }
 
-/// The same of a number.
+/// The same term, for a number.
 pub fn point<T: Number>(e: &Edge<'_, T>, mass: &str, place: &str) -> T {
     e.given.real(mass) * square(e.change(place)) / (of::<T>(2.0) * e.h)
 }
 
-/// How many segments there are, and whether they close to a ring.
+/// The number of segments, and whether they form a ring.
 pub fn extent<T: Number>(e: &Edge<'_, T>) -> (usize, bool) {
     // Rounded: they are numbers among others, of which last bits may change.
     let count = e.given.real("N").value().round() as usize;

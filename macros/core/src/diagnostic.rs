@@ -43,9 +43,9 @@ impl Place {
 pub struct Diagnostic {
     /// The tokens to underline.
     pub place: Place,
-    /// What is wrong and why.
+    /// States what is wrong and why.
     pub message: String,
-    /// What to write instead.
+    /// States what to write instead.
     pub help: Vec<String>,
     /// Other tokens involved, with a note on each.
     pub also: Vec<(Place, String)>,

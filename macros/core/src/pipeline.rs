@@ -127,7 +127,7 @@ pub fn expand(tokens: TokenStream) -> TokenStream {
     }
 }
 
-/// What `model!` expands to.
+/// The expansion of `model!`.
 enum Emitted {
     /// The items of a model with labels.
     Line(TokenStream),

@@ -2,8 +2,8 @@
 //! Takes the velocity `V`; gives the first share `s` of the step.
 //!
 //! `det((1 - s) 1 + s V)` is a polynomial in `s` whose coefficients in the basis of Bernstein are
-//! the elementary symmetric functions of the eigenvalues, each over its binomial coefficient. Where
-//! they are positive the polynomial is; halving the interval finds the first place where it is not.
+//! the elementary symmetric functions of the eigenvalues, each over its binomial coefficient. If
+//! they are positive, so is the polynomial; bisection finds the first point where it is not.
 
 use crate::linalg::{Dense, determinant};
 use nalgebra::SMatrix;
@@ -15,8 +15,8 @@ const MOST: usize = 9;
 const HALVINGS: u32 = 53;
 
 /// A determinant of so many roundings of the coefficients is zero: each is a sum of at most ten
-/// minors, and halving adds one rounding a coefficient. A motion that only touches zero has its
-/// least value there, and no sign to show it.
+/// minors, and halving adds one rounding a coefficient. If a motion only touches zero, the
+/// determinant does not change its sign.
 const ROUNDINGS: f64 = 64.0;
 
 /// A crossing is found to this at least where zero is taken for so many roundings: the root of them.
@@ -28,12 +28,12 @@ pub(super) fn contact<const N: usize>(velocity: &SMatrix<f64, N, N>) -> Option<f
     by_minors(N, |k| symmetric(velocity, k))
 }
 
-/// The same of a matrix whose size is known when a model is read.
+/// Like `contact`, for a matrix whose size is known only at run time.
 pub(super) fn contact_of(velocity: &Dense<f64>) -> Option<f64> {
     by_minors(velocity.rows, |k| symmetric_of(velocity, k))
 }
 
-/// The same by the sums of the principal minors of `k` rows.
+/// Finds the first contact from the sums of the principal minors of `k` rows.
 fn by_minors(n: usize, symmetric: impl Fn(usize) -> f64) -> Option<f64> {
     let mut coefficients = [0.0; MOST];
     let coefficients = coefficients.get_mut(..=n)?;
@@ -49,7 +49,7 @@ fn by_minors(n: usize, symmetric: impl Fn(usize) -> f64) -> Option<f64> {
     let largest = coefficients.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
     let zero = ROUNDINGS * f64::EPSILON * largest;
     let touched = first(coefficients, zero, 0.0, 1.0, 0)?;
-    // Where the sign shows it, the place is sharper.
+    // If the sign changes, the point is more accurate.
     match first(coefficients, 0.0, 0.0, 1.0, 0) {
         Some(crossed) if crossed - touched < SHARPER => Some(crossed),
         _ => Some(touched),
@@ -75,7 +75,7 @@ fn symmetric<const N: usize>(a: &SMatrix<f64, N, N>, k: usize) -> f64 {
     sum
 }
 
-/// The same of a matrix whose size is known when a model is read.
+/// Like `symmetric`, for a matrix whose size is known only at run time.
 fn symmetric_of(a: &Dense<f64>, k: usize) -> f64 {
     let (n, mut sum) = (a.rows, 0.0);
     for rows in 0u32..1 << n {
@@ -99,7 +99,7 @@ fn first(coefficients: &[f64], zero: f64, from: f64, to: f64, halved: u32) -> Op
     if coefficients.iter().all(|c| *c > zero) {
         return None;
     }
-    // Not positive where the interval begins, or no interval any more; NaN ends here too.
+    // The polynomial is not positive at the start of the interval, or the interval has become a point; NaN also ends here.
     if !coefficients.first().is_some_and(|c| *c > zero) || halved == HALVINGS {
         return Some(from);
     }

@@ -1,15 +1,14 @@
-//! Carlson's symmetric elliptic integral of a positive definite matrix,
-//! R_F(B) = ½ ∫ det(B + s)^{-1/2} ds from 0 to infinity, and its gradient: the potential of a homogeneous
-//! ellipsoid whose shape is B.
-//! Takes B of three rows; gives a number, or the symmetric matrix of derivatives. Both depend on the principal
-//! invariants of B alone, so that equal axes need no special case. Theorem of duplication and series: DLMF
-//! 19.26.18 and 19.36.1.
+//! Carlson's symmetric elliptic integral of a positive definite matrix, R_F(B) = ½ ∫ det(B + s)^{-1/2} ds from
+//! 0 to infinity, and its gradient: the potential of a homogeneous ellipsoid whose shape is B. Takes B of
+//! three rows; gives a number, or the symmetric matrix of derivatives. Both depend only on the principal
+//! invariants of B, so equal axes do not need a special case. Theorem of duplication and series: DLMF 19.26.18
+//! and 19.36.1.
 
 use super::jet::Jet;
 use crate::Real;
 use nalgebra::SMatrix;
 
-/// The integral, to be named in a model.
+/// The integral, for use in a model.
 #[allow(non_camel_case_types)]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct carlson_rf;
@@ -51,8 +50,8 @@ impl carlson_rf {
     }
 }
 
-/// The same integral by the principal invariants of B, its trace, second invariant and determinant: what a
-/// model states so is seen to be isotropic.
+/// Carlson's R_F in terms of the principal invariants of B: trace, second invariant and determinant. A model stated with this
+/// function is recognised as isotropic.
 #[allow(non_camel_case_types)]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct carlson_rf_of_invariants;
@@ -104,7 +103,7 @@ fn integral<T: Real, const N: usize>(of: [T; 3], by: [usize; N]) -> Jet<T, N> {
     }
 }
 
-/// The same over plain numbers: the value, then the derivatives with respect to the invariants of these numbers.
+/// Like `integral`, over plain numbers: the value, then the derivatives with respect to the invariants.
 fn in_numbers<const N: usize>(by: &[usize], of: &[f64], out: &mut [f64]) {
     let found = iterated::<f64, N>(
         core::array::from_fn(|i| of[i]),
@@ -167,8 +166,8 @@ fn duplicated<T: Real, const N: usize>([first, second, third]: [Jet<T, N>; 3]) -
 }
 
 /// The trace `u` of the root of B, the largest root of `((u² - I1)/2)² = I2 + 2 √I3 u`. It is found in plain numbers,
-/// lane by lane, and improved in the scalar at hand, the last time with derivatives: bounds of rounding then do
-/// not gather over the iterations.
+/// lane by lane, and improved in the scalar at hand, the last time with derivatives: bounds of rounding then do not
+/// accumulate over the iterations.
 fn trace_of_root<T: Real, const N: usize>(
     first: Jet<T, N>,
     second: Jet<T, N>,
@@ -198,7 +197,7 @@ fn improved<T: Real, const N: usize>(
     u - value / (u * l - root).times(2.0)
 }
 
-/// The same root of numbers: Newton's iteration from above, which falls until rounding stops it.
+/// The root for plain numbers, by Newton's iteration from above. The iterates decrease until rounding stops them.
 fn plain_trace([first, second, root]: [f64; 3]) -> f64 {
     let mut u = (3.0 * first).sqrt();
     for _ in 0..MOST_CORRECTIONS {

@@ -20,7 +20,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
         }
     }
 
-    /// A variable, one for each derivative or another.
+    /// The variable with the index `which`, or a constant if `which` is `None`.
     pub fn variable(value: T, which: Option<usize>) -> Self {
         Self {
             value,
@@ -31,7 +31,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
         }
     }
 
-    /// This many times it.
+    /// Multiplies by a number.
     pub fn times(self, factor: f64) -> Self {
         self.by(T::from_f64(factor))
     }

@@ -7,9 +7,9 @@ use core::fmt;
 /// and from 1 in messages, as in files and plots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Coordinate {
-    /// The factor of a product of groups; 0 where there is one group.
+    /// The factor of a product of groups; 0 for a single group.
     pub factor: u8,
-    /// Which of the coordinates of that factor.
+    /// The index of the coordinate in that factor.
     pub part: Part,
 }
 
@@ -28,7 +28,7 @@ pub enum Part {
     Entry(u8, u8),
 }
 
-/// A number as it is kept here; groups have far fewer coordinates than fit.
+/// An index as the stored type, which can hold every index of a group.
 fn small(index: usize) -> u8 {
     u8::try_from(index).unwrap_or(u8::MAX)
 }
@@ -65,7 +65,7 @@ impl Part {
         }
     }
 
-    /// The plane of two axes; in three dimensions it goes by the axis it turns about.
+    /// The plane of two axes; in three dimensions it is named by its axis of rotation.
     #[must_use]
     pub fn plane(i: usize, j: usize, n: usize) -> Self {
         match (n, 3_usize.checked_sub(i + j)) {
@@ -90,7 +90,7 @@ impl Coordinate {
         Self { factor: 0, part }
     }
 
-    /// The same coordinate in factor `factor` of a product.
+    /// This coordinate, in factor `factor` of a product.
     #[must_use]
     pub fn in_factor(self, factor: usize) -> Self {
         Self {

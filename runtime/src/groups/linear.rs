@@ -44,7 +44,7 @@ impl fmt::Display for NotInvertible {
 impl std::error::Error for NotInvertible {}
 
 impl<const N: usize, T: Real> Linear<N, T> {
-    /// The map that does nothing.
+    /// The identity.
     #[inline]
     pub fn identity() -> Self {
         Self {

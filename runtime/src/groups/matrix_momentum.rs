@@ -20,7 +20,7 @@ of_scalars!(BodyMomentumMatrix<N> { 0 });
 of_scalars!(SpatialMomentumMatrix<N> { 0 });
 
 impl<const N: usize, T: Real> BodyMomentumMatrix<N, T> {
-    /// The same momentum seen from space.
+    /// This momentum in the space frame.
     #[inline]
     pub fn to_space<G: Coadjoint<T, Covector = SMatrix<T, N, N>>>(
         &self,
@@ -31,7 +31,7 @@ impl<const N: usize, T: Real> BodyMomentumMatrix<N, T> {
 }
 
 impl<const N: usize, T: Real> SpatialMomentumMatrix<N, T> {
-    /// The same momentum seen from the body.
+    /// This momentum in the body frame.
     #[inline]
     pub fn to_body<G: Coadjoint<T, Covector = SMatrix<T, N, N>>>(
         &self,

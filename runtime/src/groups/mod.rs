@@ -29,7 +29,7 @@ pub use turned::TurnedRotation;
 use crate::scalar::Real;
 use nalgebra::SMatrix;
 
-/// The operations of [`Group`] that an element has by itself already, by the same names.
+/// Forwards operations of [`Group`] to the inherent methods of the same names.
 macro_rules! own_operations {
     () => {
         #[inline]
@@ -50,7 +50,7 @@ macro_rules! own_operations {
 }
 use own_operations;
 
-/// A Lie group with the operations an iteration on it needs.
+/// A Lie group with the operations that an iteration on it needs.
 ///
 /// Laws every implementation keeps to rounding: associativity, neutral element, inverses, and
 /// `g.retract(xi) = g . (1 + hat(xi) + O(xi^2))`.
@@ -74,7 +74,7 @@ pub trait Group<T>: Copy {
         self.inverse().compose(next)
     }
 
-    /// The same in the frame of space, `next . self^-1`.
+    /// The velocity in the space frame, `next . self^-1`.
     #[inline]
     fn spatial_velocity(&self, next: &Self) -> Self {
         next.compose(&self.inverse())
@@ -84,8 +84,8 @@ pub trait Group<T>: Copy {
     /// coordinates `xi`. Coordinates that are missing count as zero, surplus ones are ignored.
     fn retract(&self, xi: &[T]) -> Self;
 
-    /// The element perturbed on the left (space side) by the coordinates `xi`:
-    /// `(1 + hat(xi) + O(xi^2)) . g`. Missing and surplus ones as in [`Group::retract`].
+    /// The element perturbed on the left (space side) by the coordinates `xi`: `(1 + hat(xi) +
+    /// O(xi^2)) . g`. Missing and surplus coordinates are treated as in [`Group::retract`].
     #[inline]
     fn retract_from_left(&self, xi: &[T]) -> Self {
         Self::identity().retract(xi).compose(self)
@@ -117,7 +117,7 @@ pub trait Group<T>: Copy {
         0
     }
 
-    /// Whether the coordinates of a part are pure numbers, as angles are. Those that are lengths
+    /// Whether the coordinates of a part are pure numbers, as angles are. Parts that are lengths
     /// follow the angles of the same element.
     #[must_use]
     fn is_pure(_part: usize) -> bool {

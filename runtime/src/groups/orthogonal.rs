@@ -1,6 +1,5 @@
-//! Rotations of n-dimensional space, SO(n), kept as orthogonal matrices.
-//! Takes matrices or algebra coordinates; gives elements that stay orthogonal however long the
-//! chain of products.
+//! Rotations of n-dimensional space, SO(n), kept as orthogonal matrices. Takes matrices or algebra
+//! coordinates; gives elements that stay orthogonal in arbitrarily long products.
 
 use super::{Coadjoint, Coordinate, Group, NotARotation, Part};
 use crate::Real;
@@ -27,7 +26,7 @@ const ALLOWED_DEFECT: f64 = 1e-9;
 const STEPS_FROM_INPUT: usize = 2;
 
 impl<const N: usize, T: Real> Orthogonal<N, T> {
-    /// The rotation that does nothing.
+    /// The identity.
     #[inline]
     pub fn identity() -> Self {
         Self {
@@ -92,7 +91,7 @@ pub fn nearest_rotation<T: Real>(a: &Dense<T>) -> Result<Dense<T>, NotARotation>
         return Err(NotARotation::NotFinite);
     }
     let defect = defect(a);
-    // Written so that NaN is refused: products of finite entries may overflow.
+    // The comparison also rejects NaN: products of finite entries may overflow.
     let near = defect <= ALLOWED_DEFECT;
     if !near {
         return Err(NotARotation::NotOrthogonal { defect });

@@ -27,8 +27,8 @@ pub trait Placed<T>: Group<T> {
 }
 
 /// Momenta of rigid motions about the body's own origin, in the axes of space: `(R a, R l)` of the
-/// body's `(a, l)`. The place does not enter, so that spin is as exact far from the origin of space
-/// as near it.
+/// body's `(a, l)`. They do not depend on the position, so the spin is as accurate far from the
+/// origin of space as near it.
 pub trait AboutBody<T>: Placed<T> + Coadjoint<T> {
     /// A covector of the body frame in the axes of space.
     fn covector_turned(&self, body: &Self::Covector) -> Self::Covector;
@@ -56,7 +56,7 @@ pub fn added<T: Real, const R: usize, const C: usize>(
     (sum, lost)
 }
 
-/// The same of a number.
+/// Like `added`, for a single number.
 #[inline(always)]
 #[must_use]
 pub fn added_number<T: Real>(value: T, rest: T, amount: T) -> (T, T) {

@@ -1,5 +1,5 @@
-//! Rigid motions of the plane, the group SE(2), and the momenta they carry.
-//! Takes rotations and translations or homogeneous matrices; gives motions body -> plane.
+//! Rigid motions of the plane, the group SE(2), and their momenta. Takes rotations and translations
+//! or homogeneous matrices; gives motions body -> plane.
 
 use super::placed::{added, between};
 use super::se3::NotARigidMotion;
@@ -17,7 +17,7 @@ use nalgebra::{Matrix2, Matrix3, SVector, Vector2};
 pub struct PlaneMotion<T = f64> {
     /// `R`, body -> plane.
     pub rotation: Orthogonal<2, T>,
-    /// `x`, where the body's origin is in the plane.
+    /// `x`, the position of the body's origin in the plane.
     pub translation: Vector2<T>,
 }
 
@@ -32,7 +32,7 @@ fn quarter<T: Real>(v: &Vector2<T>) -> Vector2<T> {
 }
 
 impl<T: Real> PlaneMotion<T> {
-    /// The motion that leaves everything where it is.
+    /// The identity.
     #[inline]
     pub fn identity() -> Self {
         Self {
@@ -41,7 +41,7 @@ impl<T: Real> PlaneMotion<T> {
         }
     }
 
-    /// The turn by an angle about the origin of the plane, then the translation.
+    /// The rotation by an angle about the origin of the plane, followed by the translation.
     #[inline]
     pub fn new(angle: T, translation: Vector2<T>) -> Self {
         let (sine, cosine) = (angle.sin(), angle.cos());
@@ -110,7 +110,7 @@ impl<T: Real> Group<T> for PlaneMotion<T> {
 
     super::own_operations!();
 
-    /// `(R^T R', R^T (x' - x))`: two places near each other are subtracted before anything is rounded
+    /// `(R^T R', R^T (x' - x))`: nearby positions are subtracted first, so the result is not rounded
     /// to their distance from the origin.
     #[inline]
     fn body_velocity(&self, next: &Self) -> Self {
@@ -287,7 +287,7 @@ of_scalars!(CarriedPlaneImpulse { 0 });
 of_scalars!(SpatialPlaneImpulse { 0 });
 
 impl<T: Real> CarriedPlaneImpulse<T> {
-    /// The same impulse about the origin of the plane.
+    /// This impulse about the origin of the plane.
     #[inline]
     pub fn to_space(&self, motion: &PlaneMotion<T>) -> SpatialPlaneImpulse<T> {
         let linear = Vector2::new(self.0.y, self.0.z);
@@ -295,7 +295,7 @@ impl<T: Real> CarriedPlaneImpulse<T> {
         SpatialPlaneImpulse(SVector::<T, 3>::new(self.0.x + moment, linear.x, linear.y))
     }
 
-    /// The same impulse in body axes.
+    /// This impulse in body axes.
     #[inline]
     pub fn to_body(&self, motion: &PlaneMotion<T>) -> BodyPlaneImpulse<T> {
         BodyPlaneImpulse(motion.covector_turned_back(&self.0))
@@ -303,13 +303,13 @@ impl<T: Real> CarriedPlaneImpulse<T> {
 }
 
 impl<T: Real> BodyPlaneImpulse<T> {
-    /// The same impulse in the axes of the plane, about the body's origin.
+    /// This impulse in the axes of the plane, about the body's origin.
     #[inline]
     pub fn carried(&self, motion: &PlaneMotion<T>) -> CarriedPlaneImpulse<T> {
         CarriedPlaneImpulse(motion.covector_turned(&self.0))
     }
 
-    /// The same impulse in the axes of the plane.
+    /// This impulse in the axes of the plane, about the origin of the plane.
     #[inline]
     pub fn to_space(&self, motion: &PlaneMotion<T>) -> SpatialPlaneImpulse<T> {
         SpatialPlaneImpulse(motion.covector_to_space(&self.0))
@@ -317,7 +317,7 @@ impl<T: Real> BodyPlaneImpulse<T> {
 }
 
 impl<T: Real> SpatialPlaneImpulse<T> {
-    /// The same impulse in body axes.
+    /// This impulse in body axes.
     #[inline]
     pub fn to_body(&self, motion: &PlaneMotion<T>) -> BodyPlaneImpulse<T> {
         BodyPlaneImpulse(motion.covector_to_body(&self.0))

@@ -1,5 +1,5 @@
-//! Rigid motions of space, the group SE(3), and the momenta they carry.
-//! Takes rotations and translations or homogeneous matrices; gives motions body -> space.
+//! Rigid motions of space, the group SE(3), and their momenta. Takes rotations and translations or
+//! homogeneous matrices; gives motions body -> space.
 
 use super::placed::{added, between};
 use super::{
@@ -19,7 +19,7 @@ use nalgebra::{Matrix4, SVector, Vector3};
 pub struct RigidMotion<T = f64> {
     /// `R`, body -> space.
     pub rotation: Rotation<T>,
-    /// `x`, where the body's origin is in space.
+    /// `x`, the position of the body's origin in space.
     pub translation: Vector3<T>,
 }
 
@@ -36,7 +36,7 @@ pub enum NotARigidMotion {
     Rotation(NotARotation),
     /// Its last row is not `(0, ..., 0, 1)`, or its last column is not finite.
     LastRow {
-        /// By how much an entry differs at most.
+        /// The largest deviation of an entry.
         defect: f64,
     },
 }
@@ -351,7 +351,7 @@ of_scalars!(CarriedImpulse { 0 });
 of_scalars!(SpatialImpulse { 0 });
 
 impl<T: Real> CarriedImpulse<T> {
-    /// The same impulse about the origin of space.
+    /// This impulse about the origin of space.
     #[inline]
     pub fn to_space(&self, motion: &RigidMotion<T>) -> SpatialImpulse<T> {
         let (angular, linear) = parts(&self.0);
@@ -359,7 +359,7 @@ impl<T: Real> CarriedImpulse<T> {
         SpatialImpulse(stacked(angular + moment, linear))
     }
 
-    /// The same impulse in body axes.
+    /// This impulse in body axes.
     #[inline]
     pub fn to_body(&self, motion: &RigidMotion<T>) -> BodyImpulse<T> {
         BodyImpulse(motion.covector_turned_back(&self.0))
@@ -367,13 +367,13 @@ impl<T: Real> CarriedImpulse<T> {
 }
 
 impl<T: Real> BodyImpulse<T> {
-    /// The same impulse in space axes, about the body's origin.
+    /// This impulse in space axes, about the body's origin.
     #[inline]
     pub fn carried(&self, motion: &RigidMotion<T>) -> CarriedImpulse<T> {
         CarriedImpulse(motion.covector_turned(&self.0))
     }
 
-    /// The same impulse in space axes.
+    /// This impulse in space axes, about the origin of space.
     #[inline]
     pub fn to_space(&self, motion: &RigidMotion<T>) -> SpatialImpulse<T> {
         SpatialImpulse(motion.covector_to_space(&self.0))
@@ -381,7 +381,7 @@ impl<T: Real> BodyImpulse<T> {
 }
 
 impl<T: Real> SpatialImpulse<T> {
-    /// The same impulse in body axes.
+    /// This impulse in body axes.
     #[inline]
     pub fn to_body(&self, motion: &RigidMotion<T>) -> BodyImpulse<T> {
         BodyImpulse(motion.covector_to_body(&self.0))

@@ -1,5 +1,5 @@
-//! Rotations of space, kept as unit quaternions, and the momenta they carry.
-//! Takes quaternions, matrices or rotation vectors; gives rotations body -> space.
+//! Rotations of space, stored as unit quaternions, and their momenta. Takes quaternions, matrices
+//! or rotation vectors; gives rotations body -> space.
 
 use super::{Coadjoint, Group, squares};
 use crate::Real;
@@ -174,7 +174,7 @@ impl<T: Real> Rotation<T> {
         Self { q }
     }
 
-    /// Puts the rotation of one lane there.
+    /// Writes the rotation of one lane.
     #[inline(always)]
     pub(crate) fn set_one(&mut self, lane: usize, one: Rotation<T::One>) {
         set_all(&mut self.q, lane, one.q);
@@ -204,7 +204,7 @@ impl<T: Real> Rotation<T> {
         T::from_f64(1.5) - T::from_f64(0.5) * norm_squared(self.q)
     }
 
-    /// The same rotation with `|q| = 1` to rounding, given that it is nearly so.
+    /// This rotation, rescaled to `|q| = 1` up to rounding; `|q|` must already be close to 1.
     #[inline(always)]
     pub(crate) fn renormalised(&self) -> Self {
         let scale = self.repair();
@@ -309,7 +309,7 @@ fn half_angle_series<T: Real>(square: T) -> (T, T) {
     (cosine, sinc)
 }
 
-/// The largest absolute real part over the lanes.
+/// The largest absolute real part of all lanes.
 fn largest_real_part<T: Real>(x: T) -> f64 {
     larger(x.greatest().abs(), x.least().abs())
 }
@@ -329,7 +329,7 @@ fn quaternion_of<T: Real>(a: &Matrix3<T>) -> [T; 4] {
         (yy, [wy, xy, yy, yz]),
         (zz, [wz, xz, yz, zz]),
     ] {
-        // A choice lane by lane: the mask is exactly 0 or 1 and carries no derivative.
+        // A choice lane by lane: the mask is exactly 0 or 1, without derivatives.
         let mask = (square - longest).where_positive(one);
         let blend = |new: T, old: T| mask * new + (one - mask) * old;
         longest = blend(square, longest);
@@ -393,11 +393,11 @@ impl<T: Real> Group<T> for Rotation<T> {
         turned_by(xi, |cayley| hamilton(cayley, self.q))
     }
 
-    /// The combination of the quaternions, made unit.
+    /// The weighted sum of the quaternions, normalised.
     #[inline(always)]
     fn combined(weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
         let mut q = [T::zero(); 4];
-        // The first is the newest: the sum waits for it last.
+        // Adds the first element last, because it was computed last.
         for (i, weight) in weights.iter().enumerate().rev() {
             let weight = T::from_f64(*weight);
             for (sum, x) in q.iter_mut().zip(element(i).q) {
@@ -498,7 +498,7 @@ impl<T: Real> BodyMomentum<T> {
 }
 
 impl<T: Real> SpatialMomentum<T> {
-    /// Puts the momentum of one lane there.
+    /// Writes the momentum of one lane.
     #[inline(always)]
     pub(crate) fn set_one(&mut self, lane: usize, one: SpatialMomentum<T::One>) {
         let ([all], [ones]) = (&mut self.0.data.0, one.0.data.0);

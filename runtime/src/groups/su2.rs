@@ -1,5 +1,5 @@
-//! Unit quaternions, the group SU(2): rotations that remember by which way round they came.
-//! Takes four numbers; gives elements that multiply, and the rotations they cover.
+//! Unit quaternions, the group SU(2): rotations with a sign. Takes four numbers; gives elements
+//! that multiply, and the rotations they cover.
 
 use super::so3::hamilton;
 use super::{Coadjoint, Group, NotARotation, Rotation};
@@ -10,7 +10,7 @@ use core::ops::Mul;
 use nalgebra::{Matrix4, Vector3};
 
 /// A unit quaternion `(w, x, y, z)`, from body to space: it turns a body vector `v`, read as a
-/// quaternion, into `q v q*`. Unlike a [`Rotation`] it is not the same element as its opposite.
+/// quaternion, into `q v q*`. Unlike for a [`Rotation`], `q` and `-q` are different elements.
 ///
 /// The coordinates `ξ` of its Lie algebra are an angular velocity, and denote the quaternion `ξ/2` without
 /// real part (thesis section 2.5, the Cayley-Klein form).
@@ -61,7 +61,7 @@ impl<T: Real> UnitQuaternion<T> {
         left_multiplication(self.components())
     }
 
-    /// The rotation it covers, body -> space; its opposite covers the same one.
+    /// The rotation that it covers, body -> space; `-q` covers the same rotation.
     #[inline]
     pub fn rotation(&self) -> Rotation<T> {
         self.0
@@ -73,7 +73,7 @@ impl<T: Real> UnitQuaternion<T> {
         Self(Rotation::normalised(q))
     }
 
-    /// The element that the rotation is kept by.
+    /// The element whose components a rotation stores.
     #[inline(always)]
     pub(crate) fn covering(rotation: Rotation<T>) -> Self {
         Self(rotation)
@@ -125,7 +125,7 @@ impl<T: Real> Group<T> for UnitQuaternion<T> {
         Group::<T>::distance_from_group(&self.0)
     }
 
-    /// As of the rotation; infinite in the half of the group around -1.
+    /// As for the rotation; infinite in the half of the group around -1.
     #[inline]
     fn extents(&self, out: &mut [f64]) {
         self.0.extents(out);

@@ -6,7 +6,7 @@ use super::{Rotation, UnitQuaternion};
 use crate::Real;
 use nalgebra::{Matrix3, Vector3};
 
-/// A rotation on its way: what follows a step may begin before its length is known.
+/// A rotation with an unnormalised quaternion: later operations of a step can start before its length is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurnedRotation<T = f64> {
     /// The quaternion, of any length.
@@ -16,8 +16,8 @@ pub struct TurnedRotation<T = f64> {
 }
 
 impl<T: Real> Rotation<T> {
-    /// `self . omega`, `omega` a quaternion of any length but zero. Rounding that the length of
-    /// `self` has gathered is taken out, to first order.
+    /// `self . omega`, `omega` a quaternion of any length but zero. Corrects the accumulated
+    /// rounding of the length of `self`, to first order.
     #[inline(always)]
     pub(crate) fn turned(&self, omega: [T; 4]) -> TurnedRotation<T> {
         let q = self.quaternion();
@@ -28,7 +28,7 @@ impl<T: Real> Rotation<T> {
         }
     }
 
-    /// The same where the inverse of the square of the length of `omega` is known.
+    /// Like `turned`, if the inverse of the squared length of `omega` is known.
     #[inline(always)]
     pub(crate) fn turned_at(&self, omega: [T; 4], per_square: T) -> TurnedRotation<T> {
         let q = self.quaternion();

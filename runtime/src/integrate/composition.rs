@@ -1,10 +1,10 @@
-//! Steps of high order made of several symmetric steps of order two.
-//! Takes a model shown to be reversible, a state, a step size and an order; advances the state.
+//! Steps of high order, composed of several symmetric steps of order two. Takes a model shown to be
+//! reversible, a state, a step size and an order; advances the state.
 //!
-//! Each factor is a step of the model itself, so whatever a step conserves, a composition does:
-//! the symplectic form of the full phase space, momentum maps, Casimirs. On the state of a
-//! one-sided node rule the order would fall to one without a word; such a model is not
-//! [`Reversible`], and a composition of it does not build.
+//! Each factor is a step of the model itself, so whatever a step conserves, a composition does: the
+//! symplectic form of the full phase space, momentum maps, Casimirs. With a one-sided node rule the
+//! order would silently drop to one; such a model is not [`Reversible`], and its composition does
+//! not compile.
 
 use super::{Reversible, Stepper};
 use crate::solvers::largest_step::{confirmed_step, largest_step};
@@ -27,7 +27,7 @@ pub enum CompositionOrder {
     Eight,
 }
 
-/// First half of the factors of order six and the middle one.
+/// The first half of the factors of order six, and the middle factor.
 const SIX: [f64; 5] = [
     0.392_161_444_007_314_1,
     0.332_599_136_789_359_43,
@@ -36,7 +36,7 @@ const SIX: [f64; 5] = [
     0.798_543_990_934_83,
 ];
 
-/// First half of the factors of order eight and the middle one.
+/// The first half of the factors of order eight, and the middle factor.
 const EIGHT: [f64; 9] = [
     0.130_202_483_088_890_07,
     0.561_162_981_775_108_4,
@@ -69,7 +69,7 @@ impl CompositionOrder {
         Self::ALL.into_iter().find(|o| o.number() == number)
     }
 
-    /// The factors of the step, the different ones only: a palindrome whose middle is the last.
+    /// The distinct factors of the step: a palindrome whose middle is the last element.
     fn half(self) -> Vec<f64> {
         match self {
             Self::Four => {
@@ -112,7 +112,7 @@ pub struct Composition<S: Stepper> {
 }
 
 impl<S: Reversible> Composition<S> {
-    /// Prepares steps of `h` in all from `state`. Nothing is allocated later.
+    /// Prepares composed steps of size `h` from `state`. Nothing is allocated later.
     ///
     /// # Errors
     /// If one of its stages fails from `state`.
@@ -184,8 +184,9 @@ impl<S: Stepper> Composition<S> {
     }
 }
 
-/// The largest share of the step `h` that can be made from this state, by bisection. A shorter step
-/// passes through other states, so the limit of the failed stage does not determine it.
+/// The largest share of the step size `h` for which a step from this state succeeds, by bisection.
+/// A shorter step passes through other states, so the limit of the failed stage does not determine
+/// it.
 #[cold]
 #[inline(never)]
 fn feasible<S: Stepper>(
@@ -214,8 +215,8 @@ fn feasible<S: Stepper>(
     }
 }
 
-/// Zero if the steps can be made one after the other, and each of them from the first state, as it
-/// must to be prepared.
+/// Zero if all stages succeed one after the other, and each of them also succeeds from the first
+/// state.
 fn composed<S: Copy, T: Copy>(
     state: &S,
     steps: impl Iterator<Item = T>,

@@ -34,7 +34,7 @@ macro_rules! forced_step {
             })
         }
 
-        #[doc = concat!(" One step, in place. Solved thus: ", $solved, ".")]
+        #[doc = concat!(" One step, in place. Method: ", $solved, ".")]
         ///
         /// # Errors
         /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -72,7 +72,7 @@ macro_rules! forced_step {
             Ok(())
         }
 
-        /// Says how far the step is beyond the bound, and which step could be solved.
+        /// Reports how far the step exceeds the bound, and a step size that succeeds.
         #[cold]
         fn refused(
             &self,

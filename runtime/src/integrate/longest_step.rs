@@ -37,8 +37,8 @@ const SLIGHT: f64 = 1e-3;
 /// stays below it.
 const GROWTH: f64 = 0.3;
 
-/// Waves that turn by more than about 135 degrees from site to site alternate; of two neighbours alone that move against one another this
-/// is 1.5.
+/// Waves that turn by more than about 135 degrees from site to site alternate; for two neighbours that move in opposite directions
+/// the value is 1.5.
 const ALTERNATING: f64 = 1.7;
 
 /// The smallest number of configurations for a warning about waves.
@@ -291,8 +291,8 @@ impl LongestStep {
                 "small motions about the initial configuration grow with the rate {:.3e}, by a factor of {a_step} per step",
                 self.growth
             );
-            // A body on its head and a rod that is pulled along its length are unstable by right; between neighbours
-            // what grows so fast is mostly a wrong sign.
+            // An inverted body and a rod under tension are genuinely unstable; fast growth between neighbours
+            // usually comes from a wrong sign.
             return Some(match self.configurations {
                 1 => format!(
                     "{grow}: near that configuration, steps of h = {h} do not resolve the growth; use at most {:.3e}",

@@ -19,10 +19,11 @@ pub trait Model:
     type Choice: Copy + Debug + Default + Send + Sync;
 
     /// Whether an ensemble steps its bodies side by side in lanes: explicit steps and those with a
-    /// quartic gain by it. Iterations of which each body needs its own number do not.
+    /// quartic gain by it. Iterative steps do not, because each body needs its own number of
+    /// iterations.
     const SIDE_BY_SIDE: bool;
 
-    /// The same model over another scalar.
+    /// This model over another scalar.
     type Over<U: Real>: Model<
             Scalar = U,
             Parameters = <Self::Parameters as OfScalars>::Over<U>,

@@ -214,7 +214,7 @@ macro_rules! stepper_part {
         /// As `start`, with steps of this order: see [`Order`]($crate::solvers::moser_veselov::Order).
         ///
         /// # Errors
-        /// As `start`; also for what this size or scalar does not have.
+        /// As `start`; also if this size or scalar does not support the order.
         pub fn start_with(
             &self,
             initial: $initial<$($size,)* $T>,
@@ -227,7 +227,7 @@ macro_rules! stepper_part {
     (@started solver [$($size:ident)*] $initial:ident $state:ident $work:ident $T:ident) => {
         $crate::stepper_part! { @solver }
 
-        /// As `start`, with the solver named.
+        /// As `start`, with the given solver.
         ///
         /// # Errors
         /// As `start`; also for what this size or scalar does not have.
@@ -241,7 +241,7 @@ macro_rules! stepper_part {
         }
     };
     (@solver) => {
-        /// The same model, its steps solved by the solver named.
+        /// This model, with the given solver.
         #[must_use]
         pub fn with_solver(self, method: $crate::solvers::Method) -> Self {
             Self { method, ..self }
@@ -296,14 +296,14 @@ macro_rules! stepper_part {
                 &self.solver
             }
 
-            /// The same, with rounding left to gather, so that it can be measured.
+            /// This workspace without projection: rounding errors accumulate, so that you can measure them.
             #[must_use]
             pub fn without_projection(mut self) -> Self {
                 self.solver = self.solver.without_projection();
                 self
             }
 
-            /// The same, with steps of an order above two made symplectic with the attitude.
+            /// This workspace with compensated steps: steps of order above two are symplectic in momentum and attitude.
             #[must_use]
             pub fn compensated(mut self) -> Self {
                 self.solver = self.solver.compensated();

@@ -35,7 +35,7 @@ impl<T: Real> Moving<T> {
     }
 }
 
-/// A model whose step can be made lane by lane without a branch, where it is an easy one.
+/// A model whose easy steps can be computed lane by lane without a branch.
 pub trait SideBySide: Stepper {
     /// The body and edge from which the next step begins. `None` if the workspace belongs to another
     /// state, or requests another solver.
@@ -92,7 +92,7 @@ pub fn advance_side_by_side<M: SideBySide>(
     Ok(())
 }
 
-/// Up to `most` easy steps; how many were made.
+/// Takes up to `most` easy steps; returns how many it took.
 #[inline(always)]
 fn easy_steps<M: SideBySide, const DIAGONAL: bool>(
     model: &M,
@@ -103,7 +103,7 @@ fn easy_steps<M: SideBySide, const DIAGONAL: bool>(
     let Some(mut here) = model.moving(state, workspace) else {
         return 0;
     };
-    // To and fro between two places: a step that was not easy leaves what it began with.
+    // Alternates between two buffers, so that a step that was not easy leaves its input unchanged.
     let mut there = here;
     let mut made = 0;
     while made < most {

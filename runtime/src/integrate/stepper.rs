@@ -15,7 +15,7 @@ pub trait Stepper {
     /// A workspace for steps of `h`, of either sign, from `state`.
     ///
     /// # Errors
-    /// When the first step could not be made.
+    /// If the first step fails.
     fn workspace(
         &self,
         state: &Self::State,
@@ -25,7 +25,7 @@ pub trait Stepper {
     /// One step, in place.
     ///
     /// # Errors
-    /// When it cannot be solved; the state is then unchanged.
+    /// If the step cannot be solved; the state is then unchanged.
     fn advance(
         &self,
         state: &mut Self::State,
@@ -64,7 +64,7 @@ pub trait Stepper {
     /// The number of the node.
     fn node(state: &Self::State) -> u64;
 
-    /// The same state, counted as another node.
+    /// The state, with its node number set to `node`.
     #[must_use]
     fn at_node(state: Self::State, node: u64) -> Self::State;
 }

@@ -92,7 +92,7 @@ impl<S: Stepper<Workspace: Saved>> Saved for Steps<S> {
 }
 
 impl<S: Model<Scalar = f64, Choice = Order>> Steps<S> {
-    /// Steps of the order asked for, above two with modified moments.
+    /// Steps of the requested order; orders above two use modified moments.
     ///
     /// # Errors
     /// As [`Steps::plain`].
@@ -113,7 +113,7 @@ impl<S: Model<Scalar = f64, Choice = Order>> Steps<S> {
 }
 
 impl<S: Reversible<Scalar = f64>> Steps<S> {
-    /// Steps of the order asked for.
+    /// Steps of the requested order.
     ///
     /// # Errors
     /// As [`Steps::plain`].

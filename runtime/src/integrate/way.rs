@@ -7,14 +7,14 @@ use crate::card::{Card, OpenError, Settings};
 use crate::solvers::moser_veselov::Order;
 use crate::validate;
 
-/// Which steps a model has besides its own.
+/// The steps that a model offers besides its plain steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Offer {
     /// None.
     Plain,
-    /// Its own with modified moments.
+    /// Its plain steps with modified moments.
     Modified,
-    /// Several of its own composed.
+    /// Compositions of its plain steps.
     Composed,
 }
 
@@ -42,7 +42,7 @@ pub enum Way {
 }
 
 impl Way {
-    /// The way that the settings request, for a model with these orders.
+    /// The kind of steps that the settings request, for a model with these orders.
     ///
     /// # Errors
     /// [`OpenError`] for an order that is not offered, a compensation where there is none, or a step that is

@@ -1,6 +1,6 @@
-//! The inverse of a small matrix by its cofactors where that is as good as elimination: no pivots
-//! are sought, and one division is made. Takes a square matrix; others than well-conditioned ones of
-//! sizes 2 and 3 are eliminated.
+//! The inverse of a small matrix by its cofactors, if that is as accurate as elimination. It needs
+//! no pivots and one division. Takes a square matrix; a matrix of another size, or a badly
+//! conditioned one, is eliminated.
 
 use super::elimination::{inverse, solve_many};
 use crate::Real;

@@ -1,13 +1,13 @@
-//! Matrices whose size is known when a model is read, in plain loops. Every operation takes the steps of the
-//! one on matrices of a static size, in the same order, so that results agree to the last bit.
-//! Takes and gives lists of entries; allocates.
+//! Matrices whose size is known only at run time, in plain loops. Every operation takes the same steps, in
+//! the same order, as the operation on matrices of a static size. Results therefore agree bit for bit. Takes
+//! and gives lists of entries; allocates.
 
 use super::elimination::{is_usable, weight};
 use super::{even_degrees, held_scales};
 use crate::Real;
 use nalgebra::SMatrix;
 
-/// Numbers whose count is known when a model is read. Up to 12 do not allocate.
+/// A list of numbers whose length is known only at run time. Up to 12 do not allocate.
 pub type Reals = smallvec::SmallVec<[f64; 12]>;
 
 /// A matrix, column after column.
@@ -36,7 +36,7 @@ impl<T: Real> Dense<T> {
         Self::from_fn(rows, cols, |_, _| T::zero())
     }
 
-    /// Ones on the diagonal.
+    /// The identity.
     pub fn identity(rows: usize, cols: usize) -> Self {
         Self::from_fn(rows, cols, |i, j| if i == j { T::one() } else { T::zero() })
     }
@@ -81,7 +81,7 @@ impl<T: Real> Dense<T> {
         }
     }
 
-    /// Entry by entry of two of the same size.
+    /// Combines two matrices of the same size, entry by entry.
     #[inline]
     pub fn zip(&self, other: &Self, f: impl Fn(T, T) -> T) -> Self {
         Dense {
@@ -143,7 +143,7 @@ impl<T: Real> Dense<T> {
         }
     }
 
-    /// Puts an entry; nothing happens outside.
+    /// Sets an entry; ignores indices outside of the matrix.
     #[inline]
     pub fn set(&mut self, i: usize, j: usize, x: T) {
         if let Some(place) = self.place(i, j) {
@@ -160,7 +160,7 @@ impl<T: Real> Dense<T> {
         }
     }
 
-    /// The same number everywhere.
+    /// A matrix with all entries equal to `x`.
     pub fn repeat(rows: usize, cols: usize, x: T) -> Self {
         Self::from_fn(rows, cols, |_, _| x)
     }

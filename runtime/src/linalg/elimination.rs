@@ -90,7 +90,7 @@ fn eliminate<T: Real, const N: usize, const M: usize>(
     eliminate_leading(a, b, N)
 }
 
-/// The same for the leading block of `size` rows and columns, at most `N`.
+/// Like `eliminate`, for the leading block of `size` rows and columns, where `size` is at most `N`.
 #[inline(always)]
 fn eliminate_leading<T: Real, const N: usize, const M: usize>(
     a: &SMatrix<T, N, N>,

@@ -1,6 +1,6 @@
-//! A small matrix factored once for several right sides.
-//! Takes a square matrix; gives solutions. Blocks of three without exchange of rows where they go
-//! in, elimination with pivots where they do not.
+//! A small matrix factored once for several right sides. Takes a square matrix; gives solutions.
+//! For sizes 3, 6 and 9 it uses blocks of three rows without pivoting if possible, otherwise
+//! elimination with pivots.
 
 use super::elimination::vanishes;
 use super::{Dense, Reals, solve_scaled};
@@ -31,7 +31,7 @@ impl<const D: usize> Saved for Factors<f64, D> {
 }
 
 impl<T: Real, const D: usize> Factors<T, D> {
-    /// Factors of nothing: they solve no equation.
+    /// Empty factors, which solve no equation.
     #[must_use]
     pub fn none() -> Self {
         Self {
@@ -90,13 +90,13 @@ fn with_pivots<T: Real, const D: usize>(
     solve_scaled(|i, j| columns[j][i], b, &scale, size)
 }
 
-/// Whether blocks of three go in: bodies in space have three coordinates, rigid motions six.
+/// Whether blocks of three rows may be used: bodies in space have three coordinates, rigid motions six.
 #[inline(always)]
 fn in_blocks<const D: usize>(size: usize) -> bool {
     size == D && D.is_multiple_of(3) && D <= 9
 }
 
-/// `[column][row]`, the pivot blocks replaced by their inverses; whether they have some.
+/// `[column][row]`, with the pivot blocks replaced by their inverses; also whether all of these exist.
 #[inline(always)]
 fn factor<T: Real, const D: usize>(a: &mut [[T; D]; D]) -> bool {
     let mut sum = T::zero();
@@ -169,10 +169,10 @@ fn substitute<T: Real, const D: usize>(a: &[[T; D]; D], mut x: [T; D]) -> [T; D]
     x
 }
 
-/// The same of a matrix whose size is known when a model is read, over plain numbers.
+/// Factors of a matrix over plain numbers whose size is known only at run time.
 #[derive(Debug)]
 pub struct DenseFactors {
-    /// As [`Factors`] has them.
+    /// As in [`Factors`].
     columns: Dense<f64>,
     in_blocks: bool,
     blocks: bool,
@@ -187,7 +187,7 @@ impl Clone for DenseFactors {
         }
     }
 
-    // Those before a step are kept without allocating anew.
+    // Copies into the existing lists, without a new allocation.
     fn clone_from(&mut self, source: &Self) {
         (self.columns.rows, self.columns.cols) = (source.columns.rows, source.columns.cols);
         self.columns.data.clone_from(&source.columns.data);
@@ -209,7 +209,7 @@ impl Saved for DenseFactors {
 }
 
 impl DenseFactors {
-    /// Factors of nothing: they solve no equation. Blocks of three may go in or not.
+    /// Empty factors, which solve no equation. `in_blocks` allows blocks of three rows.
     #[must_use]
     pub fn none(size: usize, in_blocks: bool) -> Self {
         Self {

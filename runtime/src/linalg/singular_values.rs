@@ -11,7 +11,7 @@ pub fn singular_ratio<const N: usize>(a: &SMatrix<f64, N, N>) -> f64 {
     ratio(&mut a.data.0.clone())
 }
 
-/// The same of the columns of a matrix.
+/// Like `singular_ratio`, for a matrix given by its columns.
 pub fn singular_ratio_of(mut columns: Vec<Vec<f64>>) -> f64 {
     ratio(&mut columns)
 }

@@ -1,5 +1,5 @@
-//! The attitude of one site: a rotation, or a unit quaternion over it. Kept by four numbers, of which the matrix that the site
-//! and its neighbours read is made where it is read: lists of sites are longer than the caches are wide.
+//! The attitude of one site: a rotation, or a unit quaternion over it. Stored as four numbers, from which each reader computes
+//! the matrix: long lists of matrices would not fit into the caches.
 
 use crate::saved::{Saved, Words};
 use crate::solvers::moser_veselov::Poinsot;
@@ -48,7 +48,7 @@ impl<T: Real> Attitude<T> {
         self.rotation
     }
 
-    /// The same attitude, its quaternion times 1 or -1.
+    /// This attitude, with its quaternion multiplied by `sign`, which is 1 or -1.
     pub(crate) fn of_sign(&self, sign: T) -> Self {
         let q = self.rotation.quaternion().map(|x| x * sign);
         Self {
@@ -56,7 +56,7 @@ impl<T: Real> Attitude<T> {
         }
     }
 
-    /// The unit quaternion, of the sign that it has come with.
+    /// The unit quaternion, with its current sign.
     #[inline(always)]
     pub fn unit_quaternion(&self) -> UnitQuaternion<T> {
         UnitQuaternion::covering(self.rotation)
@@ -76,8 +76,8 @@ pub fn between<T: Real>(from: &UnitQuaternion<T>, to: &UnitQuaternion<T>) -> Uni
 }
 
 /// How the attitude at the end of an edge turns, seen from there, by an impulse at its start, seen from there: with
-/// `S = Ω J` and `h` the step, `h Ω^T (tr(S) Id - S)^-1`. Nothing finite where the edge is a fold of its
-/// equation.
+/// `S = Ω J` and `h` the step, `h Ω^T (tr(S) Id - S)^-1`. The result is not finite if the equation of the edge has
+/// a fold there.
 #[inline(always)]
 pub fn turned_by<T: Real>(
     body: &Poinsot<T>,

@@ -14,7 +14,7 @@ use nalgebra::{Matrix3, SMatrix, SVector};
 pub struct Sums<'a, T> {
     velocities: &'a [T],
     momenta: &'a mut [T],
-    /// None where derivatives are not wanted.
+    /// `None` if derivatives are not requested.
     blocks: Option<&'a mut Blocks<T>>,
 }
 
@@ -57,14 +57,14 @@ impl<T: Real> Sums<'_, T> {
     }
 }
 
-/// The equations of a line.
+/// The equations of a chain.
 struct Line<'a, T, F, S> {
     n: S,
     turns: &'a [bool],
     blocks: &'a mut Blocks<T>,
     moving: [usize; 2],
     all: F,
-    /// The velocities at which the derivative was taken that is factored.
+    /// The velocities at which the factored derivative was evaluated.
     factored: &'a mut [T],
 }
 
@@ -191,7 +191,7 @@ impl<T: Real> AnyBand<T> {
         }
     }
 
-    /// The same with velocities of rotations: `turns` marks the components of a site that belong to the vector of one.
+    /// This matrix with rotational velocities: `turns` marks the components of a site that belong to an angular velocity.
     #[must_use]
     pub fn with_turns(self, turns: &[bool]) -> Self {
         let turns = turns.to_vec();
@@ -208,7 +208,7 @@ impl<T: Real> AnyBand<T> {
         self.sites
     }
 
-    /// The momenta aimed at, site after site, to be given before they are solved for.
+    /// The target momenta, site after site; set them before you solve.
     pub fn known_mut(&mut self) -> &mut [T] {
         &mut self.known
     }
@@ -241,7 +241,7 @@ impl<T: Real> AnyBand<T> {
         self.solve_by(Read(n), moving, all)
     }
 
-    /// The same with a size of blocks that may be known when a model is built.
+    /// Like `solve`, for a block size that may be known at compile time.
     #[inline(always)]
     fn solve_by(
         &mut self,
@@ -316,7 +316,7 @@ impl<T: Real> AnyBand<T> {
     }
 }
 
-/// The velocities of a site as they are tried: their numbers, and `R` rotations beside them.
+/// The trial velocities of a site: numbers, and `R` rotations.
 #[derive(Clone, Copy, Debug)]
 pub struct Velocity<T, const N: usize, const R: usize> {
     numbers: SVector<T, N>,
@@ -341,7 +341,7 @@ impl<T, const N: usize, const R: usize> Deref for Velocity<T, N, R> {
     }
 }
 
-/// The same for `N` components of each site, which have up to `R` rotations.
+/// The workspace for `N` components at each site, with up to `R` rotations.
 #[derive(Clone, Debug)]
 pub struct Band<T, const N: usize, const R: usize> {
     all: AnyBand<T>,
@@ -430,8 +430,8 @@ impl<T: Real, const N: usize, const R: usize> Rows<'_, '_, T, N, R> {
 }
 
 impl<T: Real, const N: usize, const R: usize> Band<T, N, R> {
-    /// Room for so many sites, of a ring or of an open line; `constant` where derivatives are the same at all
-    /// places and velocities, for one model and step.
+    /// Room for this number of sites, of a ring or an open chain. Set `constant` if the derivatives do not
+    /// depend on positions and velocities, for one model and step.
     #[must_use]
     pub fn new(sites: usize, ring: bool, constant: bool) -> Self {
         let none = Velocity {
@@ -444,7 +444,7 @@ impl<T: Real, const N: usize, const R: usize> Band<T, N, R> {
         }
     }
 
-    /// The same with velocities of rotations: `turns` marks the components of a site that belong to the vector of one.
+    /// This matrix with rotational velocities: `turns` marks the components of a site that belong to an angular velocity.
     #[must_use]
     pub fn with_turns(self, turns: [bool; N]) -> Self {
         let Self { all, velocities } = self;

@@ -1,6 +1,6 @@
-//! Block-tridiagonal matrices of lines, and of rings, where the first site and the last are neighbours too.
-//! Takes blocks, site by site; gives factors and solutions, in a number of operations that grows with the
-//! number of sites.
+//! Block-tridiagonal matrices of open chains, and of rings, where the first and the last site are also
+//! neighbours. Takes blocks, site by site; gives factors and solutions, in a number of operations that
+//! grows with the number of sites.
 //!
 //! A ring is solved by bordering: its last site is eliminated last, and the others form an open chain. Their
 //! effect on the last site is one block. Pivots are chosen within blocks.
@@ -31,7 +31,7 @@ pub(super) trait Size: Copy {
 /// Blocks of up to so many rows are arrays.
 const SMALL: usize = 6;
 
-/// Known when a model is built.
+/// Known at compile time.
 #[derive(Clone, Copy)]
 pub(super) struct Fixed<const N: usize>;
 
@@ -63,7 +63,7 @@ impl<const N: usize> Size for Fixed<N> {
     }
 }
 
-/// Known when a model is read.
+/// Known only at run time.
 #[derive(Clone, Copy)]
 pub(super) struct Read(pub usize);
 
@@ -112,12 +112,12 @@ impl Size for Read {
 pub(super) struct Blocks<T> {
     n: usize,
     sites: usize,
-    /// Whether the first site and the last are neighbours besides.
+    /// Whether the first and the last site are also neighbours.
     closed: bool,
     /// The block of a site with itself; once factored, what is left of it when those before are eliminated, inverted or
     /// factored.
     own: Vec<T>,
-    /// With the one before.
+    /// The block with the site before.
     before: Vec<T>,
     /// With the one after; once factored, the inverse of what is left times it, but for the last site of an open line.
     after: Vec<T>,
@@ -176,7 +176,7 @@ impl<T: Real> Blocks<T> {
         self.own[size * site..size * (site + 1)].copy_from_slice(block);
     }
 
-    /// Those of neighbours back to zeros.
+    /// Sets the blocks of neighbours to zero.
     #[inline(always)]
     pub fn clear_neighbours(&mut self) {
         self.before.fill(T::zero());
@@ -190,8 +190,8 @@ impl<T: Real> Blocks<T> {
         self.clear_neighbours();
     }
 
-    /// Gives the blocks of a site: with the one before, with itself, with the one after, side by side. Those beyond an open end
-    /// stay zeros. Not for rings of one or two sites, whose neighbours are the same. The size `n` is given for where it is known
+    /// Gives the blocks of a site: with the one before, with itself, with the one after, side by side. Blocks beyond an open end
+    /// stay zero. Not for rings of one or two sites, whose neighbours are the same. The size `n` is given for where it is known
     /// when a model is built.
     #[inline(always)]
     pub fn put_row(&mut self, n: usize, site: usize, row: &[T]) {
@@ -235,7 +235,7 @@ impl<T: Real> Blocks<T> {
         &self.own[size * site..size * (site + 1)]
     }
 
-    /// Makes the equation of a site `x = 0`, which no other one sees.
+    /// Replaces the equation of a site by `x = 0`, decoupled from all other equations.
     pub fn hold(&mut self, site: usize) {
         let (n, last) = (self.n, self.sites - 1);
         let size = n * n;
@@ -250,7 +250,7 @@ impl<T: Real> Blocks<T> {
         }
     }
 
-    /// The same of one component of a site.
+    /// Like `hold`, for one component of a site.
     pub fn hold_component(&mut self, site: usize, k: usize) {
         let (n, last) = (self.n, self.sites - 1);
         let size = n * n;
@@ -274,7 +274,7 @@ impl<T: Real> Blocks<T> {
         self.without_pivot
     }
 
-    /// How many sites the open line has that is eliminated first.
+    /// The number of sites of the open chain that is eliminated first.
     fn open(&self) -> usize {
         self.sites - usize::from(self.closed)
     }

@@ -1,4 +1,4 @@
-//! Tests of what is given at sites, before anything is built of it.
+//! Checks the data at sites before anything is built from them.
 
 use super::error::{LineError, Place};
 use crate::solvers::largest_step::search_of;
@@ -43,7 +43,7 @@ pub fn count_of(count: &'static str, found: usize, least: usize) -> Result<(), L
     }
 }
 
-/// Tests, or makes, one value of each site.
+/// Checks or computes one value for each site.
 ///
 /// # Errors
 /// [`LineError::Site`] of the first that is not admissible.
@@ -61,8 +61,8 @@ pub fn each<S, R>(
     list.iter().enumerate().map(site).collect()
 }
 
-/// The list with so many sites more behind it: along a ring those from its beginning, else copies of
-/// the last, which no term reads.
+/// The list with this number of sites appended: on a ring the first sites, otherwise copies of the
+/// last site, which no term reads.
 pub fn repeated<S: Clone>(list: &[S], beyond: usize, ring: bool) -> Vec<S> {
     let mut out = list.to_vec();
     for i in 0..beyond {
@@ -75,7 +75,7 @@ pub fn repeated<S: Clone>(list: &[S], beyond: usize, ring: bool) -> Vec<S> {
     out
 }
 
-/// The first of the halves of a step that can be made, of twenty; a trial looks for none of its own.
+/// The first of twenty successive halves of a step that succeeds. A trial does not search for a step size itself.
 #[cold]
 pub fn shorter<T: Real>(h: T, made: impl Fn(T) -> bool) -> Option<f64> {
     let mut half = h;

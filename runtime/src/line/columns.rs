@@ -8,7 +8,7 @@ use core::marker::PhantomData;
 use core::ops::Range;
 use nalgebra::{SMatrix, Vector3};
 
-/// A value made of `N` numbers.
+/// A value that consists of `N` numbers.
 pub trait Numbered<const N: usize>: Copy + Send + Sync {
     /// Its numbers.
     type Number: Real;
@@ -25,7 +25,7 @@ pub trait Numbered<const N: usize>: Copy + Send + Sync {
 pub struct Columns<V, T, const N: usize> {
     /// One column after the other.
     data: Vec<T>,
-    /// From where a column begins to where the next one does.
+    /// The distance between the starts of two columns.
     stride: usize,
     len: usize,
     of: PhantomData<V>,
@@ -37,11 +37,11 @@ pub type Attitudes<T> = Columns<Attitude<T>, T, 4>;
 /// A list with the momentum in space of the edge that leaves each site.
 pub type Edges<T> = Columns<Vector3<T>, T, 3>;
 
-/// From so many numbers on, columns do not begin at the same place of a page of memory: a processor that compares addresses by
-/// their place in a page takes what it writes to one column for what it is to read of another.
+/// From this length on, columns start at different offsets within a page of memory. Otherwise a processor that compares only
+/// these offsets confuses a write to one column with a read from another.
 const PAGE: usize = 512;
 
-/// Where in its page a column begins behind the one before.
+/// The shift of a column's offset in its page, compared with the column before.
 const SHIFT: usize = 40;
 
 fn stride_of(len: usize) -> usize {
@@ -52,7 +52,7 @@ fn stride_of(len: usize) -> usize {
 }
 
 impl<V: Numbered<N, Number = T>, T: Real, const N: usize> Columns<V, T, N> {
-    /// The same value at so many sites.
+    /// A list of `len` copies of `value`.
     pub fn filled(value: V, len: usize) -> Self {
         let stride = stride_of(len);
         let mut data = Vec::with_capacity(N * stride);
@@ -91,7 +91,7 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize> Columns<V, T, N> {
         V::of(numbers)
     }
 
-    /// Puts another value at a site.
+    /// Sets the value at a site.
     ///
     /// # Panics
     /// If `site` is out of range.
@@ -108,7 +108,7 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize> Columns<V, T, N> {
         (0..self.len).map(|site| self.at(site))
     }
 
-    /// So many sites: the first of those there are, then copies of a value.
+    /// Changes the number of sites: keeps the first sites, and appends copies of a value.
     pub fn resize(&mut self, len: usize, value: V) {
         let mut other = Self::filled(value, len);
         other.keep(0..self.len.min(len), self);
@@ -140,7 +140,7 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize> Columns<V, T, N> {
         of_length(&self.data[k * self.stride..][..self.len][first..first + M])
     }
 
-    /// Some sites, to be filled.
+    /// Some sites, to be written.
     pub fn part(&mut self, sites: Range<usize>) -> ColumnsPart<'_, V, T, N> {
         assert!(sites.end <= self.len, "sites {sites:?} of {}", self.len);
         let mut rest = self.data.as_mut_slice();
@@ -156,7 +156,7 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize> Columns<V, T, N> {
     }
 }
 
-/// One value for all, where all are the same.
+/// Keeps a single value if all sites have the same value.
 pub fn once<V: PartialEq>(list: &mut Vec<V>) {
     if list.windows(2).all(|two| two[0] == two[1]) {
         list.truncate(1);
@@ -172,14 +172,14 @@ pub(super) fn of_length<T, const M: usize>(list: &[T]) -> &[T; M] {
     }
 }
 
-/// Some sites of a list, to be filled.
+/// Some sites of a list, to be written.
 pub struct ColumnsPart<'a, V, T, const N: usize> {
     pub(super) columns: [&'a mut [T]; N],
     pub(super) of: PhantomData<V>,
 }
 
 impl<V: Numbered<N, Number = T>, T: Real, const N: usize> ColumnsPart<'_, V, T, N> {
-    /// The same value at all sites.
+    /// Sets the value at all sites to `value`.
     pub fn fill(mut self, value: V) {
         for (column, number) in self.columns.iter_mut().zip(value.numbers()) {
             column.fill(number);

@@ -16,7 +16,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// The site of what belongs to the whole line.
+    /// The site of a quantity that belongs to the whole chain.
     pub const ALL: usize = isize::MAX as usize;
 }
 
@@ -37,12 +37,12 @@ pub enum LineError {
     Count {
         /// The name of the number of sites.
         count: &'static str,
-        /// How many were asked for.
+        /// The requested number.
         found: usize,
-        /// How many it takes.
+        /// The least number.
         least: usize,
     },
-    /// A list has another length than there are sites.
+    /// The length of a list differs from the number of sites.
     Length {
         /// The quantity.
         quantity: &'static str,
@@ -70,7 +70,7 @@ pub enum LineError {
         quantity: &'static str,
         /// Why.
         cause: MeshError,
-        /// A shorter step from the same state that was tried and works, where one was found.
+        /// A smaller step size for which a trial from the same state succeeded, if there is one.
         works: Option<f64>,
     },
     /// A step failed; the state is unchanged.

@@ -63,7 +63,7 @@ pub fn fill_in_lanes<P: InColumns>(
     let Ok(()) = try_fill_in_lanes(threads, out, value, together);
 }
 
-/// The same where a site may fail: the first one that does, and why. Others may be filled or not.
+/// Like `fill_in_lanes`, for computations that can fail at a site. If one fails, other sites may or may not be filled.
 ///
 /// # Errors
 /// The error of the site with the smallest number.

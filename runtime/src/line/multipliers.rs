@@ -187,7 +187,7 @@ impl<T: Real> Multipliers<T> {
         put(self, out);
     }
 
-    /// The same, nothing put anywhere.
+    /// Begins a search with zero impulses, without writing any values.
     pub fn begin(&mut self) {
         self.impulses.fill(T::zero());
         self.from.fill(T::zero());
@@ -217,7 +217,7 @@ impl<T: Real> Multipliers<T> {
         wants
     }
 
-    /// The same, by the numbers of a site: values, then sizes.
+    /// Like `wants_derivatives`, given the numbers of each site: values, then sizes.
     pub fn wants<'a>(&mut self, n: usize, held: impl Fn(usize) -> &'a [T]) -> bool
     where
         T: 'a,
@@ -319,7 +319,7 @@ impl<T: Real> Multipliers<T> {
         put(self, out);
     }
 
-    /// The same, by the numbers of a site, column after column.
+    /// Like `correct`, given the numbers of each site, column by column.
     pub fn correct_by<'a>(&mut self, n: usize, rows: impl Fn(usize) -> &'a [T])
     where
         T: 'a,
@@ -434,7 +434,7 @@ impl<T: Real> Multipliers<T> {
         }
     }
 
-    /// The same for a ring of one or two sites, whose neighbours on both sides are the same.
+    /// Like `load`, for a ring of one or two sites, where both neighbours of a site are the same site.
     fn add_rows<'a>(&mut self, n: usize, rows: impl Fn(usize) -> &'a [T])
     where
         T: 'a,
@@ -507,7 +507,7 @@ impl<T: Real> Multipliers<T> {
         Ok(())
     }
 
-    /// The same, by the numbers of a site.
+    /// Like `projected`, given the numbers of each site.
     ///
     /// # Errors
     /// As [`Multipliers::projected`].

@@ -79,7 +79,7 @@ pub(super) trait Momenta<T: Real> {
     /// Factors the derivative, which was taken at these velocities, and replaces the change `x` of momenta by the
     /// change of velocities. False if the derivative is singular or not finite.
     fn factor_and_solve(&mut self, velocity: &[T], x: &mut [T]) -> bool;
-    /// The same by the derivative that was factored last.
+    /// Solves with the derivative that was factored last.
     fn solve(&mut self, x: &mut [T]);
 }
 

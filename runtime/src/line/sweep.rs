@@ -14,7 +14,7 @@ use rayon::prelude::*;
 pub struct Threads(pub usize);
 
 #[cfg(feature = "rayon")]
-/// Fewest sites that a thread is given: with fewer, waking it costs more than it saves.
+/// The least number of sites for a thread; with fewer, waking the thread costs more than it saves.
 const FEWEST: usize = 2048;
 
 impl Threads {
@@ -36,10 +36,10 @@ pub fn fill<P: Part>(threads: Threads, out: P, value: impl Fn(usize) -> P::One +
     let Ok(()) = try_fill(threads, out, value);
 }
 
-/// The same where a site may fail: the first one that does, and why. Others may be filled or not.
+/// Like `fill`, for computations that can fail at a site. If one fails, other sites may or may not be filled.
 ///
 /// # Errors
-/// That of the site with the smallest number.
+/// The error of the site with the smallest number.
 #[inline]
 pub fn try_fill<P: Part, E: Send>(
     threads: Threads,
@@ -95,7 +95,7 @@ pub(super) fn try_fill_part<P: Part, E>(
 /// The first of the sites from `first` to the one before `last` at which a test fails, and why.
 ///
 /// # Errors
-/// That of the site with the smallest number.
+/// The error of the site with the smallest number.
 pub fn try_each<E>(
     first: usize,
     last: usize,
@@ -169,7 +169,7 @@ pub fn sum<T: Real>(sites: usize, value: impl Fn(usize) -> T) -> T {
     total(sites, |i| SMatrix::<T, 1, 1>::new(value(i)))[0]
 }
 
-/// The same of vectors or matrices, component by component.
+/// Like `sum`, for vectors or matrices, component by component.
 pub fn total<T: Real, const R: usize, const C: usize>(
     sites: usize,
     value: impl Fn(usize) -> SMatrix<T, R, C>,

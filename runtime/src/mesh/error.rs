@@ -7,19 +7,19 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// The place of a particle is NaN or infinite.
+    /// The position of a particle is NaN or infinite.
     NotFinite {
         /// Its number.
         site: usize,
     },
-    /// A particle is so many periods away that its place within one is lost to rounding.
+    /// A particle is so many periods away that rounding destroys its position within a period.
     TooFar {
         /// Its number.
         site: usize,
         /// How many.
         periods: f64,
     },
-    /// Two particles are at one place, or so near that no cells lie between them.
+    /// Two particles coincide, or are so close that their cells cannot be separated.
     Coincident {
         /// One of them.
         first: usize,
@@ -40,14 +40,14 @@ pub enum MeshError {
         /// The tolerance for the residual.
         tolerance: f64,
     },
-    /// There are not as many values as sites.
+    /// The number of values differs from the number of sites.
     Count {
-        /// How many values there are.
+        /// The number of values.
         given: usize,
         /// How many sites.
         sites: usize,
     },
-    /// A particle is beyond a wall by more than a reflection puts back.
+    /// A particle is too far beyond a wall for a reflection.
     Outside {
         /// Its number.
         site: usize,

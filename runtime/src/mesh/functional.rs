@@ -12,7 +12,7 @@ pub struct Setting<const D: usize> {
     pub domain: Domain<D>,
     /// Cells of the grid along each direction; `None` for a model without a grid.
     pub grid: Option<[usize; D]>,
-    /// How many particles there are.
+    /// The number of particles.
     pub particles: usize,
 }
 
@@ -53,7 +53,7 @@ pub trait Functional<T: Real, const D: usize>: Clone + Send + Sync + Sized {
     /// Makes its workspace.
     ///
     /// # Errors
-    /// Names what it cannot work with.
+    /// Names the invalid argument.
     fn new(setting: &Setting<D>, data: Self::Data<'_>) -> Result<Self, ParameterError>;
 
     /// The number of sites of its values.
@@ -62,11 +62,12 @@ pub trait Functional<T: Real, const D: usize>: Clone + Send + Sync + Sized {
     /// Its values, one for each of its sites.
     ///
     /// # Errors
-    /// [`MeshError`] with the site; `out` is of no meaning then.
+    /// [`MeshError`] with the site; the contents of `out` are then meaningless.
     fn value(&mut self, at: &[Self::Argument], out: &mut [T]) -> Result<(), MeshError>;
 
     /// The transposed derivative at the argument of the last [`Functional::value`], applied to `seed`: with `seed` the
-    /// derivatives of a number with respect to the values, `out` holds those with respect to the argument.
+    /// derivatives of a number with respect to the values, `out` receives the derivatives with respect to the
+    /// argument.
     ///
     /// # Errors
     /// [`MeshError`] with the site; `out` is of no meaning then.
@@ -77,7 +78,7 @@ pub trait Functional<T: Real, const D: usize>: Clone + Send + Sync + Sized {
         out: &mut [Self::Argument],
     ) -> Result<(), MeshError>;
 
-    /// Has its loops shared by so many threads from now on. They change no bit of any result.
+    /// Shares its loops between this many threads. Results do not depend on the number, bit for bit.
     fn share(&mut self, threads: Threads) {
         let _ = threads;
     }

@@ -5,13 +5,13 @@ use super::Domain;
 use crate::scalar::largest;
 use crate::{ParameterError, Problem, Real};
 
-/// Most domains that one length takes.
+/// The largest length, in units of the domain.
 const MOST: f64 = 100.0;
 
-/// Whether a length is one to smooth over.
+/// Checks that a length is admissible.
 ///
 /// # Errors
-/// It is NaN, infinite, negative or too long.
+/// If the length is NaN, infinite, negative or too long.
 pub(super) fn check_length<T: Real, const D: usize>(
     alpha: T,
     domain: &Domain<D>,

@@ -8,7 +8,7 @@ use std::io::{self, Write};
 /// Writes node, time, observables and invariants of every sample.
 ///
 /// # Errors
-/// Those of `file`, and of the rows.
+/// Errors of `file`, and of the rows.
 pub fn write(file: &mut dyn Write, card: &Card, rows: &dyn Rows) -> io::Result<()> {
     write!(file, "node,time")?;
     for name in names::columns(card) {

@@ -128,7 +128,7 @@ pub trait Rows {
     /// invariants).
     ///
     /// # Errors
-    /// Those of `show`, and of where the rows are kept.
+    /// Errors of `show`, and of the storage of the rows.
     fn each(&self, show: &mut dyn FnMut(&[u64]) -> io::Result<()>) -> io::Result<()>;
 }
 

@@ -1,6 +1,6 @@
-//! The largest of some numbers, from which a NaN cannot hide.
-//! `f64::max` gives the other number beside a NaN: folded over residuals it would call a lost
-//! solution a perfect one. Every test of smallness therefore folds by [`larger`].
+//! The largest of some numbers; the result is NaN if any number is. `f64::max` ignores a NaN, so a
+//! maximum of residuals would accept a failed solution. Every test of smallness therefore folds by
+//! [`larger`].
 
 use super::Real;
 

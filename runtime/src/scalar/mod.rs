@@ -200,7 +200,7 @@ pub trait Real:
         }
     }
 
-    /// A power of two near `1 / sqrt(|x|)`, lane by lane, without derivatives; 1 for what is zero, subnormal or not finite.
+    /// A power of two near `1 / sqrt(|x|)`, lane by lane, without derivatives; 1 if `x` is zero, subnormal or not finite.
     /// Multiplied by the powers of the diagonal, rows and columns of a matrix have one size, whatever their units.
     fn balance(self) -> Self {
         let mut scale = Self::one();

@@ -11,7 +11,7 @@ use num_traits::Zero;
 /// A value that consists of scalars and can be read lane by lane. The result is the same as of
 /// [`lane`](super::lane), but only the used parts are copied, for loops of steps.
 pub trait InLanes: Copy {
-    /// The same type over the scalar of one lane.
+    /// This type over the scalar of one lane.
     type One: Copy;
 
     /// The value of a lane; the first lane if `lane` is out of range.

@@ -1,19 +1,19 @@
-//! Types made of scalars, over any scalar: parameters, states and what they consist of.
-//! Takes a value over one scalar and a function of scalars; gives the same value over another: the
-//! lanes gathered from several bodies, or one body out of the lanes.
+//! Types made of scalars, over any scalar: parameters, states and their parts. Takes a value over
+//! one scalar and a function of scalars; gives the same value over another: the lanes gathered from
+//! several bodies, or one body out of the lanes.
 
 use super::{Lanes, Real};
 use core::array::from_fn;
 use nalgebra::SMatrix;
 
-/// A type made of scalars, and of nothing else that would differ from body to body.
+/// A type whose only data that differ from body to body are scalars.
 ///
 /// The emitted parameters, initial data and states implement it, field by field.
 pub trait OfScalars: Copy + core::fmt::Debug + Send + Sync {
     /// The type of its scalars.
     type Scalar: Real;
 
-    /// The same type over another scalar.
+    /// This type over another scalar.
     type Over<U: Real>: OfScalars<Scalar = U, Over<Self::Scalar> = Self>;
 
     /// Every scalar replaced by its image, always in the same order. Nothing is checked: the result

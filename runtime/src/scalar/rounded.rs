@@ -1,4 +1,4 @@
-//! Numbers with a bound of what rounding did to them. Takes numbers, as they are or rounded once; gives the running error
+//! Numbers with a bound on their rounding error. Takes numbers, as they are or rounded once; gives the running error
 //! bound of everything computed from them (Wilkinson).
 
 use super::Real;
@@ -8,8 +8,8 @@ use num_traits::{One, Zero};
 /// The relative error of one rounded operation.
 const UNIT: f64 = f64::EPSILON / 2.0;
 
-/// A number and how far rounding has moved it at most. A bound that cannot be given, as of a quotient by what may
-/// vanish, is NaN.
+/// A number and a bound on its rounding error. If a bound does not exist, as for a quotient whose divisor may
+/// vanish, it is NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounded {
     value: f64,
@@ -34,7 +34,7 @@ impl Rounded {
         }
     }
 
-    /// The bound of what rounding did to it.
+    /// The bound on its rounding error.
     #[inline]
     #[must_use]
     pub const fn error(&self) -> f64 {
@@ -218,7 +218,7 @@ impl Real for Rounded {
         high
     }
 
-    /// Where the sign is not known, both: what lies between 0 and `then`.
+    /// If the sign is not known, the result covers both cases: the interval from 0 to `then`.
     fn where_positive(self, then: Self) -> Self {
         let [low, high] = self.ends();
         if low > 0.0 {

@@ -1,8 +1,9 @@
-//! The maximum of a function with one peak, for the bounds of solvability.
-//! Takes the function and an interval that holds the peak; gives its height.
+//! The maximum of a function with one peak, for the bounds of solvability. Takes the function and
+//! an interval that contains the peak; gives its height.
 
-/// The maximum of a function with one peak between `low` and `high`, by golden section. It is known
-/// to rounding once its place is known to half the digits, after some fifty sections.
+/// The maximum of a function with one peak between `low` and `high`, by golden section. The maximum
+/// is accurate to rounding when its position is known to half the digits, after about fifty
+/// sections.
 pub(super) fn peak(f: &impl Fn(f64) -> f64, mut low: f64, mut high: f64, sections: u32) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     let mut left = high - GOLDEN * (high - low);

@@ -3,20 +3,20 @@
 
 use core::cell::Cell;
 
-/// Halvings of the step, one by one: most steps that are too long are so by little.
+/// The number of single halvings: most failed steps are only slightly too long.
 const HALVINGS: u32 = 8;
 
-/// After those the step is divided by 2^12 at a time, this often.
+/// After these, the step is divided by 2^12, at most this often.
 const LEAPS: u32 = 31;
 const LEAP: f64 = 1.0 / 4096.0;
 
 /// The smallest share of the step that is tried: `2^-380`.
 pub(crate) const SHORTEST_SHARE: f64 = f64::from_bits((1023 - 380) << 52);
 
-/// Halvings that must all do: a solution of another kind is sometimes met far beyond the bound.
+/// The number of further halvings that must also succeed, because an isolated solution may exist far beyond the bound.
 const CONFIRMED: u32 = 4;
 
-/// Shares of the largest step that must do as well.
+/// Shares of the largest step that must also succeed.
 pub(crate) const SHORTER: [f64; 13] = [
     1.0 - 1e-6,
     0.999,
@@ -33,12 +33,12 @@ pub(crate) const SHORTER: [f64; 13] = [
     0.6,
 ];
 
-/// How close to the bound the search comes that has a closed form to compare with, and the one
-/// whose trials cost a hundred steps each.
+/// The precision of a search with a closed form, and of a search whose trials cost a hundred steps
+/// each.
 const TO_ROUNDING: f64 = 2e-15;
 const ROUGHLY: f64 = 1e-7;
 
-/// How often the search goes below a shorter step that does not do.
+/// How often the search continues below a shorter step that fails.
 const RETURNS: usize = 8;
 
 /// The largest step not beyond `h` whose ratio is at most 1, by bisection.
@@ -122,8 +122,8 @@ impl Drop for Search {
     }
 }
 
-/// Two shares of the step below `refused`: one that does, as do some shorter ones, and a longer
-/// one that does not.
+/// Two shares of the step below `refused`: one that succeeds, as do some shorter ones, and a longer
+/// one that fails.
 fn bracket(refused: f64, fits: &dyn Fn(f64) -> bool) -> Option<(f64, f64)> {
     let (mut share, mut shortest_refused) = (refused, refused);
     let mut longest = None;
@@ -144,8 +144,7 @@ fn bracket(refused: f64, fits: &dyn Fn(f64) -> bool) -> Option<(f64, f64)> {
     Some((longest?, shortest_refused))
 }
 
-/// The boundary between a share that does and one that does not, less a part of at most
-/// `precision`.
+/// The boundary between a share that succeeds and one that fails, reduced by at most `precision`.
 fn between(mut low: f64, mut high: f64, precision: f64, fits: &dyn Fn(f64) -> bool) -> f64 {
     // Octaves first.
     while high > 4.0 * low {
@@ -179,7 +178,7 @@ mod tests {
         assert!((found - 1.0).abs() < 2e-12);
         assert_eq!(inner.get(), 0);
         assert!(trials.get() < 100, "{}", trials.get());
-        // The next search is one of its own.
+        // The next search is independent.
         assert!(largest_step(2.0, Some) > 0.9);
     }
 
@@ -225,7 +224,7 @@ mod tests {
                 cheap.get() < 70 && dear.get() == 1,
                 "{bound}: {cheap:?} {dear:?}"
             );
-            // Dear trials refuse more: a little, then nearly all.
+            // Expensive trials fail more often: first slightly more often, then nearly always.
             for refused in [0.95 * bound, 1e-5 * bound] {
                 let found =
                     confirmed_step(&|x| below(bound, &cheap, x), &|x| below(refused, &dear, x));

@@ -1,4 +1,4 @@
-//! The solvers of the Moser-Veselov equation by name, for those who choose.
+//! The solvers of the Moser-Veselov equation, selected by name.
 
 use core::fmt;
 use core::str::FromStr;
@@ -43,11 +43,11 @@ impl Method {
     /// All names, in the same order.
     pub const NAMES: [&'static str; 5] = ["kappa", "lie-newton", "davenport", "sign", "schur"];
 
-    /// All names, for factors that would have to be prepared at each step.
+    /// All names, for factors that would need a preparation in each step; the first needs none.
     pub const DAVENPORT_FIRST: [&'static str; 5] =
         ["davenport", "kappa", "lie-newton", "sign", "schur"];
 
-    /// The names that serve matrices of any size.
+    /// The names of solvers for matrices of any size.
     pub const ANY_SIZE: [&'static str; 3] = ["lie-newton", "sign", "schur"];
 
     /// The default for matrices of this size.
@@ -59,7 +59,7 @@ impl Method {
         }
     }
 
-    /// This one where it serves matrices of size `n`, otherwise the default of that size.
+    /// This solver if it supports matrices of size `n`, otherwise the default for that size.
     #[must_use]
     pub const fn serving(self, n: usize) -> Method {
         match (self, n) {

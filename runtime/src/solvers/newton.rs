@@ -33,7 +33,7 @@ use corrections::{Corrections, Next, Residual};
 use nalgebra::{SMatrix, SVector};
 use reduced::AtRest;
 
-/// Iterations after which the method gives up; quadratic convergence needs fewer than ten.
+/// The largest number of iterations; quadratic convergence needs fewer than ten.
 const MOST_ITERATIONS: usize = 50;
 
 /// A residual below this many roundings of its equation's own terms is zero: it is a sum of some
@@ -43,8 +43,8 @@ const CONVERGED_ROUNDINGS: f64 = 16.0;
 /// Below this the residual is nothing but rounding, and a further step would only change it.
 const POLISHED_ROUNDINGS: f64 = 4.0;
 
-/// Two evaluations may differ by twice their bounds of rounding, [`BOUND_ROUNDINGS`] each. Where the
-/// residual stops falling below this, rounding is the reason.
+/// Two evaluations may differ by twice their bounds of rounding, [`BOUND_ROUNDINGS`] each. If the
+/// residual stops decreasing below this, the cause is rounding.
 const STAGNATED_ROUNDINGS: f64 = 64.0;
 
 /// A bound of the rounding of an equation is taken to be this many roundings of its terms.
@@ -58,7 +58,7 @@ const OLDEST_SCALE: u32 = 256;
 const LATE: usize = 8;
 
 /// A factored tangent serves further corrections while each leaves less than this of the residual;
-/// past that a tangent at the new place pays.
+/// otherwise a tangent at the new trial is cheaper.
 const WORTH_KEEPING: f64 = 0.02;
 
 /// A tangent of so many steps ago still makes a residual that is rounding already smaller: it has
@@ -80,13 +80,13 @@ pub struct Solved<G> {
     pub residual: f64,
 }
 
-/// The neutral element is where the last attempt starts.
+/// The neutral element, where the last attempt starts.
 const LAST_ATTEMPT: u32 = 2;
 
-/// An equation whose terms are smaller than this part of others of its kind is judged by those.
+/// If the terms of an equation are smaller than this share of the terms of similar equations, it is judged by these.
 const LEAST_SHARE: f64 = 1e-30;
 
-/// How many solutions the next guess is made from.
+/// The number of solutions from which the next guess is extrapolated.
 const REMEMBERED: usize = 6;
 
 /// The search for the velocities along a trajectory. It remembers the last solutions and predicts the
@@ -129,7 +129,7 @@ pub struct Search<T, G, const D: usize, W = G, const E: usize = D> {
 /// How a step was solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
-    /// Tangents made and factored: Newton's iterations proper. None where an earlier one served.
+    /// Tangents made and factored: Newton's iterations proper. Zero if an earlier tangent sufficed.
     pub tangents: usize,
     /// Corrections made, those with a kept tangent included.
     pub corrections: usize,
@@ -142,7 +142,7 @@ impl<T: Real, G, const D: usize, W: Group<T>, const E: usize> Search<T, G, D, W,
 where
     G: Group<T> + Found<W>,
 {
-    /// A search without a past: the first guess is the neutral element.
+    /// A search without previous solutions: the first guess is the neutral element.
     #[must_use]
     pub fn from_rest() -> Self {
         Self {
@@ -170,7 +170,7 @@ where
         }
     }
 
-    /// The same for a trial step: if it fails, clebsch does not search for a shorter one.
+    /// Like `from_rest`, for a trial step: if it fails, clebsch does not search for a smaller step size.
     #[cold]
     #[must_use]
     pub fn to_try() -> Self {
@@ -206,8 +206,8 @@ where
         self.last
     }
 
-    /// Begins the solution of the step that leaves `node`. The first trial is foreseen from the past; if that leads
-    /// nowhere, the last solution is tried, then the neutral element.
+    /// Begins the solution of the step that leaves `node`. The first trial is extrapolated from previous solutions.
+    /// If it fails, the last solution is tried, then the neutral element.
     #[inline(always)]
     pub fn begin(&mut self, node: u64) -> Newton<'_, T, G, D, W, E> {
         if node != self.next {
@@ -306,8 +306,8 @@ where
     }
 }
 
-/// Newton's method at work: the caller evaluates the equations at the trial, this decides what is
-/// done with them.
+/// The state of Newton's method: the caller evaluates the equations at the trial, and this type
+/// decides the next action.
 ///
 /// ```text
 /// loop {
@@ -345,7 +345,7 @@ pub struct Newton<'a, T, G, const D: usize, W = G, const E: usize = D> {
     previous: f64,
     corrections: Corrections,
     iteration: usize,
-    /// The iterations of a solution whose rest is wanted.
+    /// The iterations of a solution whose rest is requested.
     found: Option<usize>,
 }
 
@@ -364,7 +364,7 @@ impl<T: Real, G, const D: usize, W: Group<T>, const E: usize> Newton<'_, T, G, D
 where
     G: Group<T> + Found<W>,
 {
-    /// The element at which the equations are wanted.
+    /// The element at which the equations are needed.
     #[inline(always)]
     pub fn trial(&self) -> G {
         self.trial
@@ -429,7 +429,7 @@ where
         self.found = None;
     }
 
-    /// Takes the residual at the trial; says whether the tangent there is wanted.
+    /// Takes the residual at the trial; returns whether it needs the tangent there.
     #[inline(always)]
     pub fn assess(&mut self, residual: SVector<T, D>) -> bool {
         self.size = largest(&residual.component_mul(&self.search.weights));
@@ -484,7 +484,7 @@ where
         self.correct_by::<false>()
     }
 
-    /// The same where the tangent is the derivative along the coordinates of
+    /// Like `correct`, if the tangent is the derivative along the coordinates of
     /// [`Group::retract_from_left`].
     #[inline(always)]
     pub fn correct_from_left(&mut self) -> Progress<G> {
@@ -551,6 +551,6 @@ fn largest<T: Real, const D: usize>(v: &SVector<T, D>) -> f64 {
         let size = if above > below { above } else { below };
         largest = if size > largest { size } else { largest };
     }
-    // Comparisons pass over NaN, a sum does not.
+    // Comparisons ignore NaN, a sum does not.
     largest + 0.0 * sum.magnitude()
 }

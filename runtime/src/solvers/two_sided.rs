@@ -175,7 +175,7 @@ pub fn divided<T: Real, const R: usize, const C: usize>(
     }
 }
 
-/// The same without a branch, so that a loop over many sites vectorises; also whether the solution is finite.
+/// Divides without a branch, so that a loop over many sites vectorises. Also returns whether the solution is finite.
 #[inline(always)]
 pub fn divided_at_once<T: Real, const R: usize, const C: usize>(
     known: &SMatrix<T, R, C>,

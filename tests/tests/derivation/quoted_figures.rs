@@ -24,7 +24,7 @@ const fn place(row: &'static str, column: &'static str) -> Place {
 /// Rows of the README's table, and where in benches/RESULTS.md each is measured.
 const QUOTED: [(&str, Place); 6] = [
     (
-        "one step: by hand, the same method",
+        "one step: the same method, hand-written",
         place("by hand", "one step"),
     ),
     (
@@ -44,7 +44,7 @@ const QUOTED: [(&str, Place); 6] = [
         place("heyoka", "to 1e-10"),
     ),
     (
-        "to 1e-10: heyoka in eight lanes, clebsch in sixteen",
+        "to 1e-10: heyoka in 8 SIMD lanes, clebsch in 16",
         place("heyoka, batch of eight lanes", "to 1e-10"),
     ),
 ];

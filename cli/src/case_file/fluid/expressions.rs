@@ -95,7 +95,7 @@ impl Reader<'_> {
             _ if size == 1 => return self.component(q, value),
             _ => {
                 return Err(format!(
-                    "expected {size} numbers or expressions, or a list with such for each site"
+                    "expected {size} numbers or expressions, or a list with {size} for each site"
                 )
                 .into());
             }

@@ -130,8 +130,8 @@ impl Reader<'_> {
         }
         let Some(at) = self.fluid.columns.get(&of) else {
             return Err(format!(
-                "`{name}` depends on the positions {of}, which are given here: write them as a lattice, or in the index of a \
-                 particle; {}",
+                "`{name}` depends on the positions {of}, which this entry defines: write {of} as a lattice, or in terms of the \
+                 index of a particle; {}",
                 instead()
             ));
         };
@@ -139,7 +139,7 @@ impl Reader<'_> {
             let labels = &lattice.labels;
             let index = |label: usize| labels.get(label).map_or("", |l| l.index.text.as_str());
             return Err(format!(
-                "`{name}` has values at the particles `{}`, but those of {} belong to `{}`: {}",
+                "`{name}` has values at the particles `{}`, but the values of {} belong to `{}`: {}",
                 index(places.label),
                 ascii(&q.name.text),
                 index(q.label),

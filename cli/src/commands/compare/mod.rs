@@ -187,8 +187,8 @@ pub(crate) fn against_all(
                 "the reference of this model failed"
             };
             let said = format!(
-                "extrapolated: {why}; {doc}: this tests the accuracy of the step, not the equations; its last term is \
-                 {accuracy:.0e}"
+                "extrapolated: {why}; the reference is {doc}. It tests the accuracy of the step, not the equations; the last term \
+                 of the extrapolation is {accuracy:.0e}"
             );
             (course, said, ("extrapolated", doc, None))
         }
@@ -213,7 +213,7 @@ pub(crate) fn against_all(
         let course = course_or_why(card, &plan);
         let time = clock::generated(card, &plan);
         let doc = format!(
-            "the same, {}",
+            "the same stepper, {}",
             card.method_of_order(higher, plan.compensated)
         );
         scores.push(score(
@@ -234,7 +234,7 @@ pub(crate) fn against_all(
         plan.solver = name.parse().ok();
         let course = course_or_why(card, &plan);
         let time = clock::generated(card, &plan);
-        let doc = format!("the same, solved by {name}");
+        let doc = format!("the same stepper, solved by {name}");
         let name = format!("{}-{name}", made.name());
         scores.push(score(&name, doc, None, time, course));
     }
@@ -286,7 +286,7 @@ fn print(
     ))?;
     say(format!("reference {}", done.reference))?;
     say(format!(
-        "errors |x - reference| / largest |reference|, drifts |I - I(0)| / scale: the largest at {}",
+        "errors |x - reference| / largest |reference|, drifts |I - I(0)| / scale: maxima over {}",
         match plan.every {
             1 => "any node".to_owned(),
             every => format!("one node in {every}"),

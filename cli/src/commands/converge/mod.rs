@@ -110,8 +110,8 @@ fn lower(done: &Measured, order: u32) -> Option<String> {
             done.levels.len()
         ),
         Some((name, _)) => format!(
-            "`{name}` converges with the order of the step, so this error belongs to single nodes and does not accumulate, as \
-             for a momentum that is not projected at its node"
+            "`{name}` converges with the order of the step, so this error does not accumulate: it arises at each node, as for a \
+             momentum that is not projected"
         ),
         None => "use more levels, or smaller steps, to check whether it persists".to_owned(),
     };

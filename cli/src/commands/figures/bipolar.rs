@@ -134,7 +134,7 @@ pub(super) fn beside(gallery: &Gallery) -> Result<String, Failure> {
             lines(["N₁", "N₂", "N₃"], n),
         ),
         panel(
-            "h² (E − E(0)), kinetic energy of the edge behind the node",
+            "h² (E − E(0)), kinetic energy of the edge before the node",
             "",
             vec![
                 line("bipolar form", 0, scaled(&polar.forward)),

@@ -247,7 +247,7 @@ pub(super) fn coupled_difference(gallery: &Gallery) -> Result<String, Failure> {
         let of = |record| pair.observable(record, "body_momentum_Lambda1", index);
         let name = ["M₁", "M₂", "M₃"].get(index).copied().unwrap_or_default();
         panels.push(panel(
-            &format!("{name} of body 1, generated less ode45"),
+            &format!("{name} of body 1, generated minus ode45"),
             "",
             vec![line("", 0, difference(&of(&own), &of(&ode45)))],
         ));

@@ -50,7 +50,7 @@ pub(super) struct Course {
     pub volume: Series,
     /// Angular momentum and circulation, by components along the axes of stretches in space and in the reference.
     pub along: [[Series; 3]; 2],
-    /// The same vectors along fixed axes.
+    /// The vectors along fixed axes.
     pub fixed: [[Series; 3]; 2],
     /// Kinetic energy of the edge that starts at the node, and the stored one at the node.
     pub forward: Series,
@@ -216,7 +216,7 @@ pub(super) fn drift(gallery: &Gallery) -> Result<String, Failure> {
     });
     let panels = vec![
         panel(
-            "h² (E − E(0)): forward, kinetic energy of the edge behind the node; at the node, that of its momentum",
+            "h² (E − E(0)): forward, from the velocity of the edge before the node; at the node, from its momentum",
             "",
             vec![
                 line("forward", 0, times_square(&course.forward)),

@@ -34,7 +34,7 @@ impl<'a> Subject<'a> {
         Ok(Self { entry, case })
     }
 
-    /// The same model with other data.
+    /// This model with the data of another case.
     pub fn with<'b>(&self, case: &'b Case) -> Subject<'b>
     where
         'a: 'b,

@@ -152,7 +152,7 @@ pub(super) fn time_against_steps(gallery: &Gallery) -> Result<String, Failure> {
         Ok(begin.elapsed().as_secs_f64())
     };
     let by = |offer: &Offer, steps: u64| -> Result<f64, Failure> {
-        let refused = |_| Failure::Failed(format!("{} gives up", offer.name));
+        let refused = |_| Failure::Failed(format!("{} failed", offer.name));
         let problem = Problem {
             parameters: &body.case.parameters,
             initial: &body.case.initial,
@@ -201,16 +201,16 @@ pub(super) fn time_against_steps(gallery: &Gallery) -> Result<String, Failure> {
     let places: Vec<f64> = counts.iter().map(|count| *count as f64).collect();
     drawn(&Figure {
         paper: false,
-        title: "Figure 2.16: time of computation, I = (1, 2, 3)".to_owned(),
+        title: "Figure 2.16: computation time, I = (1, 2, 3)".to_owned(),
         subtitle: format!(
-            "free-body, case {}; h = {}; the least of three runs on this machine",
+            "free-body, case {}; h = {}; the shortest of three runs on this machine",
             body.case.name, body.case.h
         ),
         x: Axis::logarithmic(&places),
         x_label: "number of steps N".to_owned(),
         panels: vec![Panel {
             map: None,
-            caption: "time of computation, attitude included".to_owned(),
+            caption: "computation time, attitude included".to_owned(),
             y_label: "seconds".to_owned(),
             y: Axis::decades(&curves),
             curves,
@@ -249,7 +249,7 @@ pub(super) fn drift(gallery: &Gallery) -> Result<String, Failure> {
     ];
 
     sheet(
-        "Figure 2.17: drift beside splitting, I = (1, 2, 3)",
+        "Figure 2.17: drift compared with splitting, I = (1, 2, 3)",
         &body,
         "",
         panels,

@@ -96,7 +96,7 @@ pub fn run(
     };
     let started = {
         let numbers: usize = plan.case.initial.iter().map(Vec::len).sum();
-        let what = format!("starting from {numbers} numbers: trying the first step");
+        let what = format!("taking the first step, from a state of {numbers} numbers");
         let _told = Waiting::told(what, streams.progress);
         plan.open(card)
     };

@@ -88,7 +88,7 @@ pub(crate) fn below_the_table(run: &Finished<'_>, made: u64) -> Vec<String> {
         let time = number::plain(stopped.time);
         let all = steps(run.plan.case.steps);
         format!(
-            "stopped at node {} (time {time}), after {made} of {all}: the results end there",
+            "stopped at node {} (time {time}), after {made} of {all}; the results end at this node",
             stopped.node
         )
     });
@@ -101,7 +101,7 @@ pub(crate) fn below_the_table(run: &Finished<'_>, made: u64) -> Vec<String> {
     });
     let looked = (run.plan.every > 1).then(|| {
         format!(
-            "drifts: sampled at every {} nodes and at the last (--every)",
+            "drifts: sampled every {} nodes and at the last node (--every)",
             run.plan.every
         )
     });

@@ -1,4 +1,4 @@
-//! Rotations seen from the body, beside what they carry, fields and other bodies.
+//! Rotations in the body frame, with advected quantities, fields and other bodies.
 
 use crate::steps::row::Row;
 use crate::steps::words::*;

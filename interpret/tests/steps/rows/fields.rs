@@ -1,4 +1,4 @@
-//! Numbers, vectors and matrices that are added.
+//! Fields: numbers, vectors and matrices.
 
 use crate::steps::row::Row;
 use crate::steps::words::*;
@@ -104,7 +104,7 @@ fn magnetic<T: Number>(e: &Edge<'_, T>) -> T {
 
 fn driven<T: Number>(e: &Edge<'_, T>) -> T {
     let (w, t) = (e.given.real("w"), e.given.real("t"));
-    // The clock goes on by the step.
+    // The clock advances by the step size.
     let height =
         (w * t).sin() * e.tail.real("x").cos() + (w * (t + e.h)).sin() * e.head.real("x").cos();
     point(e, "m", "x") + e.h * e.given.real("k") * height / of(2.0)

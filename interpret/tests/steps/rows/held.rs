@@ -1,4 +1,4 @@
-//! Constraints that are held.
+//! Constraints on configurations.
 
 use crate::steps::row::{Named, Row};
 use crate::steps::words::*;
@@ -17,7 +17,7 @@ fn of_pendulum<T: Number>(given: &Place<'_, T>, at: &Place<'_, T>) -> Vec<T> {
     vec![norm(&at.column::<3>("x")) - square(given.real("l"))]
 }
 
-/// The part of a momentum across the first vector is taken away.
+/// Removes the part of a momentum perpendicular to the first vector.
 fn tangent(across: &[f64], momentum: &mut [f64]) {
     let inner = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     let part = inner(across, momentum) / inner(across, across);

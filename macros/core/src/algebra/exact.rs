@@ -69,7 +69,7 @@ impl<'a> Point<'a> {
         }
     }
 
-    /// The same point with this size for every named dimension.
+    /// This point, with this size for every named dimension.
     pub(crate) fn sized(mut self, size: usize) -> Point<'a> {
         self.size = Size::Given(size);
         self.found = Found::default();

@@ -250,7 +250,7 @@ impl<'a> Elaborator<'a> {
                     return fail(
                         Diagnostic::new(
                             b.place,
-                            format!("only numbers divide, and this is {what}"),
+                            format!("the divisor must be a number, and this is {what}"),
                         )
                         .help(match bottom.shape().is_vector() {
                             true => "divide by a number, such as the length `sqrt(dot(x, x))`",

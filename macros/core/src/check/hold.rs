@@ -101,7 +101,7 @@ pub(super) fn without_clocks(spec: &Spec) -> Result<(), Errors> {
         let name = &spec.symbols.get(clock.symbol).name;
         let message = format!(
             "`{name}` advances with the step by itself, and a `hold` constraint must not depend on time: no velocity could \
-             keep it"
+             satisfy it"
         );
         errors.push(Diagnostic::new(hold.place, message).help(format!(
             "drive the configuration by a stiff spring, as in `-h*(K/2)*(x - A*sin(w*{name}))^2`, or constrain it to a field \

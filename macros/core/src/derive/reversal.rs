@@ -73,7 +73,7 @@ pub(crate) fn clock_left(spec: &Spec, action: &Action, algebra: &Algebra) -> Opt
         .iter()
         .map(|l| l.symbol)
         .collect();
-    // And the quantities in the updates of these.
+    // Also include the quantities in the updates of these clocks.
     let own = |id| spec.advected.iter().find(move |a| a.quantity == id);
     let mut next = 0;
     while let Some(id) = used.get(next).copied() {

@@ -15,7 +15,7 @@ pub(super) struct Part {
     pub choice: Choice,
     pub unfolded: ExpandedModel,
     pub d: Derivation,
-    /// The same choice with more sites. Comparing the two shows which formulas hold for every number of sites.
+    /// This choice with more sites. Comparing the two shows which formulas hold for every number of sites.
     pub longer: Option<Box<Part>>,
 }
 

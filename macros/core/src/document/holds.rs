@@ -21,7 +21,11 @@ pub fn stated(sheet: &Sheet, section: &mut Section) {
     }
     for (j, hold) in d.spec.holds.iter().enumerate() {
         let multiplier = sheet.here(hold.multiplier);
-        section.paragraph(["The multiplier ".into(), multiplier.into(), " holds".into()]);
+        section.paragraph([
+            "The multiplier ".into(),
+            multiplier.into(),
+            " enforces".into(),
+        ]);
         section.equation(Formula::equal(
             sheet.math(&hold.left),
             sheet.math(&hold.right),
@@ -49,7 +53,7 @@ pub fn held(sheet: &Sheet, doc: &mut Document) {
     if d.spec.holds.is_empty() {
         return;
     }
-    let section = doc.section("Held constraints");
+    let section = doc.section("Constraints on configurations");
     let names: Vec<Formula> = d
         .spec
         .holds
@@ -68,8 +72,8 @@ pub fn held(sheet: &Sheet, doc: &mut Document) {
     }
     words.push(
         match d.spec.holds.len() {
-            1 => " is found with the step, so that the constraint holds at its end (SHAKE):",
-            _ => " are found with the step, so that the constraints hold at its end (SHAKE):",
+            1 => " is solved for in the step, so that the constraint is satisfied at its end (SHAKE):",
+            _ => " are solved for in the step, so that the constraints are satisfied at its end (SHAKE):",
         }
         .into(),
     );
@@ -78,10 +82,12 @@ pub fn held(sheet: &Sheet, doc: &mut Document) {
         let next = |e: &Expr| sheet.math(&expr::shift_time(s, e, Shift::NEXT.time));
         section.equation(Formula::equal(next(&hold.left), next(&hold.right)));
     }
-    section.text("Among several solutions the principal one is taken, which continues from rest with zero multipliers.");
+    section.text(
+        "The step takes the principal root, which continues from rest with zero multipliers.",
+    );
     let Ok(limit) = &d.limit else {
         section.text(
-            "The momentum is not projected on arrival: the velocity is not known from it in closed form.",
+            "The step does not project the momentum at its end, because the momentum does not give the velocity in closed form.",
         );
         return;
     };
@@ -105,17 +111,16 @@ pub fn held(sheet: &Sheet, doc: &mut Document) {
 }
 
 /// Sentences on the projection of momenta.
-pub(super) const ON_ARRIVAL: &str =
-    "On arrival the momentum is projected (RATTLE): impulses along the reactions are added,";
-pub(super) const ALONG: &str = "so that the velocity on the left moves along the constraints:";
+pub(super) const ON_ARRIVAL: &str = "At its end the step projects the momentum (RATTLE): it adds impulses along the constraint forces,";
+pub(super) const ALONG: &str = "so that the velocity on the left is tangent to the constraints:";
 /// The sentence before the equations for the reported multipliers; `MIDDLE` follows these equations.
 pub(super) fn no_change(d: &Derivation) -> String {
     format!(
-        "The projection changes no configuration: the multiplier of the next step would supply the same impulse. The multiplier that the state shows at node {} is that of the step that ended there with the impulse of the projection over the step:",
+        "The projection changes no configuration: without it, the multiplier of the next step would supply the same impulse. The reported multiplier at node {} is the multiplier of the step that ended there, combined with the impulse of the projection divided by the step size:",
         d.spec.time_index
     )
 }
-pub(super) const MIDDLE: &str = "It approximates the multiplier at the middle of that step to second order; each of its two parts is about a half of it.";
+pub(super) const MIDDLE: &str = "It approximates the multiplier at the middle of that step to second order; each of its two parts contributes about half of it.";
 
 /// Substitutes velocities for variations.
 fn velocities(d: &Derivation) -> Vec<(Letter, Expr)> {

@@ -272,9 +272,9 @@ fn terms(folded: &mut IndexedNotation, part: &Part, doc: &mut Document) {
     }
     let section = doc.section("Discrete Lagrangian");
     section.text(match (scaled, ring) {
-        (true, _) => "The Lagrangian as typed, of the step from a node to the next; each term is summed over the sites at which all its letters exist:",
-        (false, true) => "The discrete Lagrangian of the step from a node to the next on a ring:",
-        (false, false) => "The discrete Lagrangian of the step from a node to the next; each term is summed over the sites at which all its letters exist:",
+        (true, _) => "The Lagrangian of the step from one node to the next, as stated; each term is summed over the sites where every quantity in it is defined:",
+        (false, true) => "The discrete Lagrangian of the step from one node to the next, on a ring:",
+        (false, false) => "The discrete Lagrangian of the step from one node to the next; each term is summed over the sites where every quantity in it is defined:",
     });
     let name = format!("ℓ_{}", part.d.spec.time_index);
     let sum = match <[Formula; 1]>::try_from(shown) {
@@ -283,21 +283,21 @@ fn terms(folded: &mut IndexedNotation, part: &Part, doc: &mut Document) {
     };
     section.equation(Formula::defined(Formula::name(&name), sum));
     if without_constants {
-        section.text("Constants, which do not enter the equations of motion, are left out.");
+        section.text("Constants, which do not enter the equations of motion, are omitted.");
     }
     if !part.d.action.nodal.is_zero() {
-        section.text("Terms of a node in time are split evenly between the two adjacent steps.");
+        section.text("Nodal terms are split evenly between the two adjacent steps.");
     }
     for stated in holds::stated_holds(part) {
         let name = stated.name;
         section.text(&format!(
-            "Beside it the action of a step contains, at every site, the work of the multiplier {name}: the step times {name} paired with what it holds, left side less right side, at the node where the step begins."
+            "The action of a step also contains, at every site, the constraint term of the multiplier {name}: the step size times {name} paired with the left side minus the right side of its constraint, at the start of the step."
         ));
     }
     for stated in &part.unfolded.totals {
         let name = &stated.name;
         section.text(&format!(
-            "Beside it the action of a step contains, once for all sites, the work of the multiplier {name}: the step times {name} paired with what it holds, left side less right side, at the node where the step begins."
+            "The action of a step also contains, once for all sites, the constraint term of the multiplier {name}: the step size times {name} paired with the left side minus the right side of its constraint, at the start of the step."
         ));
     }
 }

@@ -168,7 +168,7 @@ pub fn limit(sheet: &Sheet, doc: &mut Document) {
     words.push(" over the step".into());
     words.push(match d.spec.holds.is_empty() {
         true => ".".into(),
-        false => "; the multipliers are determined by the held constraints.".into(),
+        false => "; the constraints on configurations determine the multipliers.".into(),
     });
     section.paragraph(words);
 }

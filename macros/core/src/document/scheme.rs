@@ -65,7 +65,7 @@ fn algorithm(sheet: &Sheet, section: &mut Section) {
     });
     solve.extend(listed(velocities.collect()));
     if !d.spec.holds.is_empty() {
-        solve.push(" and the multipliers of the held constraints".into());
+        solve.push(" and the multipliers of the constraints on configurations".into());
     }
     solve.push(".".into());
     let mut advance: Vec<Inline> = vec!["Advance the configuration by ".into()];

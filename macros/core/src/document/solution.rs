@@ -315,10 +315,9 @@ fn riccati(sheet: &Sheet, section: &mut Section, c: &Configuration, mv: &MoserVe
     {
         section.paragraph([
             letter.into(),
-            " is singular whatever the parameters, too far for a solution: ".into(),
+            " is singular for all parameters and does not determine a solution: ".into(),
             degenerate.into(),
-            ", and of the velocities that solve the Moser-Veselov equation none is singled out."
-                .into(),
+            ", and several velocities solve the Moser-Veselov equation.".into(),
         ]);
         return;
     }
@@ -388,7 +387,7 @@ fn method(sheet: &Sheet, section: &mut Section) {
             "The stepper makes no step: it tests ".into(),
             letter.clone().into(),
             format!(
-                " where it is given it and refuses every one, since {degenerate} whatever the \
+                " when it is given and rejects every value, because {degenerate} for all \
                  parameters. The warning says what to write instead."
             )
             .into(),
@@ -458,8 +457,8 @@ fn method(sheet: &Sheet, section: &mut Section) {
     unique(sheet, section);
     if let Some(degenerate) = degenerate {
         section.text(&format!(
-            "But {degenerate} whatever the parameters: for small steps the equation does not \
-             determine all velocities, and steps may be refused."
+            "But {degenerate} for all parameters: for small steps the equation does not \
+             determine all velocities, and steps may fail."
         ));
     }
 }

@@ -164,7 +164,7 @@ fn listed(c: &Count) -> String {
         true if c.found == 1 => "it is listed below".to_owned(),
         true => "all of them are listed below".to_owned(),
         false => format!(
-            "{} of them are listed below, no others being among the scalar products, traces and determinants that were tried",
+            "{} of them are listed below; no others are among the scalar products, traces and determinants that were tried",
             c.found
         ),
     }

@@ -536,7 +536,7 @@ fn refusal(
     let method = default_solver(d).map(|_| quote!(let method = work.method;));
     let trial = filled(d, |_| quote!(newton::Search::to_try()));
     quote! {
-        /// Says how far the step is beyond the bound, and which step could be made.
+        /// Reports how far the step exceeds the bound, and a step size that succeeds.
         #[cold]
         #[inline(never)]
         fn #name(&self, state: #state #used, work: &#work #used, e: #error) -> StepError {

@@ -403,7 +403,7 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
     let (node, before) = (names.local("node"), names.local("before"));
     let momenta = (0..d.spec.configurations.len()).map(|i| per_configuration(d, "momentum", i));
     let inside = inside(d, names);
-    let method = format!(" One step, in place. Solved thus: {}.", d.how_solved());
+    let method = format!(" One step, in place. Method: {}.", d.how_solved());
     let (asked, taken) = match d.solve.method {
         Method::Newton => (
             quote!(work.h, work.search.tries(),),
@@ -430,7 +430,7 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
         #[doc = #method]
         ///
         /// # Errors
-        /// When the step cannot be solved, or leaves what the model is defined on, with numbers and
+        /// If the step cannot be solved, or leaves the domain of the model, with numbers and
         /// a remedy; the state is then unchanged.
         #[inline]
         pub fn step(&self, state: &mut #state #used, work: &mut #work #used) -> Result<(), StepError> {
@@ -450,7 +450,7 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
             }
         }
 
-        /// Says what the step met, and which step could be made.
+        /// Reports where the step leaves the domain, and a step size that succeeds.
         #[cold]
         #[inline(never)]
         fn left_domain(&self, state: &#state #used, #taken contact: domain::Contact) -> StepError {

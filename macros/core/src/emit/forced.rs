@@ -65,7 +65,7 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
         #step
         #begin
 
-        /// Says how far the step is beyond the bound, and which step could be solved.
+        /// Reports how far the step exceeds the bound, and a step size that succeeds.
         #[cold]
         fn refused(&self, state: #state #used, factor: &#kind, h: T, e: QuaternionError) -> StepError {
             let e = e.with_searched_step(factor, h, |trial| self.edge(&state, trial).body());

@@ -51,7 +51,7 @@ pub(super) fn fields(d: &Derivation) -> (Vec<TokenStream>, Vec<TokenStream>) {
             ty(s, shape(d, hold)),
         );
         let doc = format!(
-            " The multiplier of `{} = {}` over the step that ended here, zero at the start: the reaction is this many times the derivative of the left side less the right one.",
+            " The multiplier of `{} = {}` over the step that ended here, zero at the start: the constraint force is this multiple of the derivative of the left side minus the right side.",
             text(d, &hold.left),
             text(d, &hold.right)
         );
@@ -302,7 +302,7 @@ fn rates(d: &Derivation, names: &Names, projection: &Projection) -> TokenStream 
                     rate
                 }
 
-                /// The same with the size of its terms.
+                /// The constraint with the size of its terms.
                 fn #both(&self, state: &#state #used) -> (#t, T) {
                     #parameters
                     #locals

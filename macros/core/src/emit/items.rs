@@ -518,7 +518,7 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
             ///
             /// # Errors
             /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-            /// assumption, or is no admissible factor of the equation to solve.
+            /// assumption, or is not an admissible factor of the equation to solve.
             pub fn new(parameters: #data #used) -> Result<Self, ParameterError> {
                 #admitted
                 #(#checks)*
@@ -554,7 +554,7 @@ fn sizes(d: &Derivation) -> TokenStream {
         return TokenStream::new();
     }
     quote! {
-        /// Sizes the model does not admit do not build.
+        /// Sizes that the model does not admit do not compile.
         const ADMITTED: () = { #(#tests)* };
     }
 }

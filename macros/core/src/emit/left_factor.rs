@@ -366,7 +366,7 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
         #momentum
         #factor
 
-        /// Says how far the step is beyond the bound, and which step could be solved.
+        /// Reports how far the step exceeds the bound, and a step size that succeeds.
         #[cold]
         fn refused(&self, state: &#state #used, work: &#work #used, e: Unsolved) -> StepError {
             let ratio = |trial: f64| {

@@ -40,7 +40,7 @@ pub(super) struct Together<'a> {
 pub(super) struct Loop {
     /// The statements that compute the values known at the node.
     pub known: TokenStream,
-    /// The same values as a program with its bindings, for the code after the solution.
+    /// The computed values as a program with its bindings, for the code after the solution.
     pub computed: Option<(schedule::Program, Bindings)>,
     /// An expression that gives the solution or returns an error.
     pub solve: TokenStream,
@@ -308,8 +308,8 @@ impl Together<'_> {
         // The arguments of cold functions are copied at the call: a value whose address is taken inside the loop
         // would live in memory.
         let functions = quote! {
-            /// The solution to be taken where the one found is not known to be principal, or none was
-            /// found. None where the iteration begins again, at the principal root.
+            /// The solution to use if the iteration has found none, or one that is not known to be principal.
+            /// `None` if the iteration starts again, at the principal root.
             #[cold]
             #[inline(never)]
             fn #settled(
@@ -342,7 +342,7 @@ impl Together<'_> {
                 Err(self.#refused(state, #step, e #with_method))
             }
 
-            /// Says which equation is worst, and which step could be solved.
+            /// Reports the equation with the largest residual, and a step size that succeeds.
             #[cold]
             #[inline(never)]
             fn #refused(&self, state: #state #used, h: T, e: newton::NewtonError, #method) -> StepError {

@@ -26,7 +26,7 @@ pub fn balance(d: &Derivation, names: &Names) -> [TokenStream; 2] {
     });
     let others = kept(d).into_iter().map(|id| {
         let (field, t) = (own(d, id), ty(s, s.get(id).shape));
-        let doc = format!(" `{field}` at the node, as its constraint carries it.");
+        let doc = format!(" `{field}` at the node, evolved by its constraint.");
         quote!(#[doc = #doc] pub #field: #t)
     });
     let multipliers = d.spec.holds.iter().map(|hold| {
@@ -133,7 +133,7 @@ pub fn balance(d: &Derivation, names: &Names) -> [TokenStream; 2] {
         pub struct #configuration #declared { #(#elements,)* #(#others,)* #(#multipliers,)* }
     };
     let function = quote! {
-        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+        /// The residual of the discrete Euler-Lagrange equations at the middle of three
             #(#[doc = #components])*
             pub fn balance(
                 &self,

@@ -98,7 +98,7 @@ pub(super) fn start(d: &Derivation, names: &Names) -> TokenStream {
     quote! {
         #begin
 
-        /// What steps of `h` from `state` begin with.
+        /// The data with which steps of size `h` from `state` begin.
         fn prepared(&self, #from: &#state #used, h: T, #chosen: #choice) -> Result<#work #used, StartError> {
             #prepared
         }

@@ -92,7 +92,7 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
     let list = &d.spec.configurations;
     let place = match list.iter().any(element::is_placed) {
         true => {
-            " Places and their momenta are kept in two numbers, the rest below the rounding of the other."
+            " Positions and their momenta are stored as two numbers, the second below the rounding of the first."
         }
         false => "",
     };
@@ -101,7 +101,7 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
         false => "",
     };
     let state_doc = format!(
-        " What moves, at one node: comparable, to be saved. The momentum is kept in the space frame{about}, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.{place}"
+        " The state at one node, which can be compared and saved. The momentum is stored in the space frame{about}, advected quantities as their values at the identity, so that rounding errors do not accumulate.{place}"
     );
     let summary = matches!(d.solve.method, Method::Newton).then(|| {
         quote! {
@@ -147,7 +147,7 @@ fn workspace(d: &Derivation, names: &Names) -> (TokenStream, &'static str) {
             });
             (
                 quote!(solver: Free<T>, #(#kept,)*),
-                " The step and the constants of the trajectory. Made anew for a state of another body.",
+                " The step and the constants of the trajectory. A state of another body needs a new one.",
             )
         }
         Method::FreeMoserVeselov => (
@@ -156,18 +156,18 @@ fn workspace(d: &Derivation, names: &Names) -> (TokenStream, &'static str) {
         ),
         Method::ForcedMoserVeselov if !factor_references(d).is_empty() => (
             quote!(method: Method, factor: Poinsot<T>, edge: Edge<T>, here: #state #used,),
-            " The step, the solver's name, the body, and the momentum of the edge that begins at the state `here`. Made anew for any other state.",
+            " The step, the solver's name, the body, and the momentum of the edge that begins at the state `here`. Any other state needs a new one.",
         ),
         Method::ForcedMoserVeselov => (
             quote!(method: Method, edge: Edge<T>, here: #state #used,),
-            " The step, the solver's name, and the momentum of the edge that begins at the state `here`. Made anew for any other state.",
+            " The step, the solver's name, and the momentum of the edge that begins at the state `here`. Any other state needs a new one.",
         ),
         Method::UnitQuaternions => {
             let kind = super::items::factor_type(d);
             let factor = (!factor_references(d).is_empty()).then(|| quote!(factor: #kind,));
             (
                 quote!(#factor edge: Edge<T>, here: #state #used,),
-                " The step and the momentum of the edge that begins at the state `here`. Made anew for any other state.",
+                " The step and the momentum of the edge that begins at the state `here`. Any other state needs a new one.",
             )
         }
         Method::LeftFactor | Method::Davenport => super::left_factor::work(d),

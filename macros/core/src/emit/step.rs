@@ -63,7 +63,7 @@ pub(super) fn step_signature(d: &Derivation, body: TokenStream) -> TokenStream {
     let (state, work) = (item(d, "State"), item(d, "Workspace"));
     let method = d.how_solved();
     let head = super::domain::step_head(d);
-    let doc = format!(" One step, in place. Solved thus: {method}.");
+    let doc = format!(" One step, in place. Method: {method}.");
     let used = Generics::of(d).used();
     quote! {
         #[doc = #doc]

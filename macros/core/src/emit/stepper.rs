@@ -175,7 +175,7 @@ pub fn attempt(d: &Derivation) -> TokenStream {
     let trial = super::blocks::trial(d, "to_try");
     let used = Generics::of(d).used();
     quote! {
-        /// The state after a step of `h` that is tried, or none.
+        /// The state after a trial step of size `h`; `None` if it fails.
             #[cold]
             fn attempt(&self, state: &#state #used, h: T) -> Option<#state #used> {
                 let mut moving = *state;

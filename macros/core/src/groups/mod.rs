@@ -125,7 +125,7 @@ pub fn families() -> impl Iterator<Item = &'static str> {
     (0..TABLE.len()).filter(first).map(|i| TABLE[i].family)
 }
 
-/// Whether a family has some sizes only.
+/// Whether a family supports only some sizes.
 pub fn has_few_sizes(family: &str) -> bool {
     let mut lines = TABLE.iter();
     lines.any(|line| line.family == family && line.size.is_some())

@@ -100,7 +100,7 @@ pub type Names<'a> = dyn Fn(&str) -> Option<f64> + 'a;
 /// The slopes of names along directions.
 pub type Slopes<'a> = dyn Fn(&str, u64) -> Option<f64> + 'a;
 
-/// The function for the slope of a name along a direction.
+/// The function `slope`, the derivative of a mesh along a direction.
 const SLOPE: &str = "slope";
 
 struct Given<'a> {

@@ -1,7 +1,7 @@
-//! Contributions of terms with functionals of all sites to the momenta of sites: derivatives of each term through
-//! the pull-backs of the functionals, and directly through the positions. One site is written out, and its letters
-//! represent all sites: `A(X)` are the values at all sites. The pull-back of a seed is the contribution of all
-//! sites of the functional to one site of the quantity it depends on.
+//! Forces of terms with functionals of all sites. Each term is differentiated through the pull-backs of its
+//! functionals, and directly with respect to the positions. One site is written out, and its letters represent all
+//! sites: `A(X)` are the values at all sites. The pull-back of a seed is the contribution of all sites of the
+//! functional to one site of the quantity it depends on.
 
 use super::neighbour_force::{Force, elaborated, forces};
 use super::{Refused, RepresentativeChain};

@@ -68,7 +68,7 @@ fn is_unit(part: &RepresentativeChain, id: SymbolId) -> bool {
     symbol.structure == Structure::UnitQuaternion && symbol.role == Role::Element
 }
 
-/// The same for a chain that is already expanded, with its end conditions.
+/// Like `of`, for a chain that is already expanded, with its end conditions.
 pub(super) fn of_parts(
     lattice: &Lattice,
     part: &RepresentativeChain,

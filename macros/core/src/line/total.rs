@@ -141,7 +141,7 @@ pub(super) fn totals(
     Ok(all)
 }
 
-/// The same end conditions with more sites; the number of sites of a ring stays odd.
+/// These end conditions with more sites; the number of sites of a ring stays odd.
 fn longer(mut choice: Choice, line: usize) -> Choice {
     if let Some(count) = choice.counts.get_mut(line) {
         *count += if choice.periodic { 2 } else { 1 };

@@ -105,7 +105,7 @@ pub(super) fn typeset(layout: &Layout, points: usize) -> Option<Lines<'_>> {
     within(layout, 10 * points)
 }
 
-/// The same with the limit in tenths of a point.
+/// Like `typeset`, with the limit in tenths of a point.
 fn within(layout: &Layout, limit: usize) -> Option<Lines<'_>> {
     let ruler = Ruler {
         limit,

@@ -136,7 +136,7 @@ mod tests {
         let turned = |e: &Expr| expr::transpose(&symbols, e.clone());
         let work = |list: &[Expr]| super::super::work(&super::super::program(&symbols, list, "t"));
         let sum = expr::add(expr::mul(a.clone(), b.clone()), c.clone());
-        // The same sum in another order.
+        // Write the sum in another order.
         let back = expr::add(turned(&c), expr::mul(turned(&b), turned(&a)));
         assert_eq!(work(std::slice::from_ref(&sum)), 45 + 9);
         let product = expr::mul(a.clone(), b.clone());

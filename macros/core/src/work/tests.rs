@@ -206,7 +206,7 @@ fn longer_texts_are_refused_with_the_limit() {
     // A megabyte of text is rejected before it is split into tokens.
     let message = refusal(&terms(300_000));
     assert!(message.contains("at most 250000"), "{message}");
-    // What is no part of the model does not count.
+    // Text outside the model does not count.
     let remark = format!("// {}\n", "x".repeat(20_000));
     let documentation = "/// a line\n".repeat(2_000);
     assert!(derive_source(&(remark + &documentation + &free(1))).is_ok());

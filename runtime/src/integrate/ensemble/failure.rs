@@ -1,12 +1,12 @@
-//! Why an ensemble cannot start or go on, and which body is to blame.
-//! Takes the body's index and its own error; gives text.
+//! Why an ensemble cannot start or continue, and which body causes this. Takes the body's index and
+//! its own error; gives text.
 
 use core::fmt;
 
-/// At least one body could not start or go on.
+/// At least one body could not start or continue.
 ///
-/// Bodies step side by side, as many as there are lanes; if one of them cannot go on, those beside
-/// it stay behind with it. All other bodies are where they should be.
+/// Bodies step side by side, as many as there are lanes; if one of them fails, the other bodies of
+/// its group stay at the same node. All other bodies have taken their steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnsembleError<E> {
     /// The index of the body, in the order the bodies were given; the first, if several fail.
@@ -16,7 +16,7 @@ pub struct EnsembleError<E> {
     pub among: usize,
     /// How many bodies have failed.
     pub failed: usize,
-    /// Why the first did.
+    /// The error of the first of these bodies.
     pub cause: E,
 }
 

@@ -1,5 +1,5 @@
-//! Bodies side by side: one trajectory of the model over lanes.
-//! Takes as many bodies as there are lanes; advances them, and finds the one that cannot go on.
+//! Bodies side by side: one trajectory of the model over lanes. Takes as many bodies as there are
+//! lanes; advances them, and finds the body that fails.
 
 use super::EnsembleError;
 use crate::integrate::{Model, Stepper};
@@ -49,13 +49,13 @@ struct Single<M: Model<Scalar = f64>> {
     model: M,
     state: M::State,
     workspace: M::Workspace,
-    /// Where it was before the steps that are being made.
+    /// Its state before the current steps.
     before: M::State,
 }
 
 impl<M: Model<Scalar = f64>, const N: usize> Group<M, N> {
     /// The group of these bodies, the first of which has the index `first`; empty lanes repeat the
-    /// last body. Nothing if there are none.
+    /// last body. `None` if the list is empty.
     pub(super) fn start(
         bodies: &[Body<M>],
         first: usize,
@@ -75,7 +75,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Group<M, N> {
         };
         let begun = || {
             let model = Wide::<M, N>::of(gather(|i| body(i).0))?;
-            // A constant: of the two only one is compiled.
+            // The condition is constant, so only one branch is compiled.
             let moving = if M::SIDE_BY_SIDE {
                 let state = gather(|i| M::at_node(body(i).1, 0));
                 let workspace = model.prepare(&state, Lanes([steps.h; N]), steps.choice)?;
@@ -100,7 +100,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Group<M, N> {
         )
     }
 
-    /// Steps of all bodies. After an error the states are what they were.
+    /// Steps of all bodies. After an error the states are unchanged.
     #[inline(always)]
     pub(super) fn advance(&mut self, count: u64) -> Result<(), StepError> {
         match &mut self.moving {
@@ -117,7 +117,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Group<M, N> {
         }
     }
 
-    /// Which of the `bodies` bodies is to blame for `cause`: each is run alone.
+    /// Finds which of the `bodies` bodies causes `cause`, by running each alone.
     #[cold]
     #[inline(never)]
     pub(super) fn blame(
@@ -143,7 +143,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Group<M, N> {
         told((0..bodies).map(alone), first, cause)
     }
 
-    /// The model and the state in the lanes, to be looked at.
+    /// The model and the state in the lanes, for reading.
     pub(super) fn shown(&self) -> (&Wide<M, N>, <Wide<M, N> as Stepper>::State) {
         let state = match &self.moving {
             Together::Lanes { state, .. } => *state,

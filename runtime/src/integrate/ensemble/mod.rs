@@ -17,7 +17,7 @@ use crate::{Lanes, StartError, StepError};
 use failure::first;
 use group::{Body, Group, Steps, Wide};
 
-/// How many groups one task of a parallel run takes at least, unless said otherwise.
+/// The default for the least number of groups in a task of a parallel run.
 #[cfg(feature = "rayon")]
 const BLOCK: usize = 4;
 
@@ -32,8 +32,8 @@ const BLOCK: usize = 4;
 /// products and sums are never fused.
 ///
 /// Steps are, bit for bit, those that [`Stepper::advance_many`] makes of each body alone. Bodies
-/// whose steps need iterations ([`Model::SIDE_BY_SIDE`]) are stepped one by one: in lanes all would
-/// wait for the slowest, and what they gain is less than what they lose.
+/// whose steps need iterations ([`Model::SIDE_BY_SIDE`]) are stepped one by one: in lanes, all
+/// bodies would wait for the slowest, which costs more than lanes save.
 ///
 /// ```
 /// use clebsch::integrate::Ensemble;
@@ -120,8 +120,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
         Self::resume(begun, h, choice)
     }
 
-    /// The ensemble of bodies that are on their way, each at a node of its own, with steps of `h`
-    /// of either sign.
+    /// The ensemble of running bodies, each at its own node, with steps of size `h` of either sign.
     ///
     /// # Errors
     /// Names the first body whose next step could not be made.
@@ -147,7 +146,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
         })
     }
 
-    /// The same ensemble, at least `groups` groups of bodies a task of a parallel run.
+    /// This ensemble, with at least `groups` groups of bodies in each task of a parallel run.
     #[cfg(feature = "rayon")]
     #[must_use]
     pub fn with_block(self, groups: usize) -> Self {
@@ -155,7 +154,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
         Self { block, ..self }
     }
 
-    /// The same ensemble on the instruction set named, where it is at hand.
+    /// This ensemble, on the given instruction set if the processor has it.
     #[must_use]
     pub fn with_instructions(self, instructions: InstructionSet) -> Self {
         Self {
@@ -176,7 +175,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
         self.bodies == 0
     }
 
-    /// The parameters and the state of a body; nothing when there is none of that index.
+    /// The parameters and the state of a body; `None` if the index is out of range.
     #[must_use]
     pub fn body(&self, index: usize) -> Option<(M::Parameters, M::State)> {
         if index >= self.bodies {
@@ -207,8 +206,8 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
     /// `count` steps of every body, on this thread.
     ///
     /// # Errors
-    /// Names the first body that could not go on. It and those beside it are where they were, all
-    /// others have made their steps.
+    /// Names the first body that failed. The bodies of its group are unchanged; all others have
+    /// taken their steps.
     pub fn run(&mut self, count: u64) -> Result<(), EnsembleError<StepError>> {
         let task = self.task(count);
         first(
@@ -219,7 +218,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
         )
     }
 
-    /// As [`Ensemble::run`], on all threads of the pool in use; the same bits.
+    /// As [`Ensemble::run`], on all threads of the current pool, with bitwise identical results.
     ///
     /// # Errors
     /// As [`Ensemble::run`].

@@ -10,18 +10,18 @@ use crate::card::{Card, OpenError, Settings, Trajectory};
 use crate::scalar::largest;
 use std::cell::Cell;
 
-/// A disturbance in parts of what is disturbed, and a momentum likewise: forces and velocities are taken as linear
-/// in them. The square root of rounding and more, since models bend.
+/// The size of a disturbance, and of a momentum, relative to its unit: forces and velocities are assumed to be
+/// linear in both. It is larger than the square root of the rounding unit, since models are nonlinear.
 const PART: f64 = 1e-5;
 
-/// The same of a held model, over the number of its configurations: constraints bend by disturbances beside the distance
-/// of neighbours, which is about that part of what is disturbed.
+/// Like `PART`, for a model with constraints, divided by the number of its configurations. The curvature of constraints
+/// is measured by disturbances relative to the distance of neighbours, which is about that part of the unit.
 const PART_HELD: f64 = 1e-6;
 
 /// The model has constraints if the projection removes more than this share of random momenta.
 const TAKEN: f64 = 1e-9;
 
-/// How many sizes of a momentum are tried for one that moves by the wanted part, and by what one is less that is refused.
+/// How many sizes of a momentum are tried, and the factor by which a failed size is reduced.
 const SCALES: usize = 12;
 const SLOWER: f64 = 1e-4;
 
@@ -33,7 +33,7 @@ const STRAIGHT: f64 = 0.5;
 const SMALLER: f64 = 1e-2;
 const SEEN: f64 = 1e-6;
 
-/// Whether ways are not in proportion to scales, of which the larger goes too short a way.
+/// Whether displacements are not proportional to scales, because the larger scale gives too short a displacement.
 fn is_bent(one: (f64, f64), other: (f64, f64)) -> bool {
     let ((scale, way), (larger, farther)) = match one.0 < other.0 {
         true => (one, other),
@@ -56,15 +56,15 @@ pub(super) struct Probe<'a> {
     pub(super) units: Vec<f64>,
     /// The observables after a step from rest.
     rest: Vec<f64>,
-    /// Where forces are compared, at rest: the start, of held models where a step from it ends, as disturbed ones do.
+    /// The state at rest where forces are compared: the start or, with constraints, the end of a step from the start.
     base: Vec<Vec<f64>>,
     /// The observables after a step from the base.
     pushed: Vec<f64>,
-    /// Disturbances in parts of what is disturbed.
+    /// Disturbances relative to their units.
     part: f64,
     /// Whether momenta are projected on constraints.
     held: bool,
-    /// The velocities with which the base leaves, where disturbed states leave with others.
+    /// The velocities of the base, if disturbed states have other velocities.
     drift: Option<Vec<f64>>,
     /// Whether the model failed to step from one of the states.
     refused: Cell<bool>,
@@ -118,7 +118,7 @@ impl<'a> Probe<'a> {
             return Ok(probe);
         }
         probe.part = PART_HELD / probe.moves.len() as f64;
-        // Constraints turn with what moves: a velocity at the start would be felt as a force.
+        // Constraints turn with the motion, so a velocity at the start would act like a force.
         let start = probe.rested(&probe.initial);
         let start = start.unwrap_or_else(|| probe.initial.clone());
         probe.initial = probe.settled(start).ok_or(Unknown::Start)?;
@@ -250,7 +250,8 @@ impl<'a> Probe<'a> {
 
     /// Momenta projected on the constraints at the start; unchanged without constraints.
     fn projected(&self, p: &[f64]) -> Option<Vec<f64>> {
-        // A state that is at rest but for these is refused for their size alone: of a mass that is small beside one.
+        // A state that is at rest except for these momenta fails only because of their size, for example if the mass
+        // is much smaller than one.
         let mut scale = 1.0 / largest(p.iter().copied());
         if !scale.is_finite() {
             return Some(p.to_vec());
@@ -305,7 +306,7 @@ impl<'a> Probe<'a> {
             return None;
         }
         let mut refused = false;
-        // The scale before, with the way that it went, and whether scales are made smaller until ways are in proportion.
+        // The previous scale with its displacement, and whether scales are reduced until displacements are proportional to them.
         let (mut before, mut bends) = (None, false);
         for _ in 0..SCALES {
             // A step may fail because the velocity is too large for the model, as with a small mass.
@@ -342,9 +343,9 @@ impl<'a> Probe<'a> {
         None
     }
 
-    /// Whether a step of `h`, disturbed by this motion, leaves `1 - h² ω²/2` of it, as steps with the potential
-    /// at the nodes do: one with it in the middle leaves `(4 - h² ω²)/(4 + h² ω²)`. A part of a step where one cannot be made; `None`
-    /// where that cannot either.
+    /// Whether a step of `h`, disturbed by this motion, leaves `1 - h² ω²/2` of it, as steps with the potential at the nodes do:
+    /// one with it in the middle leaves `(4 - h² ω²)/(4 + h² ω²)`. Uses a part of the step if the whole step fails; `None` if the
+    /// part fails too.
     pub(super) fn is_left(&self, motion: &Motion, h: f64) -> Option<bool> {
         // The two schemes differ by a quarter of h² ω² for the whole step, by a tenth for half of it, by 0.03 for a
         // quarter.

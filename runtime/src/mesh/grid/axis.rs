@@ -12,7 +12,7 @@ pub struct Axis {
     wall: Wall,
 }
 
-/// Where a coordinate lies on an axis.
+/// The position of a coordinate on an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Spot<T> {
     /// Number of the interval.
@@ -23,7 +23,7 @@ pub(super) struct Spot<T> {
     pub mirrored: bool,
 }
 
-/// Most intervals of an axis: numbers of intervals fit 30 bits.
+/// The largest number of intervals of an axis: interval numbers have 30 bits.
 const MOST: usize = 1 << 30;
 
 impl Axis {
@@ -114,7 +114,7 @@ impl Axis {
         match self.wall {
             Wall::Periodic => (padded + margin * (n - 1)) % n,
             Wall::Solid => {
-                // Even, and of period 2n.
+                // Even, with period 2n.
                 let turned = (padded + margin * (2 * n - 1)) % (2 * n);
                 turned.min(2 * n - turned)
             }
@@ -127,8 +127,8 @@ impl Axis {
         T::from_f64(self.intervals as f64) / T::from_f64(self.length)
     }
 
-    /// The interval that a coordinate lies in, given as a number of intervals from the origin: wrapped around a
-    /// period, mirrored where it is beyond a wall by one interval or less.
+    /// The interval that contains a coordinate, given in intervals from the origin: wrapped if periodic,
+    /// mirrored if it is beyond a wall by at most one interval.
     #[inline(always)]
     pub(super) fn locate<T: Real>(&self, mut along: T) -> Result<Spot<T>, Beyond> {
         let n = self.intervals as f64;
@@ -146,7 +146,7 @@ impl Axis {
         })
     }
 
-    /// The same coordinate within the axis, and whether it is mirrored.
+    /// The coordinate mapped into the axis, and whether it is mirrored.
     #[cold]
     #[inline(never)]
     fn returned<T: Real>(&self, along: T) -> Result<(T, bool), Beyond> {
@@ -173,7 +173,7 @@ impl Axis {
     }
 }
 
-/// Why a coordinate lies in no interval.
+/// Why no interval contains a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Beyond {
     /// It is NaN or infinite.
@@ -183,7 +183,7 @@ pub(super) enum Beyond {
 }
 
 impl Beyond {
-    /// The same, said of a particle.
+    /// This error, for the particle `site`.
     #[cold]
     pub(super) fn of(self, site: usize) -> MeshError {
         match self {

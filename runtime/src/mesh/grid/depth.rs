@@ -14,14 +14,14 @@ use crate::line::Threads;
 use crate::{ParameterError, Problem, Real};
 use nalgebra::SVector;
 
-/// Rows of a stripe, which one thread deposits. Stripes of even number come first, then those between: where two
-/// overlap, by `K - 1` rows, the order of the sum is fixed.
+/// The number of rows in a stripe, which one thread deposits. Stripes of even number come first, then those
+/// between: where two overlap, by `K - 1` rows, the order of the sum is fixed.
 const STRIPE: usize = 8;
 
-/// Fewest particles of a thread: with fewer, waking it costs more than it saves.
+/// The least number of particles for a thread; with fewer, waking the thread costs more than it saves.
 const FEWEST: usize = 4096;
 
-/// Most particles: their numbers fit 32 bits.
+/// The largest number of particles: indices have 32 bits.
 const MOST: usize = u32::MAX as usize;
 
 /// Deposit and gather with splines of support `K`.
@@ -150,7 +150,7 @@ where
         Ok(())
     }
 
-    /// Once for each start: one thread does.
+    /// Runs once for each start, so one thread suffices.
     fn interpolate(&mut self, values: &[T], out: &mut [T]) -> Result<(), MeshError> {
         MeshError::unless_of_length(values, self.nodes.count())?;
         MeshError::unless_of_length(out, self.mass.len())?;
@@ -173,7 +173,7 @@ where
 macro_rules! named {
     ($(#[$doc:meta])* $name:ident, $support:literal) => {
         $(#[$doc])*
-        // Named as models write it.
+        // Named as in models.
         #[allow(non_camel_case_types)]
         #[derive(Clone, Debug)]
         pub struct $name<T, const D: usize>(Deposit<T, D, $support>);
@@ -187,7 +187,7 @@ macro_rules! named {
             /// nodes is the gradient of this interpolant times the mass.
             ///
             /// # Errors
-            /// One of the lists has another length.
+            /// If one of the lists has the wrong length.
             pub fn interpolate(&mut self, values: &[T], out: &mut [T]) -> Result<(), MeshError> {
                 self.0.interpolate(values, out)
             }
@@ -233,6 +233,6 @@ named! {
 }
 
 named! {
-    /// The same by quintic B-splines, with four continuous derivatives.
+    /// Depth on a grid by quintic B-splines, with four continuous derivatives.
     deposit_quintic, 6
 }

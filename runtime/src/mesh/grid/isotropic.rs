@@ -1,9 +1,9 @@
 //! Smoothing by the inverse of the Helmholtz operator of the plane, `S = (1 - α²(∂_1² + ∂_2²))⁻¹`, with the discrete
-//! second derivatives of the one-dimensional smoothers S_1, S_2. Since `α²∂_d² = 1 - S_d⁻¹`, the equation is
-//! `(S_1⁻¹ + S_2⁻¹ - 1) S H = H`. The split smoother `S_1 S_2` as preconditioner turns it into
-//! `(S_1 + S_2 - S_1 S_2) S H = S_1 S_2 H`. This matrix needs the one-dimensional smoothers alone, is positive
-//! definite in the weights of nodes, and its eigenvalues are at most 1. Conjugate gradients solve for plain numbers.
-//! Other scalars use Chebyshev's iteration, whose constant coefficients preserve derivatives.
+//! second derivatives of the one-dimensional smoothers S_1, S_2. Since `α²∂_d² = 1 - S_d⁻¹`, the equation is `(S_1⁻¹
+//! + S_2⁻¹ - 1) S H = H`. The split smoother `S_1 S_2` as preconditioner turns it into `(S_1 + S_2 - S_1 S_2) S H =
+//! S_1 S_2 H`. This matrix needs only the one-dimensional smoothers, is positive definite in the weights of nodes,
+//! and its eigenvalues are at most 1. Conjugate gradients solve for plain numbers. Other scalars use Chebyshev's
+//! iteration, whose constant coefficients preserve derivatives.
 
 use super::super::{Functional, MeshError, Setting, Wall};
 use super::axis::Axis;
@@ -75,7 +75,7 @@ impl<T: Real> smooth_isotropic<T, 2> {
         self.direction.copy_from_slice(&self.residual);
         let mut square = self.weights.product(&self.residual, &self.residual);
         for _ in 0..MOST {
-            // Also what is zero, and stays so.
+            // This includes components that are zero and remain zero.
             if square.value().sqrt() <= TOLERANCE * size {
                 return Ok(());
             }
@@ -101,7 +101,7 @@ impl<T: Real> smooth_isotropic<T, 2> {
         })
     }
 
-    /// So many steps that the largest error of any component is at the unit roundoff of the scalar.
+    /// The number of steps that reduces the largest error of any component to the unit roundoff of the scalar.
     fn chebyshev(&mut self, found: &mut [T]) -> Result<(), MeshError> {
         let (middle, half) = ((1.0 + self.least) / 2.0, (1.0 - self.least) / 2.0);
         if half == 0.0 {

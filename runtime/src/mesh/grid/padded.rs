@@ -1,6 +1,6 @@
 //! A grid with a margin around its nodes, so that splines near an end need no special case. Each point of the margin is
 //! the image of a node, around a period or behind a wall. Folding adds the sums of the margin to the nodes, and the
-//! transposed map copies the nodes to the margin. Walls need no particles of their own.
+//! transposed map copies the nodes to the margin. Walls need no image particles.
 
 use super::nodes::Nodes;
 use crate::Real;
@@ -52,7 +52,7 @@ impl<T: Real, const D: usize> Padded<T, D> {
         &self.places
     }
 
-    /// The same, to be summed at, all of them zero.
+    /// All places, set to zero, to be summed into.
     pub fn cleared(&mut self) -> &mut [T] {
         self.places.fill(T::zero());
         &mut self.places
@@ -66,7 +66,7 @@ impl<T: Real, const D: usize> Padded<T, D> {
         outside.map(|(place, image)| (place, self.margin + image))
     }
 
-    /// Adds what is at the margin to the nodes; gives the sum at each node over its weight.
+    /// Adds the values of the margin to the nodes; returns the sum at each node divided by its weight.
     pub fn fold(&mut self, out: &mut [T]) {
         let (width, margin) = (self.width(), self.margin);
         let mut places = core::mem::take(&mut self.places);

@@ -136,7 +136,7 @@ fn kernel<T: Real>(nodes: usize, symbol: impl Fn(usize) -> T) -> Vec<T> {
     (0..nodes).map(coefficient).collect()
 }
 
-/// Takes the convolution with a kernel from a row.
+/// Subtracts the convolution with a kernel from a row.
 fn convolve<T: Real>(kernel: &[T], copy: &mut [T], row: &mut [T]) {
     copy.copy_from_slice(row);
     let nodes = row.len();
@@ -149,7 +149,7 @@ fn convolve<T: Real>(kernel: &[T], copy: &mut [T], row: &mut [T]) {
 }
 
 impl Transformed {
-    /// Takes `1 - S` of each component, over the number of nodes. Not generic: transforms are compiled here, once.
+    /// Takes `1 - S` of each component, over the number of nodes. Not generic, so that transforms are compiled only once.
     fn new(nodes: usize, symbol: Vec<f64>) -> Self {
         let mut planner = RealFftPlanner::<f64>::new();
         let to = planner.plan_fft_forward(nodes);
@@ -183,7 +183,7 @@ impl Transformed {
             &mut self.row,
             &mut self.scratch[..from],
         );
-        // Refused are other lengths than those planned, and NaN among the values.
+        // Rejects NaN, and lengths other than the planned one.
         if first.and(second).is_err() {
             self.row.fill(f64::NAN);
         }

@@ -6,13 +6,14 @@ use super::super::{Domain, MeshError, Wall};
 use crate::Real;
 
 impl<const D: usize> Domain<D> {
-    /// Puts a particle back that is beyond walls, its coordinates and the components of its kinetic velocity given, and
-    /// says how many it was beyond: 0 of most particles. `cell[d]` is how far beyond a wall a particle may be. Where
-    /// the momentum has a term of a vector potential, the velocity without it is what a wall turns.
+    /// Reflects a particle that is beyond walls, given its coordinates and the components of its kinetic velocity.
+    /// Returns the number of walls that it was beyond, which is 0 for most particles. `cell[d]` is the largest
+    /// admitted distance beyond a wall. If the momentum contains a vector potential, the wall reverses only the
+    /// kinetic velocity.
     ///
     /// # Errors
     /// [`MeshError::Outside`] with the number of the particle, `site`, if it is further beyond a wall;
-    /// [`MeshError::NotFinite`] if it is nowhere. The particle is as it was then.
+    /// [`MeshError::NotFinite`] if its coordinates are not finite. The particle is then unchanged.
     pub fn reflect<T: Real>(
         &self,
         site: usize,

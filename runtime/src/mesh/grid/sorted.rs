@@ -56,13 +56,13 @@ pub(super) struct Sorted<T, const D: usize> {
     particles: Vec<Particle<T, D>>,
     /// The row of each, in the order of numbers.
     rows: Vec<u32>,
-    /// Where each row of each range ends, from the first particle of the range.
+    /// The end of each row in each range, counted from the first particle of the range.
     ends: Vec<u32>,
     /// Particles of a range.
     share: usize,
     /// Rows.
     count: usize,
-    /// How many threads share the particles.
+    /// The number of threads that share the particles.
     #[cfg(feature = "rayon")]
     threads: usize,
 }
@@ -97,7 +97,7 @@ impl<T: Real, const D: usize> Sorted<T, D> {
         made
     }
 
-    /// Has so many threads sort from now on.
+    /// Sets the number of threads that sort.
     pub fn share(&mut self, threads: usize) {
         let most = RANGE.max(4 * self.count);
         let all = self.particles.len();
@@ -195,7 +195,7 @@ pub(super) struct Rows<'a, T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Rows<'_, T, D> {
-    /// Those of a row.
+    /// The particles of a row.
     #[inline(always)]
     pub fn row(&self, row: usize) -> &[Particle<T, D>] {
         let row = self.particles.get(within(self.ends, row));

@@ -31,7 +31,7 @@ impl<T: Real> Voronoi<T> {
         Ok(())
     }
 
-    /// The same, of as many numbers as sites.
+    /// Like `areas`, for an `out` of the right length.
     pub(super) fn sum_areas(&self, out: &mut [T]) {
         out.fill(T::zero());
         let quarter = T::from_f64(0.25);

@@ -11,7 +11,7 @@ use crate::mesh::MeshError;
 /// The tolerance of the relative residual, in units of the rounding of one operation: 1e-12 in doubles.
 const TOLERANCE: f64 = 1e-12 / (0.5 * f64::EPSILON);
 
-/// Iterations after which it is given up.
+/// The largest number of iterations.
 const MOST: usize = 10_000;
 
 /// Vectors of an iteration.
@@ -39,7 +39,7 @@ impl<T: Real> Iteration<T> {
         self.sums.share(threads);
     }
 
-    /// Solves, from what `x` holds; gives how many times the operator was applied.
+    /// Solves, starting from the value of `x`; returns how many times the operator was applied.
     pub fn solve(
         &mut self,
         operator: &Rows<T>,

@@ -9,10 +9,10 @@ use super::torus::{Grains, Torus};
 use crate::line::Threads;
 use crate::mesh::MeshError;
 
-/// A site this many periods or more from where it was counted is counted anew.
+/// If a site is at least this many periods from its reference position, its periods are counted again.
 const FAR: f64 = 2.0;
 
-/// How many grains a triangle is high at least: of fewer, its angles are not known to three digits.
+/// The least height of a triangle in grains; below it, its angles are not known to three digits.
 const THINNEST: f64 = 2048.0;
 
 /// The largest offset that is updated.
@@ -30,7 +30,7 @@ pub(super) struct Delaunay {
     pub(super) suspects: Vec<u32>,
     /// Edges flipped, and triangulations made anew, since the first update.
     pub counted: Counted,
-    /// How many threads look for suspects.
+    /// The number of threads that look for suspect edges.
     pub threads: Threads,
 }
 
@@ -44,7 +44,7 @@ pub struct Counted {
 }
 
 impl Delaunay {
-    /// For as many sites, without edges as yet.
+    /// An empty triangulation for this number of sites.
     pub fn new(torus: Torus, sites: usize) -> Self {
         Self {
             torus,
@@ -57,7 +57,7 @@ impl Delaunay {
         }
     }
 
-    /// How many sites there are.
+    /// The number of sites.
     pub fn sites(&self) -> usize {
         self.places.len()
     }
@@ -78,13 +78,13 @@ impl Delaunay {
         }
         let made = self.begin(&at).and_then(|()| self.insert_all());
         if made.is_err() {
-            // Nothing of what was begun is followed.
+            // Discards the unfinished update.
             self.edges = HalfEdges::default();
         }
         made
     }
 
-    /// Puts the sites at their new places; whether the edges still go with them.
+    /// Moves the sites to their new positions; returns whether the edges are still valid.
     fn place(&mut self, at: &impl Fn(usize) -> [f64; 2]) -> Result<bool, MeshError> {
         let lengths = self.torus.lengths;
         let mut far = false;
@@ -102,7 +102,7 @@ impl Delaunay {
         Ok(!far || self.count_anew(at))
     }
 
-    /// Brings far sites back by whole periods, and the offsets of their edges with them; whether this can be done.
+    /// Shifts far sites back by whole periods, with the offsets of their edges; returns whether this is possible.
     fn count_anew(&mut self, at: &impl Fn(usize) -> [f64; 2]) -> bool {
         let lengths = self.torus.lengths;
         let beyond = |offset: &f64| offset.abs() > LARGEST_OFFSET;
@@ -194,7 +194,7 @@ impl Delaunay {
         if !flat {
             return Ok(());
         }
-        // One that was met may be gone by now.
+        // A collected edge may no longer exist.
         match (0..self.edges.len() / 3).find(|&t| self.is_flat(t)) {
             None => Ok(()),
             Some(t) => {
@@ -218,7 +218,7 @@ impl Delaunay {
     }
 }
 
-/// Whether two sides of a triangle of this doubled area are known too little: their lengths to half a grain each.
+/// Whether two sides of a triangle with this doubled area are known too inaccurately; each length is known to half a grain.
 #[inline(always)]
 fn flat(twice_area: f64, first: Grains, second: Grains) -> bool {
     let reach = first[0].abs() + first[1].abs() + second[0].abs() + second[1].abs();

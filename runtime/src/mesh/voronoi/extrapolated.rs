@@ -8,7 +8,7 @@ use crate::Real;
 pub(super) struct Extrapolated<T> {
     /// The latest first.
     pub solutions: [Vec<T>; 4],
-    /// How many of them there are.
+    /// The number of solutions.
     pub solved: usize,
 }
 
@@ -25,7 +25,7 @@ impl<T: Real> Extrapolated<T> {
         &self.solutions[0]
     }
 
-    /// Puts in front what the last ones extrapolate to; `first` of every site where there is none.
+    /// Adds the extrapolation of the last solutions in front; if there are none, `first` for every site.
     pub fn next(&mut self, first: impl Fn(usize) -> T) -> &mut [T] {
         let [latest, earlier, before, earliest] = &mut self.solutions;
         let (three, six) = (T::from_f64(3.0), T::from_f64(6.0));
@@ -44,7 +44,7 @@ impl<T: Real> Extrapolated<T> {
         &mut self.solutions[0]
     }
 
-    /// The one in front has become a solution.
+    /// The entry in front is now a solution.
     pub fn accept(&mut self) {
         self.solved = (self.solved + 1).min(self.solutions.len());
     }

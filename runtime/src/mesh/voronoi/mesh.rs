@@ -1,5 +1,5 @@
-//! The mesh that particles carry along: triangles with the vectors of their sides. Takes places; which sites are
-//! neighbours is decided on their leading values, everything else is computed in the scalar of the places.
+//! The mesh that moves with the particles: triangles with the vectors of their sides. Takes places; which sites
+//! are neighbours is decided on their leading values, everything else is computed in the scalar of the places.
 
 use super::delaunay::{Counted, Delaunay};
 use super::half_edges::next;
@@ -124,12 +124,12 @@ impl<T: Real> Voronoi<T> {
         })
     }
 
-    /// Has its edges looked through by so many threads: which are flipped, and in which order, does not depend on it.
+    /// Sets the number of threads that test edges. The flips and their order do not depend on it.
     pub fn share(&mut self, threads: Threads) {
         self.delaunay.threads = threads;
     }
 
-    /// How many particles it has.
+    /// The number of particles.
     #[must_use]
     pub fn sites(&self) -> usize {
         self.local.len()
@@ -147,11 +147,12 @@ impl<T: Real> Voronoi<T> {
         self.delaunay.torus.lengths
     }
 
-    /// Moves the particles, not wrapped or wrapped, and makes the mesh theirs.
+    /// Moves the particles to these positions, wrapped or not, and updates the mesh.
     ///
     /// # Errors
-    /// [`MeshError::Coincident`] where two particles are nearer than 1e-15 of the longer period,
-    /// [`MeshError::Flat`] where three are nearly that, [`MeshError::NotFinite`], [`MeshError::TooFar`], [`MeshError::Count`]. The mesh is of no use then, until the next update.
+    /// [`MeshError::Coincident`] where two particles are nearer than 1e-15 of the longer period, [`MeshError::Flat`] where three
+    /// are nearly that, [`MeshError::NotFinite`], [`MeshError::TooFar`], [`MeshError::Count`]. The mesh is then unusable until the
+    /// next update.
     pub fn update(&mut self, at: &[SVector<T, 2>]) -> Result<(), MeshError> {
         MeshError::unless_of_length(at, self.sites())?;
         self.delaunay.follow(|site| {

@@ -1,5 +1,5 @@
-//! Cells as polygons, and what of them lies in the boxes of a grid. Takes masses of cells; gives masses of boxes with
-//! the same sum.
+//! Cells as polygons, and their parts in the boxes of a grid. Takes masses of cells; gives masses of boxes with the
+//! same sum.
 
 use super::half_edges::previous;
 use super::mesh::{Plane, Voronoi, left};

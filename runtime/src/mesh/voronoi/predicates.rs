@@ -1,6 +1,6 @@
-//! Which way three places turn, and whether a fourth is inside their circle: exact for places in whole grains.
-//! The sign of a determinant is taken from doubles where their rounding cannot change it, and from the adaptive
-//! arithmetic of Shewchuk (1997) elsewhere.
+//! Orientation of three points, and whether a fourth is inside their circle; exact for positions in whole
+//! grains. The sign of a determinant is taken from doubles where their rounding cannot change it, and from the
+//! adaptive arithmetic of Shewchuk (1997) elsewhere.
 
 use super::torus::Grains;
 use robust::Coord;

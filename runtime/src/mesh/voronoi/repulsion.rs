@@ -1,4 +1,4 @@
-//! A repulsion of particles that come too near to one another, `mesh core: Real at a = pair_core(X, m, rc, kappa);`.
+//! A repulsion of particles that are too close to one another, `mesh core: Real at a = pair_core(X, m, rc, kappa);`.
 //! Cells have areas whatever the distance of their sites, so nothing else keeps particles apart in shear. Takes places
 //! on a torus, masses, a radius and a strength; gives energies and exact derivatives.
 
@@ -26,7 +26,7 @@ pub struct pair_core<T> {
     pairs: Vec<Pair<T>>,
 }
 
-/// A particle with one that is near.
+/// A particle and a near neighbour.
 #[derive(Clone, Copy, Debug)]
 struct Pair<T> {
     first: u32,

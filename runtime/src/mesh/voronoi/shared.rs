@@ -8,10 +8,10 @@ use core::ops::Range;
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 
-/// Sites of a piece.
+/// The number of sites in a piece.
 const PIECE: usize = 1024;
 
-/// Fewest pieces of a thread: with fewer, waking it costs more than it saves.
+/// The least number of pieces for a thread; with fewer, waking the thread costs more than it saves.
 #[cfg(feature = "rayon")]
 const FEWEST: usize = 2;
 
@@ -23,7 +23,7 @@ impl Threads {
         (parts > 1).then(|| pieces.div_ceil(parts))
     }
 
-    /// Collects what is found in parts of a range, in order; whether all parts say yes.
+    /// Collects the results from parts of a range, in order; returns whether all parts succeed.
     pub(super) fn collect(
         self,
         range: Range<usize>,

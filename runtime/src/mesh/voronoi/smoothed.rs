@@ -43,7 +43,7 @@ pub struct Smoothed<T, O, const TIMES: usize> {
     operator: O,
     iteration: Iteration<T>,
     masses: Vec<T>,
-    /// Where the last value was taken.
+    /// The positions of the last value.
     pub(super) at: Vec<Plane<T>>,
     /// The depths.
     pub(super) depths: [Extrapolated<T>; TIMES],
@@ -204,7 +204,7 @@ impl<T: Real, O: Operator<T>, const TIMES: usize> Functional<T, 2> for Smoothed<
             self.products = 0;
         } else {
             if let Err(error) = self.solve() {
-                // Nothing is extrapolated from what has failed.
+                // A failed solution is not used for extrapolation.
                 self.depths.iter_mut().for_each(|depth| depth.solved = 0);
                 return Err(error);
             }

@@ -15,7 +15,7 @@ pub struct Member {
 /// Writes the list of files, in the order in which they are given.
 ///
 /// # Errors
-/// Those of `file`.
+/// Errors of `file`.
 pub fn write_collection(file: &mut dyn Write, members: &[Member]) -> io::Result<()> {
     writeln!(
         file,

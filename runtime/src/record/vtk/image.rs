@@ -20,7 +20,7 @@ impl ImageData {
     /// Writes a file of them.
     ///
     /// # Errors
-    /// Those of `file`; `InvalidInput` where values are not as many as nodes.
+    /// Errors of `file`; `InvalidInput` if the number of values differs from the number of nodes.
     pub fn write(&self, file: &mut dyn Write) -> io::Result<()> {
         let last = self.nodes.map(|n| n.saturating_sub(1));
         let extent = format!("0 {} 0 {} 0 {}", last[0], last[1], last[2]);

@@ -4,8 +4,8 @@
 //! `(K(C) + L(v)) q = k q` with Davenport's matrix `K` of attitude determination and a matrix `L` that
 //! is skew; `k = tr(Omega C^T)` is the largest real eigenvalue. Newton's method descends to it on the
 //! quartic from above, as in QUEST (Shuster and Oh, J. Guidance and Control 4, 1981), an eigenvector is
-//! a column of the adjugate, and Newton's method on the group takes out what rounding left. Nothing
-//! of `C` is prepared: it may change from step to step.
+//! a column of the adjugate, and Newton's method on the group takes out what rounding left. `C` needs
+//! no preparation, so it may change from step to step.
 
 use super::reach::{farthest_of, fastest_of};
 use super::{LeftFactor, Refusal, Unsolved};
@@ -23,7 +23,7 @@ const POLISHING: usize = 40;
 /// A residual of this many roundings of the factor is zero.
 const CONVERGED_ROUNDINGS: f64 = 8.0;
 
-/// Where the residual stops falling below this many roundings, rounding is the reason.
+/// If the residual stops decreasing below this many roundings, the cause is rounding.
 const STAGNATED_ROUNDINGS: f64 = 100.0;
 
 /// The principal solution `Omega` of `Omega C^T - C Omega^T = hat(v)`.
@@ -73,7 +73,7 @@ pub fn davenport<T: Real>(c: &Matrix3<T>, v: &Vector3<T>) -> Result<Rotation<T>,
     Err(refuse(c, v, previous))
 }
 
-/// The same by the solver `method`. Every other solver prepares the factor anew.
+/// Like [`davenport`], with the solver `method`. Every other solver prepares the factor anew.
 ///
 /// # Errors
 /// [`Unsolved`]; for other solvers also if the matrix is not a left factor.

@@ -1,5 +1,5 @@
-//! A left factor, validated and brought to its principal frames once.
-//! Takes the matrix `C`; gives the data that the solvers need.
+//! A left factor, validated and transformed to its principal frames once. Takes the matrix `C`;
+//! gives the data that the solvers need.
 
 use super::{Refusal, Unsolved};
 use crate::groups::Orthogonal;
@@ -51,7 +51,7 @@ impl<const N: usize> Saved for LeftFactor<N, f64> {
             .for_each(|x| x.words(words));
         plain.words(words);
         symmetric.words(words);
-        // In three dimensions always, in others never.
+        // True in three dimensions, false otherwise.
         optional(space, words, || None);
     }
 }
@@ -62,7 +62,7 @@ impl<const N: usize> Saved for LeftFactor<N, f64> {
 pub enum LeftFactorError {
     /// An entry is NaN or infinite.
     NotFinite,
-    /// The determinant is not positive: the principal solution would turn left into right.
+    /// The determinant is not positive: the principal solution would be a reflection.
     Reflected {
         /// The determinant.
         determinant: f64,
@@ -96,7 +96,7 @@ impl fmt::Display for LeftFactorError {
 impl std::error::Error for LeftFactorError {}
 
 impl LeftFactorError {
-    /// The same error as a [`ParameterError`] of the parameter `field`.
+    /// Turns this error into a [`ParameterError`] of the parameter `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
         let remedy = match self {
@@ -140,7 +140,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
     /// The factor of a matrix.
     ///
     /// A symmetric one may have one eigenvalue zero, as a flat body has; any other must have a
-    /// positive determinant. Sizes beyond eight do not build.
+    /// positive determinant. Sizes above eight do not compile.
     ///
     /// # Errors
     /// [`LeftFactorError`] with the numbers that are wrong.
@@ -192,7 +192,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
             let (smallest, second) = (list[0], list[1]);
             let largest = list[N - 1];
             let noise = 64.0 * T::EPSILON * largest;
-            // Written so that NaN is refused.
+            // The comparison also rejects NaN.
             let positive = smallest >= -noise && second > noise;
             if !positive {
                 return Err(LeftFactorError::NotPositive { smallest, second });
@@ -304,7 +304,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
     /// A skew matrix of the given frame in the principal one.
     #[inline]
     pub(super) fn framed_momentum(&self, v: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-        // A frame that is the identity costs nothing.
+        // If the frame is the identity, nothing is computed.
         match self.plain {
             true => *v,
             false => self.left.tr_mul(&(v * self.left)),

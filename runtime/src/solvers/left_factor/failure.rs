@@ -47,7 +47,7 @@ pub struct Unsolved {
 }
 
 impl Unsolved {
-    /// The same error with the step size that failed, and the largest that succeeds: the largest
+    /// This error with the failed step size and the largest step size that succeeds: the largest
     /// trial step for which `ratio` gives at most 1.
     #[cold]
     #[must_use]

@@ -22,7 +22,7 @@ use nalgebra::SMatrix;
 /// Steps after which an attempt gives up; at the bound itself each step only halves the error.
 const MOST_STEPS: usize = 50;
 
-/// Attempts on the way from no momentum to the whole, where the direct one fails.
+/// The number of attempts on the way from zero to the full momentum, if the direct attempt fails.
 const MOST_ATTEMPTS: usize = 60;
 
 /// A residual of this many roundings of twice the factor's largest entry is zero. Its remainder has
@@ -38,7 +38,7 @@ const QUICK: f64 = 0.1;
 /// Steps below this take the series of the Cayley map.
 const SMALL: f64 = 0.05;
 
-/// Steps by the factor alone that better a guess; each costs a tenth of a factorisation.
+/// The number of steps with the diagonal tangent that improve a guess; each costs a tenth of a factorisation.
 const STEPS_BY_FACTOR: usize = 4;
 
 /// Why an attempt failed.
@@ -54,7 +54,7 @@ enum Failed {
 fn largest<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> f64 {
     a.iter().fold(0.0, |m: f64, x| {
         let size = x.greatest().max(-x.least());
-        // NaN must not hide.
+        // The result is NaN if any entry is.
         if size.is_nan() { f64::NAN } else { m.max(size) }
     })
 }
@@ -89,7 +89,7 @@ fn by_factor<T: Real, const N: usize>(
     g.component_mul(reciprocals)
 }
 
-/// One attempt from a guess, in the principal frame. Not inlined: its work arrays are large, and most steps do without.
+/// One attempt from a guess, in the principal frame. Not inlined: its work arrays are large, and most steps do not need it.
 #[inline(never)]
 fn attempt<T: Real, const N: usize>(
     factor: &LeftFactor<N, T>,
@@ -159,7 +159,7 @@ fn by_steps_of_the_factor<T: Real, const N: usize>(
         if is_solved(size, previous, unit) {
             return if is_principal(&a) { Ok(r) } else { Err(r) };
         }
-        // Near the bound these steps lead away.
+        // Near the bound these steps diverge.
         if size > 0.5 * previous || size.is_nan() {
             break;
         }
@@ -179,7 +179,7 @@ fn unit<T: Real, const N: usize>(factor: &LeftFactor<N, T>, v: &SMatrix<T, N, N>
     T::EPSILON * (2.0 * largest(&factor.framed)).max(largest(v))
 }
 
-/// Whether a residual is rounding, given the one before.
+/// Whether a residual is rounding, given the previous residual.
 #[inline]
 fn is_solved(size: f64, previous: f64, unit: f64) -> bool {
     size <= CONVERGED_ROUNDINGS * unit
@@ -222,7 +222,7 @@ pub(super) fn solve<T: Real, const N: usize>(
     }
 }
 
-/// From the solution without momentum to that with the whole of it, in steps that succeed.
+/// Continues from the solution at zero momentum to the solution at the full momentum.
 #[cold]
 #[inline(never)]
 fn by_continuation<T: Real, const N: usize>(

@@ -19,7 +19,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
         self.farthest(h_n).0
     }
 
-    /// The same with the lane it is of.
+    /// Like `reach`, with the lane that attains it.
     pub(super) fn farthest(&self, h_n: &SMatrix<T, N, N>) -> (f64, usize) {
         let v = self.framed_momentum(h_n);
         farthest::<T>(|lane| {
@@ -70,7 +70,7 @@ pub fn reach_of<T: Real, const N: usize>(c: &SMatrix<T, N, N>, v: &SMatrix<T, N,
     farthest_of(c, v).0
 }
 
-/// The same with the lane it is of.
+/// Like `reach_of`, with the lane that attains it.
 pub(super) fn farthest_of<T: Real, const N: usize>(
     c: &SMatrix<T, N, N>,
     v: &SMatrix<T, N, N>,

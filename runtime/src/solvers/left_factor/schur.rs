@@ -37,7 +37,7 @@ fn rotation(a: Number, b: Number) -> (f64, Number) {
     (a.norm() / length, a / a.norm() * b.conj() / length)
 }
 
-/// A matrix on its way to triangular form, and the unitary matrix that takes it there.
+/// A matrix during reduction to triangular form, and the accumulated unitary matrix.
 struct Schur {
     t: Table,
     q: Table,
@@ -118,7 +118,7 @@ impl Schur {
             if sweeps > SWEEPS {
                 return false;
             }
-            // Now and then a shift of no meaning, against cycles.
+            // An occasional arbitrary shift prevents cycles.
             let shift = match sweeps % 10 {
                 0 => self.t[(last, last)] + self.t[(last, last - 1)].norm(),
                 _ => self.shift(last),
@@ -143,7 +143,7 @@ impl Schur {
         true
     }
 
-    /// Brings the eigenvalues of the right half plane to the front; how many there are.
+    /// Moves the eigenvalues in the right half plane to the front; returns their number.
     fn order(&mut self) -> usize {
         let right = |t: &Table, k: usize| t[(k, k)].re > 0.0;
         for _ in 0..self.size {
@@ -167,7 +167,7 @@ pub(super) fn solve<T: Real, const N: usize>(
     h_n: &SMatrix<T, N, N>,
 ) -> Result<Orthogonal<N, T>, Unsolved> {
     let refuse = |refusal| factor.unsolved(Method::Schur, h_n, refusal);
-    // Derivatives, lanes and more digits do not pass through double precision.
+    // Double precision cannot represent derivatives, lanes or more digits.
     if T::ORDER > 0 || T::LANES > 1 || T::EPSILON < 1e-17 {
         return Err(refuse(Refusal::DoesNotApply));
     }

@@ -36,7 +36,7 @@ pub(super) fn hamiltonian<T: Real, const N: usize>(
     })
 }
 
-/// `Omega` from the symmetric part `S` of `Omega C^T`, refused unless it solves the equation.
+/// Computes `Omega` from the symmetric part `S` of `Omega C^T`; rejects it unless it solves the equation.
 pub(super) fn finish<T: Real, const N: usize>(
     factor: &LeftFactor<N, T>,
     h_n: &SMatrix<T, N, N>,
@@ -93,7 +93,7 @@ pub(super) fn solve<T: Real, const N: usize>(
         let Some(back) = inverse_leading(&z, size) else {
             return Err(refuse(Refusal::NotConverged));
         };
-        // Scaling quickens the start and spoils the end.
+        // Scaling accelerates the first iterations, but disturbs the last ones.
         let scale = match previous > 1e-2 {
             true => (norm(&back) / norm(&z)).sqrt(),
             false => T::one(),

@@ -1,6 +1,6 @@
 //! The symmetric part of `A = R C^T` by an iteration that costs one product of matrices, for momenta up to about half the
 //! bound. Takes the principal values of the factor and `V = h N`, in the principal frame; gives a rotation near the
-//! solution, or nothing where it converges too slowly.
+//! solution, or `None` if it converges too slowly.
 //!
 //! With `A = S + V/2` the skew part is right whatever `S`, and what is left of `R` being orthogonal is `A^T A = D^2`,
 //! the matrix Riccati equation. Its tangent without momentum is diagonal: `S_ij` is corrected by the defect at
@@ -10,7 +10,7 @@ use crate::Real;
 use crate::linalg::product;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
-/// Sweeps after which it gives up: at the slowest rate allowed, from the first defect to rounding.
+/// The largest number of sweeps: at the slowest admitted rate, the defect then reaches rounding.
 const MOST_SWEEPS: usize = 60;
 
 /// A sweep that leaves more than this of the defect is too slow; a factorised tangent is then the cheaper one.
@@ -22,7 +22,7 @@ const OPENING: usize = 3;
 /// Defects below this many roundings of each row are rounding.
 const CONVERGED_ROUNDINGS: f64 = 1.0;
 
-/// Where the defect stops falling below this many, rounding is the reason.
+/// If the defect stops decreasing below this many roundings, the cause is rounding.
 const STAGNATED_ROUNDINGS: f64 = 64.0;
 
 /// Smallest part of the largest principal value: the rotation is `A` over them, and rounding grows by their ratio.
@@ -48,7 +48,7 @@ pub(super) fn nearby_rotation<T: Real, const N: usize>(
         return None;
     }
     let half = T::from_f64(0.5);
-    // Those given are of pairs.
+    // The given reciprocals belong to pairs.
     let mut reciprocals = reciprocals.data.0;
     for (i, x) in d.iter().enumerate() {
         reciprocals[i][i] = half / *x;

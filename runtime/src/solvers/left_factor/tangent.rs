@@ -5,7 +5,7 @@ use crate::Real;
 use crate::linalg::{is_usable, weight};
 use nalgebra::SMatrix;
 
-/// Unknowns of the largest size: pairs of eight axes.
+/// The largest number of unknowns: pairs of eight axes.
 const MOST: usize = super::factor::LARGEST * (super::factor::LARGEST - 1) / 2;
 
 /// The factorised operator, in the coordinates `X_ij`, `i < j`, row by row.
@@ -14,7 +14,7 @@ pub(super) struct Tangent<T, const N: usize> {
     pivots: [usize; MOST],
 }
 
-/// Where the pair `i < j` stands.
+/// The index of the pair `i < j`.
 #[inline(always)]
 const fn place<const N: usize>(i: usize, j: usize) -> usize {
     i * (2 * N - i - 1) / 2 + (j - i - 1)
@@ -23,7 +23,7 @@ const fn place<const N: usize>(i: usize, j: usize) -> usize {
 impl<T: Real, const N: usize> Tangent<T, N> {
     const UNKNOWNS: usize = N * (N - 1) / 2;
 
-    /// Work arrays, to be filled.
+    /// Uninitialised work arrays.
     #[inline]
     pub(super) fn blank() -> Self {
         Self {
@@ -80,7 +80,7 @@ impl<T: Real, const N: usize> Tangent<T, N> {
                     row[j] -= factor * head[j];
                 }
             }
-            // Kept inverted: each solve multiplies.
+            // Stored as inverses, so that each solve multiplies.
             head[k] = reciprocal;
         }
         true

@@ -1,5 +1,6 @@
-//! The turn about the spatial momentum that makes a step with modified moments symplectic on T*SO(3).
-//! Takes a body, the order of its steps and a trajectory; gives that turn, a constant of the trajectory.
+//! The rotation about the spatial momentum that makes a step with modified moments symplectic on
+//! T*SO(3). Takes a body, the order of its steps and a trajectory; gives that rotation, a constant of
+//! the trajectory.
 //!
 //! Let `H` be the energy and `C = |mu|^2 / 2`. A map that conserves momentum and energy and is symplectic for constant
 //! `s`, `d` is a composition of the flows of `H` and `C`. A step of the body with inverse moments `s / I + d` is such a
@@ -145,7 +146,7 @@ pub(super) fn factor<T: Real>(body: &Poinsot<T>, u: [T; 3], order: Order) -> T {
         one.plus(&given.series(&FACTOR[..taken])),
         given.series(&SHIFT[..taken]),
     );
-    // Each pass makes one more power right.
+    // Each pass makes one more power exact.
     let (mut effective_s, mut effective_d) = (one, Polynomial::constant(T::zero()));
     for _ in 0..POWERS {
         let effective = Seen::of(&effective_s, &effective_d, symmetric);

@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 /// A stepper makes it at the end of a step, when the quantities of the new node are at hand, and
 /// keeps it for the next one: the solve waits for the body components, and for nothing else.
 ///
-/// Aligned so that no pair of its numbers lies across two lines of the cache.
+/// Aligned so that no pair of numbers crosses a cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(32))]
 pub struct Edge<T = f64> {
@@ -90,8 +90,8 @@ impl<T: Real> Edge<T> {
         self.space.get().into()
     }
 
-    /// The attitude where the edge ends, given that where it begins: the principal solution of the
-    /// Moser-Veselov equation, body side.
+    /// The attitude at the end of the edge, given the attitude at its start: the principal solution
+    /// of the Moser-Veselov equation, body side.
     ///
     /// # Errors
     /// As [`forced`](super::forced()).
@@ -113,9 +113,10 @@ impl<T: Real> Edge<T> {
         }
     }
 
-    /// The same by one iteration for the root of the quartic; also returns whether that suffices. The
-    /// code is free of branches, so that a loop over many bodies vectorises. Set `DIAGONAL` if the body
-    /// is given in principal axes. If one iteration does not suffice, the result is meaningless.
+    /// Like [`Edge::turn`], with one iteration for the root of the quartic; also returns whether that
+    /// suffices. The code is free of branches, so that a loop over many bodies vectorises. Set
+    /// `DIAGONAL` if the body is given in principal axes. If one iteration does not suffice, the result
+    /// is meaningless.
     #[inline(always)]
     pub fn turn_at_once<const DIAGONAL: bool>(
         &self,
@@ -130,17 +131,17 @@ impl<T: Real> Edge<T> {
         (attitude.turned(omega), found)
     }
 
-    /// Puts the edge of one lane there.
+    /// Writes the edge of one lane.
     #[inline(always)]
     pub(crate) fn set_one(&mut self, lane: usize, one: Edge<T::One>) {
         self.body.set_one(lane, one.body);
         self.space.set_one(lane, one.space);
     }
 
-    /// The same by the solver `method`, which prepares the body anew.
+    /// Like [`Edge::turn`], with the solver `method`, which prepares the body anew.
     ///
     /// # Errors
-    /// As [`Edge::turn`]; also when the solver does not serve this scalar.
+    /// As [`Edge::turn`]; also if the solver does not support this scalar.
     #[cold]
     #[inline(never)]
     pub fn turn_by(

@@ -1,5 +1,5 @@
-//! The error of a step that is too long for the Moser-Veselov equation.
-//! Takes the refused momentum; gives how far beyond the bound it is and what step would do.
+//! The error of a step that is too long for the Moser-Veselov equation. Takes the failed momentum;
+//! gives its ratio to the bound, and the step size that would succeed.
 
 use super::forced::turn;
 use super::preprocess::preprocessed;
@@ -37,12 +37,12 @@ pub struct MoserVeselovError {
     pub lane: u32,
 }
 
-/// The step offered is this little inside the bound: at the bound itself the quartic has a double
-/// root, which rounding may remove.
+/// The suggested step size is inside the bound by this relative margin: at the bound itself the
+/// quartic has a double root, which rounding may remove.
 const INSIDE: f64 = 1.0 - 1e-12;
 
 impl MoserVeselovError {
-    /// Diagnoses the refused `h N`; every lane is looked at.
+    /// Diagnoses the failed `h N`, over all lanes.
     #[cold]
     #[inline(never)]
     pub(super) fn diagnose<T: Real>(body: &Poinsot<T>, h_n: &Vector3<T>) -> Self {
@@ -72,7 +72,7 @@ impl MoserVeselovError {
         worst
     }
 
-    /// Diagnoses a refused trajectory of a higher order, from `h mu` at its start: the modified
+    /// Diagnoses a failed trajectory of a higher order, from `h mu` at its start: the modified
     /// moments depend on the step, so the largest step is searched.
     #[cold]
     #[inline(never)]
@@ -119,7 +119,7 @@ impl MoserVeselovError {
         told.unwrap_or_else(|| Self::diagnose(body, h_mu))
     }
 
-    /// The refusal of another solver.
+    /// The failure of another solver.
     #[cold]
     #[inline(never)]
     pub(super) fn of_solver<T: Real>(method: Method, body: &Poinsot<T>, h_n: &Vector3<T>) -> Self {
@@ -129,7 +129,7 @@ impl MoserVeselovError {
         }
     }
 
-    /// The same error with the step size that failed, and the largest that succeeds.
+    /// This error with the failed step size, and the largest step size that succeeds.
     #[cold]
     #[must_use]
     pub fn with_steps(self, h: f64, largest_step: f64) -> Self {
@@ -140,7 +140,7 @@ impl MoserVeselovError {
         }
     }
 
-    /// The same error for a momentum that does not depend on the step: the bound is linear in it.
+    /// This error for a momentum that does not depend on the step size: the bound is linear in the step size.
     #[cold]
     #[must_use]
     pub fn with_linear_step<T: Real>(self, h: T) -> Self {
@@ -148,8 +148,8 @@ impl MoserVeselovError {
         self.with_steps(h, h / self.ratio * INSIDE)
     }
 
-    /// The same error for an edge momentum that depends on the step: searches the largest step of
-    /// every lane, and reports the smallest of them.
+    /// This error for an edge momentum that depends on the step size: searches the largest step size of
+    /// every lane, and reports the smallest of these.
     #[cold]
     #[must_use]
     pub fn with_searched_step<T: Real>(
@@ -177,7 +177,7 @@ impl MoserVeselovError {
     }
 }
 
-/// The number of a lane; there are a few of them.
+/// The index of a lane as a small number.
 pub(in crate::solvers) fn index(lane: usize) -> u32 {
     u32::try_from(lane).unwrap_or(u32::MAX)
 }

@@ -84,7 +84,7 @@ fn in_a_loop<T: Real, const DIAGONAL: bool, const COUNT: usize>(
 /// The quaternion of the principal solution, not normalised, for `u = h N / (2 unit)`.
 #[inline(always)]
 pub(super) fn turn<T: Real>(body: &Poinsot<T>, u: [T; 3]) -> Option<[T; 4]> {
-    // One branch here, straight-line code on either side.
+    // There is one branch, with straight-line code on both sides.
     if body.diagonal {
         principal::<T, true>(body, u)
     } else {
@@ -99,8 +99,9 @@ fn principal<T: Real, const DIAGONAL: bool>(body: &Poinsot<T>, u: [T; 3]) -> Opt
     Some(momentum.quaternion::<DIAGONAL>(body, kappa))
 }
 
-/// The same by one iteration; also returns whether that suffices. Free of branches, so that a loop
-/// over many bodies vectorises. If one iteration does not suffice, the result is meaningless.
+/// Like `principal`, with one iteration; also returns whether that suffices. Free of branches, so
+/// that a loop over many bodies vectorises. If one iteration does not suffice, the result is
+/// meaningless.
 #[inline(always)]
 pub(super) fn principal_at_once<T: Real, const DIAGONAL: bool>(
     body: &Poinsot<T>,

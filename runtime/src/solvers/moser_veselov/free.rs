@@ -28,7 +28,7 @@ const REPAIR_EVERY: u32 = 8;
 /// trajectory: several projections change it by that much.
 const SAME_TRAJECTORY: f64 = 64.0;
 
-/// Squared sine of the angle between `u` and `adj(I) u` below which the energy is left alone: so
+/// Squared sine of the angle between `u` and `adj(I) u` below which the energy is not corrected: so
 /// near to a principal axis (or with equal moments) it depends on `|u|` only, to second order in
 /// the sine times the rounding error.
 const DEGENERATE: f64 = 1e-6;
@@ -81,14 +81,14 @@ pub struct Free<T = f64> {
     body: Poinsot<T>,
     /// Components in the axes worked in -> components in the axes given.
     frame: Matrix3<T>,
-    /// Whether the two differ.
+    /// Whether the two sets of axes differ.
     turned: bool,
     until_projection: u32,
     /// Whether it is made.
     projects: bool,
-    /// The compensating turn about the momentum, if requested, and the steps until the next projection.
-    /// The turn is made by the code of the projections, after every single step, so that steps without
-    /// it cost nothing.
+    /// The compensating rotation about the momentum, if requested, and the steps until the next
+    /// projection. The turn is made by the code of the projections, after every single step, so that
+    /// steps without it cost nothing.
     compensation: Option<(Rotation<T>, u32)>,
     /// Squares of the last [`Correction`].
     corrected: [T; 2],
@@ -131,9 +131,8 @@ impl<T: Real> Free<T> {
     /// either sign, not zero). The steps have order two and are symplectic.
     ///
     /// # Errors
-    /// [`MoserVeselovError`], with the largest step size that would do, when the motion is too fast
-    /// for `h`. If it starts, every further step can
-    /// be made.
+    /// [`MoserVeselovError`], with the largest step size that succeeds, if the motion is too fast
+    /// for `h`. If it starts, every further step can be made.
     pub fn start(
         body: &Poinsot<T>,
         attitude: &Rotation<T>,
@@ -148,7 +147,7 @@ impl<T: Real> Free<T> {
     ///
     /// Above two the map of the momentum is Poisson and energy, `|mu|^2` and spatial momentum are
     /// as exact as before, but the map of momentum and attitude together is not symplectic: the
-    /// defect is of the size of the error of the step. [`Free::compensated`] takes it out.
+    /// defect is of the size of the error of the step. [`Free::compensated`] removes it.
     ///
     /// # Errors
     /// As [`Free::start`]; the largest step is then found by bisection.
@@ -241,8 +240,8 @@ impl<T: Real> Free<T> {
         Correction { momentum, attitude }
     }
 
-    /// The same trajectory with its rounding left to gather, so that it can be seen: nothing is put
-    /// back on the quadrics or aligned. The attitude's quaternion keeps its length.
+    /// This trajectory without projection: rounding errors accumulate, so that you can measure them. The
+    /// quaternion of the attitude is still normalised.
     #[must_use]
     pub fn without_projection(self) -> Self {
         Self {
@@ -251,11 +250,11 @@ impl<T: Real> Free<T> {
         }
     }
 
-    /// The same trajectory with compensated steps: each step is followed by a constant turn about the
+    /// This trajectory with compensated steps: each step is followed by a constant rotation about the
     /// spatial momentum. For orders four, six and eight this makes the map of momentum and attitude
-    /// symplectic up to the error of a step of order ten. The turn is as small as the error of a step,
-    /// so that order, energy and momentum are unchanged. Steps of order two need no compensation; for
-    /// order ten none is known.
+    /// symplectic up to the error of a step of order ten. The rotation is as small as the error of a
+    /// step, so that order, energy and momentum are unchanged. Steps of order two need no
+    /// compensation; for order ten no compensation is known.
     #[must_use]
     pub fn compensated(mut self) -> Self {
         if !matches!(self.order, Order::Two | Order::Ten) {
@@ -268,8 +267,8 @@ impl<T: Real> Free<T> {
         self
     }
 
-    /// As [`Free::step`], for a state that may have been replaced: it is followed where it is, with
-    /// the momentum it has.
+    /// As [`Free::step`], for a state that may have been replaced: the step starts from the given
+    /// attitude and momentum.
     ///
     /// # Errors
     /// As [`Free::start`] after a replacement, as [`Free::step`] otherwise; nothing is changed.
@@ -333,12 +332,12 @@ impl<T: Real> Free<T> {
             let [u] = self.frame.tr_mul(&attitude.inverse_rotate(&space)).data.0;
             let energy = dot(u, self.energy_gradient(u));
             let change = (energy - self.energy) / self.energy;
-            // False for NaN, which a body at rest gives.
+            // False for NaN, which occurs for a body at rest.
             if change.magnitude() <= SAME_TRAJECTORY * T::EPSILON {
                 for (axis, x) in self.axes.iter_mut().zip(u) {
                     axis.body = x;
                 }
-                // As at a start: what follows does not depend on how many steps were made before.
+                // As at a start, so that the next steps do not depend on the number of steps before.
                 self.count_anew();
                 self.phase.lost();
                 return Ok(());
@@ -357,7 +356,7 @@ impl<T: Real> Free<T> {
         }
     }
 
-    /// A step from a state that has been put there, or by another solver, which knows no other.
+    /// A step from a state that another function has set, or a step with another solver, which always starts from the state.
     #[cold]
     #[inline(never)]
     fn elsewhere(
@@ -397,7 +396,7 @@ impl<T: Real> Free<T> {
         Ok(())
     }
 
-    /// One step without the projection; false, and nothing changed, when a number is not finite.
+    /// One step without the projection. If a number is not finite, returns false and changes nothing.
     #[inline(always)]
     fn advance(&mut self, attitude: &mut Rotation<T>) -> bool {
         let repairs = self.until_projection.is_multiple_of(REPAIR_EVERY);
@@ -450,7 +449,7 @@ impl<T: Real> Free<T> {
     /// `count` steps at once, with the same result as one by one but for rounding: the attitude is
     /// found at the end, from one angle. For lanes, whose numbers then stay in registers.
     ///
-    /// How many steps are asked for at once makes no difference, not even in rounding.
+    /// The result does not depend on how many steps one call takes, not even in rounding.
     ///
     /// # Errors
     /// As [`Free::follow`]; nothing is changed.
@@ -524,7 +523,7 @@ impl<T: Real> Free<T> {
         Ok(())
     }
 
-    /// The same one by one: for numbers with derivatives, and steps that are each followed by a turn.
+    /// Takes the steps one by one: for numbers with derivatives, and for steps that are each followed by a rotation.
     fn step_many(
         &mut self,
         attitude: &mut Rotation<T>,
@@ -545,7 +544,7 @@ impl<T: Real> Free<T> {
         MoserVeselovError::diagnose(&self.given, &nan)
     }
 
-    /// The steps that are made without looking up: one where each is followed by a turn.
+    /// Resets the counters of steps until the next projection; with compensation, each step is followed by a rotation.
     fn count_anew(&mut self) {
         self.until_projection = PROJECT_EVERY;
         if let Some((_, left)) = &mut self.compensation {
@@ -584,7 +583,7 @@ fn plain<T: Real>() -> bool {
     T::ORDER == 0
 }
 
-/// The principal axes, where they are of use.
+/// The principal axes, if they are used.
 fn principal_frame<T: Real>(body: &Poinsot<T>) -> Option<PrincipalAxes<T>> {
     plain::<T>().then(|| PrincipalAxes::of(body))
 }

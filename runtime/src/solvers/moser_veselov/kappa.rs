@@ -1,5 +1,5 @@
-//! The scalar unknown of the Moser-Veselov equation: the smallest root of a quartic.
-//! Takes the body, `a = |u|^2` and `e = u . I^-1 u`; gives `kappa`, or nothing beyond the bound.
+//! The scalar unknown of the Moser-Veselov equation: the smallest root of a quartic. Takes the
+//! body, `a = |u|^2` and `e = u . I^-1 u`; gives `kappa`, or `None` beyond the bound.
 //!
 //! Over `s3` the quartic is
 //! `g = (e - k) - (s1 a / s3) k + a^2 / s3 + k^2 ((s2 + 2a) / s3 - (s1 / s3) k + k^2 / s3)`.
@@ -175,7 +175,7 @@ impl<T: Real> Quartic<T> {
         let noise = T::from_f64(4.0 * T::EPSILON) * constant;
         for _ in 0..MOST_MONOTONE {
             let (value, fall) = (self.value(k), self.fall(k));
-            // 1 in the lanes still on their way, 0 in those that have arrived.
+            // 1 in the lanes that still iterate, 0 in the lanes that have converged.
             let active = slow * (value - noise).where_positive(one);
             if active.nowhere_positive() {
                 return self.finished(k);
@@ -208,7 +208,7 @@ impl<T: Real> Quartic<T> {
 /// The smallest root, in units of the body. `deviation` is `s2 e / s3 - s1 a / s3`, which the
 /// caller may know as soon as `energy`.
 ///
-/// Inlined is the case of a moderate step, where one iteration from the series does.
+/// Only the case of a moderate step is inlined, where one iteration from the series suffices.
 #[inline(always)]
 pub(super) fn kappa<T: Real>(body: &Poinsot<T>, a: T, energy: T, deviation: T) -> Option<T> {
     let (k, found) = kappa_at_once(body, a, energy, deviation);
@@ -218,7 +218,7 @@ pub(super) fn kappa<T: Real>(body: &Poinsot<T>, a: T, energy: T, deviation: T) -
     hard(&body.symmetric, a, energy, deviation)
 }
 
-/// The root by one iteration, and whether that does; without a branch.
+/// The root by one iteration, and whether that suffices; without a branch.
 #[inline(always)]
 pub(super) fn kappa_at_once<T: Real>(
     body: &Poinsot<T>,
@@ -229,14 +229,14 @@ pub(super) fn kappa_at_once<T: Real>(
     let body = &body.symmetric;
     let quartic = Quartic::new(body, a, energy);
     let k = quartic.improved(quartic.start(deviation));
-    // Written so that NaN is not easy.
+    // The comparison is false for NaN.
     (quartic.polished(k), (energy - body.easy).nowhere_positive())
 }
 
-/// The root where one iteration does not do: more of them, or the monotone approach.
+/// The root if one iteration does not suffice: by further iterations, or by the monotone approach.
 ///
-/// Every lane goes its own way, with the operations it would go through alone: what it finds does
-/// not depend on the others.
+/// Each lane performs the operations that it would perform alone, so its result does not depend on
+/// other lanes.
 #[cold]
 #[inline(never)]
 fn hard<T: Real>(body: &Symmetric<T>, a: T, energy: T, deviation: T) -> Option<T> {
@@ -266,7 +266,7 @@ fn hard<T: Real>(body: &Symmetric<T>, a: T, energy: T, deviation: T) -> Option<T
     Some(k)
 }
 
-/// One or the other, lane by lane, as the mask is 1 or 0.
+/// Selects one of two values in each lane by a mask of 1 or 0.
 #[inline(always)]
 pub(in crate::solvers) fn choose<T: Real>(mask: T, then: T, otherwise: T) -> T {
     mask.where_positive(then) + (T::one() - mask).where_positive(otherwise)

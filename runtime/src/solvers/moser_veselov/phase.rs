@@ -80,7 +80,7 @@ impl<T: Real> Phase<T> {
         }
     }
 
-    /// Another attitude, or place on the trajectory, has come in.
+    /// The attitude or the position on the trajectory was changed from outside.
     #[inline(always)]
     pub(super) fn lost(&mut self) {
         self.current = false;
@@ -157,7 +157,7 @@ impl<T: Real> Phase<T> {
         (path, moving)
     }
 
-    /// Leaves it; the attitude there.
+    /// Ends this representation; returns the attitude.
     #[inline(always)]
     pub(super) fn left_at(&mut self, moving: &Moving<T>) -> Rotation<T> {
         self.turn = moving.turn;
@@ -213,7 +213,7 @@ impl<T: Real> Path<T> {
 }
 
 impl<T: Real> Moving<T> {
-    /// The turn taken back to length 1: a step may change it by a large factor.
+    /// Normalises the rotation, whose length a step may change by a large factor.
     #[inline(always)]
     pub(super) fn repair(&mut self) {
         self.turn = normalised(self.turn);

@@ -1,5 +1,5 @@
-//! The mass distribution of a rigid body as the solver wants it.
-//! Takes the Poinsot matrix; gives it validated, with the invariants of the inertia tensor.
+//! The mass distribution of a rigid body, in the form that the solver uses. Takes the Poinsot
+//! matrix; gives it validated, with the invariants of the inertia tensor.
 
 use super::cayley::dot;
 use super::kappa::Symmetric;
@@ -40,7 +40,7 @@ pub struct Poinsot<T = f64> {
     pub(super) s1: T,
     pub(super) s2: T,
     pub(super) s3: T,
-    /// The same over `s3`, for the quartic.
+    /// These functions divided by `s3`, for the quartic.
     pub(super) symmetric: Symmetric<T>,
     /// `(I / unit)^-1` and `(s2 (I / unit)^-1 - s1) / s3`, whose quadratic forms start the root.
     pub(super) energy: Form<T>,
@@ -115,7 +115,7 @@ pub enum PoinsotError {
         /// The sum of the two others, which it must not exceed.
         sum_of_others: f64,
     },
-    /// A moment of inertia vanishes: all mass lies on a line.
+    /// A moment of inertia vanishes: all mass is on a line.
     NoInertia {
         /// The smallest moment of inertia.
         smallest_moment: f64,
@@ -160,8 +160,8 @@ impl fmt::Display for PoinsotError {
 impl std::error::Error for PoinsotError {}
 
 impl<T: Real> Poinsot<T> {
-    /// Validates the Poinsot matrix `J`, in every lane. Asymmetry and negative eigenvalues of a few
-    /// roundings are forgiven, the former by symmetrising.
+    /// Validates the Poinsot matrix `J`, in every lane. Accepts asymmetry and negative eigenvalues
+    /// of a few roundings; it symmetrises the matrix.
     ///
     /// # Errors
     /// [`PoinsotError`] with the numbers.
@@ -193,7 +193,7 @@ impl<T: Real> Poinsot<T> {
     /// The body of the inertia tensor `I` (body axes): `J = tr(I)/2 1 - I`.
     ///
     /// # Errors
-    /// As [`Poinsot::new`], said of `J`.
+    /// As [`Poinsot::new`], for `J`.
     pub fn from_inertia(inertia: &Matrix3<T>) -> Result<Self, PoinsotError> {
         let half_trace = inertia.trace() * T::from_f64(0.5);
         Self::new(Matrix3::from_diagonal_element(half_trace) - *inertia)
@@ -257,7 +257,7 @@ impl<T: Real> Poinsot<T> {
         Matrix3::from_diagonal_element(self.j.trace()) - self.j
     }
 
-    /// The same body in principal axes, with its moments over `unit` known.
+    /// This body in principal axes, with known moments divided by `unit`.
     pub(super) fn in_principal_axes(&self, [x, y, z]: [T; 3]) -> Self {
         self.with_inertia(&Matrix3::from_diagonal(&Vector3::new(x, y, z)))
     }

@@ -7,8 +7,8 @@
 //! and `|mu|^2` only, which the motion conserves: a trajectory needs them once.
 //!
 //! The momentum's map is Poisson at every order. The map of momentum and attitude together is
-//! symplectic at order two only, since `s` and `d` differ between neighbouring trajectories. A turn
-//! about the momentum, as small as the error of the step, restores symplecticity
+//! symplectic at order two only, since `s` and `d` differ between neighbouring trajectories. A
+//! rotation about the momentum, as small as the error of the step, restores symplecticity
 //! ([`Free::compensated`](super::Free::compensated)).
 
 use super::Poinsot;
@@ -50,7 +50,7 @@ impl Order {
         Self::ALL.into_iter().find(|o| o.number() == number)
     }
 
-    /// How many terms of the series it takes.
+    /// The number of terms of the series that it uses.
     pub(super) fn terms(self) -> usize {
         self as usize
     }
@@ -122,8 +122,8 @@ impl<T: Real> Invariants<T> {
     }
 }
 
-/// Whether a symmetric matrix is positive definite in every lane, by its leading minors. Written so
-/// that NaN is not.
+/// Whether a symmetric matrix is positive definite in every lane, by its leading minors. The
+/// comparison is false for NaN.
 fn positive<T: Real>(a: &Matrix3<T>) -> bool {
     let [[xx, xy, _], [_, yy, _], _] = a.data.0;
     [xx, xx * yy - xy * xy, linalg::determinant(a)]

@@ -1,5 +1,5 @@
-//! Principal axes of a body: where inertia is diagonal, a step is shortest.
-//! Takes the body; gives its principal moments, the middle one second, and the rotation to its axes.
+//! Principal axes of a body, in which a step needs the fewest operations. Takes the body; gives its
+//! principal moments, the middle one second, and the rotation to its axes.
 
 use super::Poinsot;
 use crate::{Real, Rotation};
@@ -11,7 +11,7 @@ const SWEEPS: usize = 8;
 
 /// The principal frame of `I / unit`.
 pub(super) struct PrincipalAxes<T> {
-    /// Moments in units of the body; the second lies between the two others.
+    /// Moments in units of the body; the second is between the two others.
     pub(super) moments: [T; 3],
     /// Principal components -> body components. Exactly the identity for a body that is already
     /// diagonal, with its middle moment second.
@@ -52,7 +52,7 @@ impl<T: Real> PrincipalAxes<T> {
             frame = frame * annihilator(1, c - a, g, body.s1);
         }
         let ([a, b, c], _) = entries(&frame);
-        // A second moment outside the two others changes places with the nearer of them.
+        // If the second moment is not between the two others, it is exchanged with the nearer one.
         let (down, up) = (b - a, b - c);
         let outside = positive(down * up);
         let far = positive(down * down - up * up);

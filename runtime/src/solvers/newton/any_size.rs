@@ -23,7 +23,7 @@ use crate::scalar::Real;
 /// The rounding of plain numbers.
 const UNIT: f64 = <f64 as Real>::EPSILON;
 
-/// A solution to be polished, in the only place where it may be.
+/// A principal root to be polished, with the distance within which a polished solution must stay.
 #[derive(Clone, Debug)]
 struct Anchor<G> {
     root: G,
@@ -53,7 +53,7 @@ pub struct AnySearch<C: Chart> {
     work: Work<C::Element>,
 }
 
-/// What one step works with, kept so that the next one does not allocate.
+/// The buffers of one step, kept so that the next step does not allocate.
 #[derive(Clone, Debug, Default)]
 struct Work<E> {
     trial: E,
@@ -102,7 +102,7 @@ impl<C: Chart> AnySearch<C> {
         (self.unit, self.age) = (other.unit, other.age);
     }
 
-    /// From here on steps are only tried.
+    /// All further steps are trials.
     pub fn only_try(&mut self) {
         self.tries = true;
     }
@@ -142,7 +142,7 @@ impl<C: Chart> AnySearch<C> {
         }
     }
 
-    /// Puts the trial where an attempt begins.
+    /// Sets the trial to the start of an attempt.
     fn begin_at(&mut self, chart: &C, attempt: u32) {
         let trial = &mut self.work.trial;
         let weights: &[f64] = match (attempt, self.past.first()) {
@@ -178,7 +178,7 @@ fn foreseeing(known: usize) -> &'static [f64] {
     }
 }
 
-/// Newton's method at work: see [`Newton`](super::Newton).
+/// The state of Newton's method: see [`Newton`](super::Newton).
 #[derive(Debug)]
 pub struct AnyNewton<'a, C: Chart> {
     search: &'a mut AnySearch<C>,
@@ -340,13 +340,13 @@ impl<C: Chart> AnyNewton<'_, C> {
         search.age = 0;
     }
 
-    /// Whether the residual is wanted: not at the last trial, whose rest alone is.
+    /// Whether the residual is needed: at the last trial, only its rest is.
     #[must_use]
     pub fn wants_residual(&self) -> bool {
         self.found.is_none()
     }
 
-    /// The same as [`correct`](Self::correct) where `whole` is the trial with what is solved for beforehand.
+    /// Like [`correct`](Self::correct), if some unknowns are solved for beforehand; `whole` is the trial with all unknowns.
     pub fn correct_part(&mut self, element: C::Element, from_left: bool) -> Progress<C::Element> {
         self.has_moved = false;
         let found = match self.polished() {
@@ -422,7 +422,7 @@ impl<C: Chart> AnyNewton<'_, C> {
 
     #[cold]
     fn failed(&mut self) -> Progress<C::Element> {
-        // Without a past, every attempt would be the first.
+        // Without previous solutions, every attempt would be the first.
         if self.attempt < LAST_ATTEMPT && !self.search.past.is_empty() {
             self.attempt += 1;
             self.search.begin_at(self.chart, self.attempt);
@@ -491,8 +491,8 @@ fn largest_of(numbers: &[f64], units: &[f64]) -> f64 {
 pub enum Settled {
     /// It is the principal root.
     Principal,
-    /// The principal root is another: the iteration has begun again there.
+    /// The principal root differs: the iteration has started again from it.
     Again,
-    /// The principal root is another, from which the iteration has come here.
+    /// The principal root differs, and the iteration started from it.
     Unpolished,
 }

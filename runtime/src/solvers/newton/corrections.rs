@@ -16,8 +16,8 @@ const LEFT_ROUNDINGS: f64 = 4.0;
 /// tangent of some steps before still makes it a hundredth.
 const SMALL: f64 = 1e-8;
 
-/// So many larger corrections that do not fall are rounding as well: of a velocity that vanishes beside the terms of its
-/// equations, at rest or where it turns, nothing but rounding is left to correct.
+/// So many larger corrections that do not fall are rounding as well: if a velocity is negligible compared with the terms
+/// of its equations, at rest or at a turning point, only rounding is left to correct.
 const MOST_WITHOUT_FALL: u32 = 3;
 
 /// The residual at a trial, over the size of its terms.
@@ -27,7 +27,7 @@ pub(super) struct Residual {
     pub size: f64,
     /// At the trial before.
     pub previous: f64,
-    /// How many corrections led there.
+    /// The number of corrections so far.
     pub iteration: usize,
 }
 
@@ -93,7 +93,7 @@ impl Corrections {
         moved: f64,
         decrement: impl FnOnce() -> f64,
     ) -> Next {
-        // Beside a velocity that was not known at all, as from rest, any correction is large.
+        // If no velocity was known, as from rest, any correction is large.
         let fall = moved / self.last.min(1.0);
         self.last = moved;
         let unit = T::EPSILON;
@@ -173,7 +173,7 @@ mod tests {
         assert_eq!(ends(1.0, &slow), None);
         // Rounding, amplified by a badly conditioned tangent.
         assert_eq!(ends(1.0, &[1e-4, 1e-11, 8e-12]), Some(3));
-        // A velocity that vanishes beside the terms of its equations.
+        // A velocity that is negligible compared with the terms of its equations.
         assert_eq!(ends(1e-17, &[1e-17, 9e-18, 1e-17, 8e-18]), Some(4));
         assert_eq!(ends(1.0, &[f64::NAN; 9]), None);
         assert_eq!(ends(1.0, &[f64::INFINITY; 9]), None);
@@ -195,11 +195,11 @@ mod tests {
             }
             found
         };
-        // An equation that had no terms at rest is large beside its scale; the other corrections fall as their squares.
+        // An equation without terms at rest is large compared with its scale; the other corrections decrease quadratically.
         assert_eq!(next([2.9e-2, 8.4e-7]), Next::Correct);
         // A first correction from zero velocity lacks a length to compare with.
         assert_eq!(next([4.7e307, 1.1e-6]), Next::Correct);
-        // Those that fall as far as the residual leave rounding.
+        // Corrections that decrease as much as the residual are not rounding.
         assert_eq!(next([2.9e-2, 1e-14]), Next::CorrectAndEnd);
     }
 

@@ -55,11 +55,11 @@ pub struct NewtonError {
     pub lane: u8,
     /// The configurations of the model, in their order.
     pub(crate) configurations: &'static &'static [&'static str],
-    /// Whether the step was only tried.
+    /// Whether the step was only a trial.
     pub(crate) tried: bool,
 }
 
-/// Where the names are not known.
+/// Used if the names are not known.
 const NO_NAMES: &[&str] = &[];
 
 impl NewtonError {
@@ -125,7 +125,7 @@ impl NewtonError {
         self.configurations.get(factor).copied()
     }
 
-    /// The same error with the step size that was refused, the largest that could be made, and the
+    /// This error with the failed step size, the largest step size that succeeds, and the
     /// names of the configurations. `step` makes a step of another size from the same state.
     #[cold]
     #[inline(never)]
@@ -144,7 +144,7 @@ impl NewtonError {
         self.explained_by(h, configurations, &|h| step(h, Search::to_try()))
     }
 
-    /// The same, where `step` makes its own search.
+    /// Like `explained`, if `step` makes its own search.
     #[cold]
     #[inline(never)]
     #[must_use]
@@ -254,7 +254,7 @@ impl<T: Real, G, const D: usize, W: Group<T>, const E: usize> Newton<'_, T, G, D
 where
     G: Group<T> + Found<W>,
 {
-    /// Another attempt, or what was wrong with the last.
+    /// Another attempt, or the error of the last one.
     #[cold]
     #[inline(never)]
     pub(super) fn failed(&mut self) -> Progress<G> {

@@ -9,13 +9,13 @@
 use super::principal::FALLS;
 use crate::scalar::larger;
 
-/// In how many pieces the way is looked at.
+/// The number of pieces into which the checks divide the path.
 const PIECES: u8 = 16;
 
 /// The first look: nearly at rest, where the tangent at hand is not known to hold.
 const FIRST: f64 = 1.0 / 128.0;
 
-/// The largest change between two looks, per way, beside what the tangent foresees.
+/// The largest admitted deviation from the prediction of the tangent between two checks, per length.
 const SLOPE: f64 = 0.5;
 
 /// The largest fourth difference of smooth equations.
@@ -29,7 +29,7 @@ const WEIGHTS: f64 = 16.0;
 pub(super) struct Look {
     /// The share of the way.
     pub share: f64,
-    /// How far the look before is.
+    /// The distance to the previous check.
     apart: f64,
     /// Which of the equally distant looks it is, counted from rest.
     number: Option<u8>,
@@ -101,7 +101,7 @@ impl<V> Judged<V> {
 /// The remainders at the looks so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Left<V> {
-    /// The last one and its differences, up to the third.
+    /// The last remainder and its differences, up to the third.
     last: [V; 4],
 }
 

@@ -9,7 +9,7 @@ use crate::linalg::Reals;
 use crate::scalar::{Real, larger};
 use nalgebra::SVector;
 
-/// Where nothing turns, angles of this size count as a course.
+/// If nothing turns, angles of this size set the scale.
 const LITTLE: f64 = 1e-6;
 
 /// Pure numbers count as a course of this size at most: a quarter of a turn, or three times a length.
@@ -19,15 +19,15 @@ const TURN: f64 = 2.0;
 /// so near, all of them beyond 90 degrees.
 const STEP_TURN: f64 = 1.5;
 
-/// In a step judged by one correction, translations of a body count as so many of its units at most: beside a long way
-/// any error would be small.
+/// In a step judged by one correction, translations of a body count as so many of its units at most: compared with a
+/// long displacement, any error would be small.
 const STEP_WAY: f64 = 2.0;
 
 /// A part that moves little is measured by this share of the part that moves most.
 const ASIDE: f64 = 0.05;
 
-/// The same of a part without a scale of its own, in a step judged by one correction: its equations may vary over any
-/// length, also over that by which it moves little.
+/// Like `ASIDE`, for a part without a scale of its own in a step judged by one correction: its equations may vary
+/// over any length, even a short one.
 const OPEN_ASIDE: f64 = 1e-3;
 
 /// By which share of the part that moves most others are measured.
@@ -40,7 +40,7 @@ pub(super) enum Aside {
 }
 
 impl Aside {
-    /// That of a part; `open` where it lacks a scale of its own.
+    /// The value for a part; `open` if the part lacks a scale of its own.
     pub(super) fn of(self, open: bool) -> f64 {
         match self {
             Self::OfStep if open => OPEN_ASIDE,
@@ -59,12 +59,12 @@ pub struct Parts {
     pub of: Vec<usize>,
     /// Whether the coordinates of each part are pure numbers.
     pub pure: Vec<bool>,
-    /// Whether they lack a scale of their own.
+    /// Whether the coordinates of each part lack a scale of their own.
     pub open: Vec<bool>,
 }
 
 impl Parts {
-    /// Those of a group, of `most` coordinates at most.
+    /// The parts of a group, each of at most `most` coordinates.
     pub(super) fn of_group<T, G: Group<T>>(most: usize) -> Self {
         Self {
             of: (0..G::DIMENSION.min(most)).map(G::part_of).collect(),
@@ -73,7 +73,7 @@ impl Parts {
         }
     }
 
-    /// How many coordinates there are.
+    /// The number of coordinates.
     #[must_use]
     pub fn dimension(&self) -> usize {
         self.of.len()
@@ -109,7 +109,7 @@ impl Parts {
         units
     }
 
-    /// The same without lists of its own.
+    /// Borrows these kinds, without lists of its own.
     pub(super) fn kinds(&self) -> Kinds<'_> {
         Kinds {
             size: self.dimension(),
@@ -309,7 +309,7 @@ fn most_of_step(part: usize, units: &[f64], pure: impl Fn(usize) -> bool) -> f64
 fn is_near([way, off]: [f64; 2], most: f64, turns: bool) -> bool {
     let most = most * most;
     let counted = if way > most { most } else { way };
-    // NaN is not near.
+    // The comparison is false for NaN.
     off <= FALLS * FALLS * counted && !(turns && way > most)
 }
 
@@ -401,7 +401,7 @@ fn are_near<T: Real, G: Group<T>, const D: usize>(
     near || near_beside::<T, G, D>(squares, units, noise)
 }
 
-/// The same if a part moves little compared with others, or by rounding alone.
+/// Like `are_near`, if a part moves little compared with other parts, or only by rounding.
 #[cold]
 #[inline(never)]
 fn near_beside<T: Real, G: Group<T>, const D: usize>(

@@ -21,7 +21,7 @@ use nalgebra::{SMatrix, SVector};
 /// The largest ratio of the second correction by one tangent to the first.
 pub(crate) const FALLS: f64 = 0.25;
 
-/// Most stages on the way.
+/// The largest number of stages.
 const MOST_STAGES: usize = 1000;
 
 /// Bounds of the length of a stage, in lengths of the one before.
@@ -38,8 +38,9 @@ const LOOKED_AT: f64 = 1e-6;
 /// The shortest stage tried, as a part of the way: a root so close to a fold is not taken. Rounding decides there.
 const SHORTEST: f64 = 1e-9;
 
-/// The same at this share of the way. Near rest a short stage says nothing of a fold: where the tangent is nearly
-/// singular there and grows, velocities first move as a root of the share. Rounding of momenta is what remains.
+/// The shortest stage at this share of the path. Near rest, a short stage does not indicate a fold: where the
+/// tangent is nearly singular there and grows, velocities first move as a root of the share. Rounding of
+/// momenta is what remains.
 fn shortest(share: f64) -> f64 {
     (1e-3 * share).clamp(1e-13, SHORTEST)
 }
@@ -64,7 +65,7 @@ pub(super) enum Traced<G> {
 /// The curve could not be followed to its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fold {
-    /// How far it was followed: the part of the way from rest to the momenta.
+    /// The share of the path from rest to the momenta that was followed.
     pub share: f64,
     /// The coordinate of the velocity that moved fastest there.
     pub fastest: usize,
@@ -102,7 +103,7 @@ pub(super) trait Curve {
     /// The velocity of rest.
     fn rest(&self) -> Self::Velocity;
 
-    /// A velocity moved by coordinates.
+    /// The velocity `from`, displaced by `coordinates`.
     fn moved(&self, from: &Self::Velocity, coordinates: &[f64]) -> Self::Velocity;
 
     /// The lengths of the coordinates of `to` seen from `from`.
@@ -187,7 +188,7 @@ pub struct Equations<'a, G, const D: usize> {
     pub tangent: &'a dyn Fn(&G) -> SMatrix<f64, D, D>,
 }
 
-/// The same with the coordinates of the group.
+/// Equations with the coordinates of the group.
 pub(super) struct OnGroup<'a, G, const D: usize> {
     equations: &'a Equations<'a, G, D>,
     parts: Parts,

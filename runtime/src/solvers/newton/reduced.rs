@@ -107,7 +107,7 @@ where
         self.completed(whole, Newton::correct)
     }
 
-    /// The same of [`correct_from_left`](Newton::correct_from_left).
+    /// Like `correct_part`, for [`correct_from_left`](Newton::correct_from_left).
     #[inline(always)]
     pub fn correct_part_from_left(&mut self, whole: W) -> Progress<W> {
         self.completed(whole, Newton::correct_from_left)

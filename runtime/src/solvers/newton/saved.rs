@@ -18,7 +18,7 @@ impl<G: Group<f64> + Saved, const D: usize, W, const E: usize> Saved for Search<
             noise,
             open,
             measured,
-            // Steps are made to go on from there.
+            // Later steps continue from there.
             tries: _,
             whole,
             factors,

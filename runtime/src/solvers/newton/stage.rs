@@ -166,14 +166,14 @@ pub(super) fn ended<C: Curve>(
             before = size;
             break;
         }
-        // NaN does not fall.
+        // NaN does not count as a decrease.
         let falls = size <= 0.5 * before;
         if !falls {
             return Err(WORSE);
         }
         before = size;
     }
-    // NaN is not near.
+    // The comparison is false for NaN.
     let solved = before <= enough;
     if !solved {
         return Err(WORSE);
@@ -231,7 +231,7 @@ fn on_the_way<C: Curve>(
         let unit = stage.units.get(b).copied().unwrap_or(0.0);
         larger(curve.noise(b), shared * unit)
     };
-    // Rounding does not count.
+    // Changes at rounding level do not count.
     let judge = |x: &Judged<Reals>| {
         let lengths = curve.parts().lengths(&times(&x.difference, x.factor));
         let known = lengths.iter().enumerate().map(|(b, length)| {
@@ -271,7 +271,7 @@ fn on_the_way<C: Curve>(
     [left, steepest]
 }
 
-/// The same between two looks, where the equations are rough.
+/// Like `on_the_way`, between two looks, if the equations are rough.
 fn left_between(
     off: &dyn Fn(f64) -> Reals,
     judges: &Judges<'_>,

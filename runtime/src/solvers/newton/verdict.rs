@@ -57,7 +57,7 @@ where
         !search.open || varies_little(&correction, solution, left, units, noise)
     }
 
-    /// The verdict on a solution, or on none, before any lane is judged.
+    /// An empty verdict on a solution, or on a missing one, before any lane is judged.
     #[cold]
     pub fn verdict(&mut self, solution: Option<&W>) -> Verdict<W, E> {
         // A tangent of some steps ago may be why the test failed.
@@ -69,7 +69,7 @@ where
         Verdict::about(solution.copied().unwrap_or_else(W::identity), noise)
     }
 
-    /// Begins again at the principal root. False where that has been done: it cannot be polished.
+    /// Starts again from the principal root. Returns false if this was already done, because the root cannot be polished.
     #[cold]
     pub fn restart(&mut self, anchor: Anchor<W, E>) -> bool {
         if self.anchor.is_some() {

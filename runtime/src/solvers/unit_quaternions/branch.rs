@@ -19,7 +19,7 @@ const MOST_TRIALS: usize = 2000;
 /// The branch is followed to within this part of `u`.
 const RESOLUTION: f64 = 1e-14;
 
-/// Parts of `u` by which the branch is followed, at most: others may pass close by.
+/// The largest share of `u` in one advance along the branch, because other branches may be close.
 const LONGEST: f64 = 0.05;
 
 fn quaternions<T: Real>(mask: T, then: [T; 4], otherwise: [T; 4]) -> [T; 4] {
@@ -46,7 +46,7 @@ pub(super) fn turn<T: Real>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<Turn<
     }
     let easy = one - (a - body.easy).where_positive(one);
     let long = (a - body.moderate).where_positive(one);
-    // Made anew: for the short steps it would have to be put in memory.
+    // Computed again, because storing it would slow down short steps.
     let equation = Equation::new::<false>(body, u);
     let start = equation.start();
     let mut s = equation.improved(start);

@@ -32,8 +32,8 @@ impl<T: Real> QuaternionBody<T> {
 }
 
 impl<T: Real> Edge<T> {
-    /// The attitude where the edge ends, given that where it begins, in unit quaternions: the
-    /// principal solution, body side.
+    /// The attitude at the end of the edge, given the attitude at its start, in unit quaternions:
+    /// the principal solution, body side.
     ///
     /// # Errors
     /// [`QuaternionError`] when there is none, in any lane, or the momentum is not finite.
@@ -58,7 +58,7 @@ impl<T: Real> Edge<T> {
     /// A step on which nothing else acts: the attitude where the edge ends, and the edge that begins there.
     ///
     /// In the body the momentum changes by `-(4/h) v x A v`. This is added to what the attitude where the edge begins
-    /// makes of the momentum in space: no rounding gathers, and the next step waits for `v` only.
+    /// makes of the momentum in space: rounding does not accumulate, and the next step waits only for `v`.
     ///
     /// # Errors
     /// As [`Edge::turn_in_quaternions`].

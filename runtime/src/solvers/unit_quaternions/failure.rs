@@ -21,11 +21,11 @@ pub struct QuaternionError {
     pub largest_step: Option<f64>,
     /// Index (0, 1, 2) of the momentum component of largest `|h N_i| / I_ii`.
     pub component: usize,
-    /// The lane all this is about. 0 for types without lanes.
+    /// The lane of these numbers. 0 for types without lanes.
     pub lane: u32,
 }
 
-/// The step offered is this little inside the bound, where the root is double.
+/// The suggested step size is inside the bound by this relative margin, where the root is double.
 const INSIDE: f64 = 1.0 - 1e-10;
 
 impl QuaternionError {
@@ -55,8 +55,8 @@ impl QuaternionError {
         worst
     }
 
-    /// The same error with the step that failed, and the largest step for which all equations solved
-    /// together succeed: `ratio` of a trial step is then at most 1.
+    /// This error with the failed step size, and the largest step size for which all equations, solved
+    /// together, succeed: `ratio` of a trial step is then at most 1.
     #[cold]
     #[must_use]
     pub fn with_searched_steps(self, h: f64, ratio: impl Fn(f64) -> Option<f64>) -> Self {
@@ -67,7 +67,7 @@ impl QuaternionError {
         }
     }
 
-    /// The same error with the step that failed and the largest that succeeds, the smallest over the
+    /// This error with the failed step size and the largest step size that succeeds, the smallest over the
     /// lanes; `edge_momentum` is `N` for a trial step.
     #[cold]
     #[must_use]

@@ -17,8 +17,9 @@ pub(super) const EASY: f64 = 0.02;
 /// Below this, one step of Newton's method suffices, if the step is small.
 pub(super) const QUICK: f64 = 0.002;
 
-/// So small, in parts of the smallest moment: what it leaves is of its square, and of it times the
-/// error of its slope, 9 y^3.
+/// The largest step of the iteration, relative to the smallest moment, after which the result is
+/// exact: the error is of the order of its square, and of its product with the error of its slope,
+/// 9 y^3.
 pub(super) const EXACT: f64 = 1e-9;
 
 /// Two leave less than 1e-30 of `I` below this, and the principal branch is far from its end.

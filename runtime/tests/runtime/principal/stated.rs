@@ -98,7 +98,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// In unit quaternions, with a momentum that is no quadratic form's.
+    /// In unit quaternions, with a momentum that does not come from a quadratic form.
     pub model StiffQuaternion {
         param S: Sym<3>;
         param c: Real;

@@ -162,7 +162,7 @@ impl Elaborator<'_> {
             d = Diagnostic::following(place, format!("the declaration of `{n}` has an error"));
         } else if let Some(other) = alike {
             d = d.help(format!(
-                "`{other}` is declared; it looks the same, but consists of other characters: copy it from there"
+                "`{other}` is declared; it looks the same, but has different characters: copy the name from its declaration"
             ));
         } else if n == "T" {
             d = d.help("`T` means the transpose, as in `A^T`; give a kinetic energy another name, for example `K`");

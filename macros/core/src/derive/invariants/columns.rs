@@ -28,7 +28,7 @@ struct Key {
     way: Way,
 }
 
-/// The motions of a model by their sorts, as they are combined.
+/// The motions of a model, grouped by sort.
 pub(super) struct Columns<'s>(Vec<OfSort<'s>>);
 
 /// The columns of one sort.

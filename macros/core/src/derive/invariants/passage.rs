@@ -19,7 +19,7 @@ const STEPS_ASSUMED: usize = 8;
 pub(crate) struct RandomStep<'a> {
     /// Letters at the node where the step starts, including the node momentum.
     pub(crate) before: Point<'a>,
-    /// The same letters at the node where it ends.
+    /// The letters at the node where the step ends.
     pub(crate) after: Point<'a>,
 }
 

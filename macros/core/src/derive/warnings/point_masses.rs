@@ -121,7 +121,7 @@ fn other_methods_are_not_said_to_refuse_all() {
     let text = text(&d);
     for words in [
         "Newton's method on the group",
-        "But the kinetic energy has rank 4 of 6 in the velocities whatever the parameters",
+        "But the kinetic energy has rank 4 of 6 in the velocities for all parameters",
         "is not known to be bounded",
     ] {
         assert!(text.contains(words), "{words}\n{text}");

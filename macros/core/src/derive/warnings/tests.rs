@@ -111,7 +111,7 @@ fn the_sign_of_the_kinetic_energy_is_said() {
     assert_eq!(body("tr(J*Ω)/h"), [SignOfKineticEnergy]);
     assert_eq!(top("tr(J*Ω)/h + h*dot(gU, Γ)"), [SignOfKineticEnergy]);
     assert!(words(&format!("{BODY} lagrangian = tr(J*Ω)/h;")).contains("negative"));
-    // The same action stated with a scale.
+    // State the action with a scale.
     assert_eq!(
         topics(&format!("{BODY} scale -h; lagrangian = tr(J*Ω);")),
         []

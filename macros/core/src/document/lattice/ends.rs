@@ -54,7 +54,7 @@ fn end(
         say(
             section,
             format!(
-                "Here {} {is} given: {values} from the case.",
+                "Here {} {is} prescribed: {values} from the case.",
                 names.join(", ")
             ),
         );

@@ -147,9 +147,9 @@ pub(super) fn functionals(folded: &mut IndexedNotation, part: &Part, doc: &mut D
         told.push(vec![
                 value.into(),
                 format!(" is the value at {index} of {what}({}), ", arguments.join(", ")).into(),
-                "which is made of all sites; at each of them ".into(),
+                "which depends on all sites; at each site of the argument, ".into(),
                 back.into(),
-                " is the derivative of the sum of s times its values, s being held, by what it is made of there".into(),
+                " is the derivative of the sum of s times the values with respect to the argument there, with s held fixed".into(),
         ]);
     }
     let section = doc.section("Functionals");
@@ -157,7 +157,7 @@ pub(super) fn functionals(folded: &mut IndexedNotation, part: &Part, doc: &mut D
     let boxed = |q: &crate::lattice::Quantity| matches!(q.domain, Some(Extent::Box(_)));
     if let Some(q) = folded.lattice.quantities.iter().find(|q| boxed(q)) {
         section.text(&format!(
-            "Where the domain ends in a wall, a place {} that a step brings beyond it is put back by its mirror image, and the component of the kinetic momentum across the wall is turned. No momentum is listed as conserved. Where the potential has a slope at a wall the step is of first order there, and the energy wanders.",
+            "A wall reflects particles: if a step takes a position {} beyond a wall, its mirror image replaces it, and the normal component of the kinetic momentum changes sign. No momentum is listed as conserved. If the potential has a nonzero slope at a wall, the step is of first order there, and the energy may drift.",
             q.name.text
         ));
     }

@@ -20,8 +20,11 @@ pub(super) fn holds(folded: &mut IndexedNotation, part: &Part, section: &mut Sec
         };
         let from = From::Site(stated.site);
         let multiplier = folded.letter(part, hold.multiplier, Shift::HERE, from);
-        let mut line: Vec<Inline> =
-            vec!["The multiplier ".into(), multiplier.into(), " holds".into()];
+        let mut line: Vec<Inline> = vec![
+            "The multiplier ".into(),
+            multiplier.into(),
+            " enforces".into(),
+        ];
         if let Some(l) = folded.lattice.line_label() {
             let (first, last) = (stated.first, stated.last);
             let (i, n) = (&l.index.text, &l.count.text);
@@ -46,7 +49,7 @@ pub(super) fn holds(folded: &mut IndexedNotation, part: &Part, section: &mut Sec
         section.paragraph(vec![
             "The multiplier ".into(),
             multiplier.into(),
-            ", one for all sites, holds:".into(),
+            ", one for all sites, enforces:".into(),
         ]);
         let mut side = |e: &Expr| match sums::told(folded, part, e) {
             Some(sum) => sum,
@@ -64,11 +67,11 @@ pub(super) fn held(folded: &mut IndexedNotation, part: &Part, doc: &mut Document
     if d.spec.holds.is_empty() {
         return;
     }
-    let section = doc.section("Held constraints");
-    section.text("The multipliers are found with the step, so that the constraints hold at its end (SHAKE); of several solutions the one is taken that follows from rest with zero multipliers.");
+    let section = doc.section("Constraints on configurations");
+    section.text("The step solves for the multipliers together with the velocities, so that the constraints are satisfied at its end (SHAKE). It takes the principal root, which continues from rest with zero multipliers.");
     let Ok(limit) = &d.limit else {
         section.text(
-            "The momentum is not projected on arrival: the velocity is not known from it in closed form.",
+            "The step does not project the momentum at its end, because the momentum does not give the velocity in closed form.",
         );
         return;
     };

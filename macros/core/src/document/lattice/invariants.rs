@@ -58,13 +58,15 @@ pub(super) fn invariants(
         }
         let words = heading(folded.lattice, part);
         if items.is_empty() {
-            section.text(&format!("{words}: none was found among the candidates."));
+            section.text(&format!(
+                "{words}: clebsch found none among the candidates."
+            ));
         } else {
             section.text(&format!("{words}:"));
             section.list(items);
         }
         if others {
-            section.text("What else is conserved on the short lattice that was written out is no sum that is known for every number of sites, and is left out.");
+            section.text("Other invariants of the expanded short chain are omitted: they are not sums that clebsch knows for every number of sites.");
         }
         let energy = part.d.discrete_energy();
         section.text(&format!(
@@ -74,7 +76,7 @@ pub(super) fn invariants(
     }
     let lines = folded.lattice.line.is_some();
     if lines {
-        section.text("Fluxes between neighbouring sites, whose differences are the changes of densities, are not sought.");
+        section.text("clebsch does not look for the fluxes between neighbouring sites, whose differences are the changes of densities.");
     }
     let reversible = parts.iter().all(|p| p.d.reversible);
     section.text(match reversible {

@@ -18,7 +18,7 @@ pub fn twist_rows(rows: Dim) -> Option<[(u8, Dim); 2]> {
     }
 }
 
-/// What kind of longer vector an inclusion maps into.
+/// The kind of longer vector into which an inclusion maps.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Inclusion {
     /// A vector of the Lie algebra, as its angular or linear part.

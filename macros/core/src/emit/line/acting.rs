@@ -215,7 +215,7 @@ fn one(l: &Lines, m: Moving) -> TokenStream {
     let (doc, output, value) = match (halves, results.as_slice()) {
         (true, [whole]) => (
             format!(
-                " What acts on `{name}` at a node{frame}: half of it before the node, half after."
+                " The impulse on `{name}` at a node{frame}: half of it acts before the node, half after."
             ),
             quote!(#t),
             shared(whole, &wanted[0], Rational::integer(1)),
@@ -226,7 +226,7 @@ fn one(l: &Lines, m: Moving) -> TokenStream {
                 shared(leave, &wanted[1], after),
             );
             (
-                format!(" What acts on `{name}` before a node and after it{frame}."),
+                format!(" The impulses on `{name}` before and after a node{frame}."),
                 quote!([#t; 2]),
                 quote!([#a, #b]),
             )
@@ -295,7 +295,7 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
         false => "",
     };
     let doc = format!(
-        " What the edge adds to the momentum of `{}`{frame}.",
+        " The increment of the momentum of `{}` on the edge{frame}.",
         m.mover.name
     );
     quote! {
@@ -336,7 +336,7 @@ fn arrived(l: &Lines, m: &Moving) -> TokenStream {
     };
     let turn = m.is_rotation().then(|| quote!(turn: SMatrix<T, 3, 3>,));
     let doc = format!(
-        " The momentum of `{}` at the node and that of the edge that leaves, from that of the edge that came.",
+        " The momentum of `{}` at the node and on the outgoing edge, from the momentum on the incoming edge.",
         m.mover.name
     );
     quote! {
@@ -419,7 +419,7 @@ fn arrival(l: &Lines, m: Moving) -> Option<TokenStream> {
     let arrived = arrived_call(&m, &call(l, &m, &quote!(at)));
     let part = m.part(&quote!(edges.#name));
     let doc = format!(
-        " The momenta of `{}` at the node, and those of the edges that leave, from those of the edges that came. Says at \
+        " The momenta of `{}` at the node and on the outgoing edges, from the momenta on the incoming edges. Reports at \
          which site they are not finite.",
         m.mover.name
     );

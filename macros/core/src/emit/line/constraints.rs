@@ -49,8 +49,8 @@ pub(super) fn told(l: &Lines) -> TokenStream {
                 .map(|x| format_ident!("{x}_{}", h.name));
         let (row, r, count) = (number(l.held_row(h)), number(h.components), count(l, h));
         let [left, right] = sides(l, h);
-        let doc = format!(" How far the state is off `{left} = {right}`: the root of the sum of squares over all sites.");
-        let doc_rate = format!(" How fast the state leaves `{left} = {right}`: the root of the sum of squares over all sites.");
+        let doc = format!(" The residual of `{left} = {right}` at this state: the square root of the sum of squares over all sites.");
+        let doc_rate = format!(" The rate of change of the residual of `{left} = {right}`: the square root of the sum of squares over all sites.");
         let sizes = sizes(l, k, h);
         quote! {
             #[doc = #doc]

@@ -62,7 +62,7 @@ pub(super) fn ends(l: &Lines) -> TokenStream {
     let step = super::locals::step(&l.line.representative.d);
     let out = each_end(l, &mut |end| Some(added(l, end))).unwrap_or_default();
     quote! {
-        /// What the end conditions add at these places.
+        /// The contributions of the end conditions at these positions.
         #[inline]
         fn ended(&self, #step: T, at: &#places<T>, pulls: &mut #pulls<T>) {
             let _ = (#step, at, &pulls);

@@ -223,7 +223,7 @@ fn momenta_of_velocities(l: &Lines, m: &Moving) -> Option<TokenStream> {
     let unused = l.moving().filter(|other| other.mover.name != m.mover.name);
     let unused: Vec<_> = unused.map(|other| other.name()).collect();
     let doc = format!(
-        " The momenta of `{text}` at places and velocities: those of the limit of small steps."
+        " The momenta of `{text}` at these positions and velocities, in the limit of small steps."
     );
     Some(quote! {
         #[doc = #doc]

@@ -242,7 +242,7 @@ pub(super) fn held(l: &Lines) -> TokenStream {
     quote! {
         #structs
 
-        /// What is held at all sites, with a place more before the first and two behind the last.
+        /// The constrained quantities at all sites, with one more site before the first and two after the last.
         #[derive(Clone, Debug)]
         struct #reached<T> { #(#lists),* }
 
@@ -320,7 +320,7 @@ fn of_hold(l: &Lines, k: usize, h: &ChainConstraint) -> (TokenStream, TokenStrea
     }
     let kernel = format_ident!("held_{k}");
     let doc = format!(
-        " What `{}` holds, the size of its terms, and what the multiplier gives to each momentum.",
+        " The residual of the constraint of `{}`, the size of its terms, and the contribution of the multiplier to each momentum.",
         h.name
     );
     let structure = quote! {
@@ -390,7 +390,7 @@ fn reacted(l: &Lines, m: &Moving) -> TokenStream {
             });
         }
     }
-    let doc = format!(" What impulses of constraints give to the momentum of `{name}`.");
+    let doc = format!(" The contribution of the constraint impulses to the momentum of `{name}`.");
     quote! {
         #[doc = #doc]
         #[inline(always)]
@@ -429,7 +429,7 @@ fn sweep(l: &Lines) -> TokenStream {
     });
     let each: Vec<TokenStream> = each.collect();
     quote! {
-        /// What is held at these places, and its derivatives.
+        /// The constrained quantities at these positions, and their derivatives.
         #[inline]
         fn reached(&self, at: &#places<T>, reached: &mut #reached<T>) {
             #(#each)*

@@ -87,7 +87,7 @@ pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
         let ((fill, blocks), count_of_blocks) = (derivatives.emitted(), derivatives.count());
         let (kernel, wide) = (format_ident!("inertia_{}", k + 1), number(tie.width + 1));
         kernels.extend(quote! {
-            /// What a term of neighbours adds to them.
+            /// The contribution of a coupling term to them.
             fn #kernel(&self, site: usize, at: &#places<T>) -> ([SVector<T, #size>; #wide], [(usize, usize, SMatrix<T, #size, #size>); #count_of_blocks]) {
                 let _ = (site, at);
                 let mut made = [SVector::<T, #size>::zeros(); #wide];

@@ -391,7 +391,7 @@ pub(super) fn model(l: &Lines) -> TokenStream {
                 Ok(model)
             }
 
-            /// The same model, its loops over sites shared by so many threads. They change no bit of any result.
+            /// This model, with its loops over sites shared by so many threads. Threads do not change any bit of a result.
             #[must_use]
             pub fn with_threads(self, threads: usize) -> Self {
                 Self { threads: line::Threads(threads), ..self }

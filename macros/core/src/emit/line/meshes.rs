@@ -458,7 +458,7 @@ fn written(
                 Ok(())
             }
 
-            /// What functionals add to the momenta of all sites at these places, the whole of it at one node.
+            /// The contributions of functionals to the momenta of all sites at these positions, all of them at one node.
             #[allow(unused_variables)]
             fn meshed(&self, #step: T, at: &#places<T>, meshes: &mut #meshes<T>, pulls: &mut #pulls<T>) -> Result<(), (&'static str, mesh::MeshError)> {
                 let _ = #step;

@@ -103,7 +103,7 @@ fn of_pull(l: &Lines, n: usize, pull: &NeighbourForce) -> [TokenStream; 3] {
     let kernel = format_ident!("pull_{n}");
     let (term, sites) = (term_text(l, pull), pull.forces.len());
     let doc = format!(
-        " What `{term}` adds to the {sites} momenta that it touches, the whole of it at one node."
+        " The contribution of `{term}` to the momenta of its {sites} sites, all of it at one node."
     );
     let together = are_together(&values);
     let over_sites = over_sites(l, n, pull, &read.arguments, together);
@@ -150,7 +150,7 @@ fn stage(l: &Lines, n: usize, arguments: &[Argument]) -> TokenStream {
     let values = arguments.iter().map(Argument::seen);
     quote! {
         ::clebsch::in_lanes! {
-            /// What a term adds, of several sites together.
+            /// The contributions of a term, for several sites together.
             #name(model: #model<T>, h: T, at: #places<T>) -> #made<T>
             #windows
             |site| (model.#kernel(*h, #(#values),*), true)
@@ -310,7 +310,7 @@ fn sweep(l: &Lines, loops: &TokenStream) -> TokenStream {
     let (places, pulls) = (l.item("Places"), l.item("Pulls"));
     let step = super::locals::step(&l.line.representative.d);
     quote! {
-        /// What neighbours and ends add at these places.
+        /// The contributions of neighbours and ends at these positions.
         #[inline]
         fn pulled(&self, #step: T, at: &#places<T>, pulls: &mut #pulls<T>) {
             let _ = (#step, at, &pulls);

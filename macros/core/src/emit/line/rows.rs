@@ -152,7 +152,7 @@ pub(super) fn rows(l: &Lines, bodies: &[Bodies]) -> TokenStream {
         rates.extend(quote!(rate.fixed_view_mut::<#r, 1>(#row, 0).copy_from(&(#(#parts)+*));));
     }
     quote! {
-        /// What is held at a site, and the sizes of its terms.
+        /// The residuals of the constraints at a site, and the sizes of their terms.
         #[inline(always)]
         fn held_at(&self, site: usize, reached: &#reached<T>) -> SMatrix<T, #size, 2> {
             let mut held = SMatrix::<T, #size, 2>::zeros();

@@ -139,7 +139,7 @@ fn field(l: &Lines, m: Moving) -> TokenStream {
     let at_once = is_divided(form).then(|| {
         let (kernel, arguments) = (at_once(&m), arguments.clone());
         quote! {
-            /// The same without a branch, and whether there is one.
+            /// Solves without a branch; also returns whether there is a solution.
             #[inline(always)]
             fn #kernel(&self, #h: T, place: #t, edge: #t, #(#arguments),*) -> (#t, bool) {
                 #known_once

@@ -146,13 +146,13 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
         #[derive(Clone, Debug)]
         struct #edges<T> { #(#names: #edge_lists),* }
 
-        /// What neighbours add at a node.
+        /// The contributions of neighbours at a node.
         #[derive(Clone, Debug)]
         struct #pulls<T> { #(#p,)* #of_functionals #no_pulls }
 
         #multipliers
 
-        /// What moves, at one node in time.
+        /// The state at one node.
         #[derive(Clone, Debug)]
         pub struct #state<T = f64> {
             places: #places<T>,

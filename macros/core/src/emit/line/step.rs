@@ -112,7 +112,7 @@ pub(super) fn step(
     });
     let refused_by = of_meshes.map(|_| {
         quote! {
-            /// Says which functional refuses a step, and which shorter one can be made.
+            /// Reports the functional that fails in a step, and a smaller step size that succeeds.
             #[cold]
             fn refused_by(&self, state: &#state<T>, h: T, quantity: &'static str, cause: mesh::MeshError) -> LineError {
                 LineError::Functional { node: state.node, quantity, cause, works: self.shorter(state, h) }
@@ -282,7 +282,7 @@ pub(super) fn step(
             #defined
             #refused_by
 
-            /// Says at which site a step is refused, and which shorter one can be made.
+            /// Reports the site at which a step fails, and a smaller step size that succeeds.
             #[cold]
             #[inline(never)]
             fn refused(&self, state: &#state<T>, h: T, at: line::Place, cause: StepCause) -> LineError {
@@ -485,7 +485,7 @@ fn defined(l: &Lines, moving: &[Moving]) -> TokenStream {
         }}
     });
     quote! {
-        /// Says at which site what acts at a start is not finite.
+        /// Reports the site at which an initial impulse is not finite.
         #[cold]
         fn defined(&self, state: &#state<T>, h: T, work: &#work<T>) -> Result<(), LineError> {
             #(#tests)*

@@ -357,7 +357,7 @@ fn of_tie(
     }
     let ((made, blocks), count) = (derivatives.emitted(), derivatives.count());
     let kernel = format_ident!("tied_{k}");
-    let doc = " What a term of neighbours adds to the momenta of its sites at the start of an edge, and the \
+    let doc = " The contribution of a coupling term to the momenta of its sites at the start of an edge, and the \
                derivatives by their velocities.";
     let added = adds(l).then(|| added_kernel(l, k, tie, n, members));
     quote! {
@@ -430,7 +430,7 @@ fn added_kernel(
     });
     let kernel = format_ident!("tied_added_{k}");
     quote! {
-        /// What the edge adds to the momenta of the sites of a term of neighbours.
+        /// The contribution of the edge to the momenta of the sites of a coupling term.
         #[inline(always)]
         fn #kernel(&self, #h: T, site: usize, at: &#places<T>, velocities: [SVector<T, #size>; #wide]) -> [SVector<T, #size>; #wide] {
             let _ = (#h, site, at, &velocities);

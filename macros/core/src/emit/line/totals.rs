@@ -38,7 +38,10 @@ pub(super) fn kernels(l: &Lines, bodies: &[Bodies]) -> TokenStream {
             true => quote!(SMatrix::<T, 1, 1>::new(#beside)),
             false => beside,
         };
-        let doc = format!(" What `{}` holds, and the size of its terms.", h.name);
+        let doc = format!(
+            " The residual of the constraint of `{}`, and the size of its terms.",
+            h.name
+        );
         kernels.extend(quote! {
             #[doc = #doc]
             fn #own(&self, reached: &#reached<T>) -> (SMatrix<T, #r, 1>, T) {
@@ -83,7 +86,7 @@ pub(super) fn kernels(l: &Lines, bodies: &[Bodies]) -> TokenStream {
         #kernels
         #(#answering)*
 
-        /// What sums hold, and the sizes of their terms.
+        /// The residuals of the constraints on sums, and the sizes of their terms.
         fn held_sums(&self, reached: &#reached<T>) -> SMatrix<T, #size, 2> {
             let mut held = SMatrix::<T, #size, 2>::zeros();
             #values
@@ -103,7 +106,7 @@ pub(super) fn kernels(l: &Lines, bodies: &[Bodies]) -> TokenStream {
             #(#rates)+*
         }
 
-        /// The size of their terms.
+        /// The size of the terms of these rates.
         fn held_sums_rate_size(&self, reached: &#reached<T>, velocities: &#velocities<T>) -> T {
             #(#sizes)+*
         }
@@ -147,7 +150,7 @@ fn answering(l: &Lines, b: &Bodies) -> TokenStream {
     }
     let kernel = name_of(b);
     quote! {
-        /// What impulses of sums give to momenta at a site, a column each.
+        /// The contributions of the impulses of constraints on sums to the momenta at a site, one column for each.
         #[inline(always)]
         fn #kernel(&self, site: usize, reached: &#reached<T>) -> SMatrix<T, #n, #size> {
             let mut a = SMatrix::<T, #n, #size>::zeros();
@@ -207,8 +210,8 @@ pub(super) fn told(
                 .map(|x| format_ident!("{x}_{}", h.name));
         let (row, r) = (number(l.held_row(h)), number(h.components));
         let equation = super::reactions::equation(l, h);
-        let doc = format!(" How far the state is off `{equation}`.");
-        let doc_rate = format!(" How fast the state leaves `{equation}`.");
+        let doc = format!(" The residual of `{equation}` at this state.");
+        let doc_rate = format!(" The rate of change of the residual of `{equation}`.");
         let reached = quote! {
             let mut reached = #none_reached;
             self.reached(&state.places, &mut reached);

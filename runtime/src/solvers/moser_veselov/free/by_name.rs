@@ -8,8 +8,8 @@ use crate::solvers::moser_veselov::MoserVeselovError;
 use crate::{Real, Rotation, SpatialMomentum};
 
 impl<T: Real> Free<T> {
-    /// The same trajectory, its steps solved by the solver named: at each of them, and the body
-    /// prepared anew, unless it is the one by `kappa`.
+    /// This trajectory, with the solver `method` in every step. Every solver except `kappa` prepares the
+    /// body anew.
     #[must_use]
     pub fn solved_by(self, method: Method) -> Self {
         match method {
@@ -28,7 +28,7 @@ impl<T: Real> Free<T> {
         attitude: &mut Rotation<T>,
         momentum: &SpatialMomentum<T>,
     ) -> Result<(), MoserVeselovError> {
-        // Where the moments are modified, that depends on where the trajectory is.
+        // Modified moments depend on the trajectory.
         let mut here = *self;
         here.restart(attitude, momentum)?;
         let body = match self.order {
@@ -59,7 +59,7 @@ impl<T: Real> Free<T> {
     }
 }
 
-/// An attitude that equals none.
+/// A NaN attitude, which equals no attitude.
 fn nowhere<T: Real>() -> Rotation<T> {
     Rotation::from_unit([T::from_f64(f64::NAN); 4])
 }

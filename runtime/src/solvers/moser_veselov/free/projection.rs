@@ -1,6 +1,6 @@
-//! Rounding taken out of a free motion: the momentum back on its two quadrics, the attitude aligned
-//! with the spatial momentum. Takes the trajectory and its attitude; gives both corrected, and by how
-//! much.
+//! Removes rounding errors from a free motion: projects the momentum on its two quadrics, and aligns
+//! the attitude with the spatial momentum. Takes the trajectory and its attitude; gives both
+//! corrected, and by how much.
 
 use super::{DEGENERATE, Free};
 use crate::solvers::moser_veselov::cayley::{cross, dot};
@@ -8,7 +8,7 @@ use crate::{Real, Rotation};
 use nalgebra::Vector3;
 
 impl<T: Real> Free<T> {
-    /// Takes the rounding errors out of the momentum and the attitude.
+    /// Removes the rounding errors of the momentum and the attitude.
     pub(super) fn project(&mut self, attitude: &mut Rotation<T>) {
         if !self.projects {
             return;
@@ -33,7 +33,7 @@ impl<T: Real> Free<T> {
     }
 
     /// One Newton step for `|u|^2 = square`, `u . v = energy` with `v = adj(I) u`, along the two
-    /// gradients `u` and `v`; along `u` alone where they are parallel.
+    /// gradients `u` and `v`; along `u` alone if they are parallel.
     #[inline(always)]
     pub(super) fn on_quadrics(&self, u: [T; 3]) -> [T; 3] {
         let (one, half) = (T::one(), T::from_f64(0.5));

@@ -1,4 +1,4 @@
-//! A free body on its way, written down and made again.
+//! Saves and restores the trajectory of a free body.
 
 use super::Free;
 use crate::Rotation;

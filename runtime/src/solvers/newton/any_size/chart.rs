@@ -56,7 +56,7 @@ pub struct Lane<'a, C: Chart> {
     pub tangent: &'a dyn Fn(&C::Element) -> Dense<f64>,
 }
 
-/// The same with what rounding makes of lengths.
+/// A lane with the rounding errors of lengths.
 pub(super) struct WithNoise<'a, 'b, C: Chart> {
     lane: &'b Lane<'a, C>,
     noise: &'b [f64],

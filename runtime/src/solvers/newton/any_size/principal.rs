@@ -20,7 +20,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         self.follows(solution, at_rest, residual) || self.holds(solution)
     }
 
-    /// The same of all unknowns: see [`Newton::is_part_of_principal`](super::Newton::is_part_of_principal).
+    /// Like `is_principal`, for all unknowns: see [`Newton::is_part_of_principal`](super::Newton::is_part_of_principal).
     pub fn is_part_of_principal(
         &mut self,
         solution: &C::Element,

@@ -23,7 +23,7 @@ impl<C: Chart> AnySearch<C> {
             noise,
             open,
             measured,
-            // Steps are made to go on from there.
+            // Later steps continue from there.
             tries: _,
             whole,
             factors,

@@ -54,7 +54,7 @@ fn a_root_of_the_step_is_no_missing_kinetic_energy() {
         text.contains("clebsch finds no limit of small steps"),
         "{text}"
     );
-    // What is offered has one.
+    // The suggested form has a kinetic energy.
     assert_eq!(relativistic("-m*c*c*h*sqrt(1 - dot(d, d)/(c*h)^2)"), "");
     // If the root does not contain the step size, the warning about the kinetic energy remains.
     let text = relativistic("-m*c*sqrt(1 + dot(d, d))");

@@ -48,7 +48,7 @@ fn a_lagrangian_of_first_order_is_no_forgotten_factor() {
     };
     let linear = "(a*dot(perp(x), next(x) - x) + b*dot(perp(y), next(y) - y))/2";
     assert_eq!(topics(&vortices(linear)), []);
-    // The same with mean values.
+    // Use mean values instead.
     let mean =
         "(a*dot(perp((x + next(x))/2), next(x) - x) + b*dot(perp((y + next(y))/2), next(y) - y))/2";
     assert_eq!(topics(&vortices(mean)), []);
