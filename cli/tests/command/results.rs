@@ -195,7 +195,7 @@ fn fields_are_plotted_as_fields() {
             "kepler, case circular: fields",
             "X₁",
             "X₃",
-            "place of the planet",
+            "position of the planet",
         ],
     );
 }

@@ -36,7 +36,7 @@ fn families_and_models_are_listed_by_themselves() {
     clebsch("list chain")
         .prints("\ntoda-chain  ")
         .never_prints("heavy-top");
-    clebsch("list toda-chain").prints("\ntwo-solitons  solitons of kappa");
+    clebsch("list toda-chain").prints("\ntwo-solitons  solitons with kappa");
     clebsch("list toda-chian").refuses("did you mean `toda-chain`?");
 }
 
