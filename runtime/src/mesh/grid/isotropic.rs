@@ -1,9 +1,9 @@
 //! Smoothing by the inverse of the Helmholtz operator of the plane, `S = (1 - α²(∂_1² + ∂_2²))⁻¹`, with the discrete
-//! second derivatives of the one-dimensional smoothers S_1, S_2. Since `α²∂_d² = 1 - S_d⁻¹`, the equation is `(S_1⁻¹
-//! + S_2⁻¹ - 1) S H = H`. The split smoother `S_1 S_2` as preconditioner turns it into `(S_1 + S_2 - S_1 S_2) S H =
-//! S_1 S_2 H`. This matrix needs only the one-dimensional smoothers, is positive definite in the weights of nodes,
-//! and its eigenvalues are at most 1. Conjugate gradients solve for plain numbers. Other scalars use Chebyshev's
-//! iteration, whose constant coefficients preserve derivatives.
+//! second derivatives of the one-dimensional smoothers S_1, S_2. Since `α²∂_d² = 1 - S_d⁻¹`, the equation is
+//! `(S_1⁻¹ + S_2⁻¹ - 1) S H = H`. The split smoother `S_1 S_2` as preconditioner turns it into
+//! `(S_1 + S_2 - S_1 S_2) S H = S_1 S_2 H`. This matrix needs only the one-dimensional smoothers, is positive definite in
+//! the weights of nodes, and its eigenvalues are at most 1. Conjugate gradients solve for plain numbers, Chebyshev's
+//! iteration for other scalars: its constant coefficients preserve derivatives.
 
 use super::super::{Functional, MeshError, Setting, Wall};
 use super::axis::Axis;
