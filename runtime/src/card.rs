@@ -526,15 +526,15 @@ impl fmt::Display for OpenError {
                 match (preprocessed, order) {
                     (false, _) => write!(
                         f,
-                        "they compose plain steps, and are symplectic if these are; remove the compensation"
+                        "they compose plain steps and are symplectic if the plain steps are; leave out the compensation"
                     ),
                     (true, 2) => write!(
                         f,
-                        "they are symplectic already; remove the compensation, or choose order 4, 6 or 8"
+                        "they are symplectic already; leave out the compensation, or choose order 4, 6 or 8"
                     ),
                     (true, _) => write!(
                         f,
-                        "the known series ends there; remove the compensation, or choose order 4, 6 or 8"
+                        "the known series ends there; leave out the compensation, or choose order 4, 6 or 8"
                     ),
                 }
             }

@@ -43,7 +43,7 @@ pub(super) fn of_a_case(command: Command) -> Command {
             option(
                 "until",
                 "T",
-                "Final time, instead of a number of steps; the run ends at the nearest node",
+                "Final time, instead of a number of steps; the run ends at the nearest node after the start",
             )
             .conflicts_with("steps")
             .value_parser(positive_number),

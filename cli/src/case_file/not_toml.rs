@@ -2,6 +2,7 @@
 //! Takes the text and the position at which TOML stopped; gives the correct notation.
 
 use crate::words::plain::shown;
+use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::value::translated;
 use std::ops::Range;
 use toml::de::DeValue;
@@ -14,6 +15,14 @@ pub(super) fn instead(text: &str, span: &Range<usize>) -> Option<String> {
     let start = text.get(..span.start)?.rfind('\n').map_or(0, |at| at + 1);
     let line = text.get(start..)?.lines().next()?;
     let (key, whole) = line.split_once('=')?;
+    let name = key.trim();
+    if !name.is_ascii() && !name.starts_with(['"', '\'']) && ascii(name).is_ascii() {
+        return Some(format!(
+            "write the key `{}` as `{}`",
+            shown(name),
+            ascii(name)
+        ));
+    }
     let whole = without_remark(whole);
     if let Some(list) = list(whole) {
         return Some(format!("write {list}"));
@@ -93,6 +102,10 @@ mod tests {
         );
         assert_eq!(told("(3.0, 0.0)", "("), "write [3.0, 0.0]");
         assert_eq!(told("None", "N"), "expected a number, found `None`");
+        assert_eq!(
+            instead("Λ = 1\n", &(0..2)).as_deref(),
+            Some("write the key `Λ` as `Lambda`")
+        );
         for (value, stop) in [("[1, 2,, 3]", ",,"), ("\"pi", "\""), ("", "\n")] {
             assert_eq!(of(value, stop), None, "{value}");
         }

@@ -76,7 +76,11 @@ pub(crate) fn read_of(
     if matches!(&model, Some(Ok(model)) if super::functions::are_given(model)) {
         known.push(functions);
     }
-    file.known_keys(top, &known, "at the top level", &|_| None)?;
+    let step_size = |key: &str| {
+        let is_step = ["dt", "step", "step_size", "timestep", "time_step"].contains(&key);
+        is_step.then(|| "; the step size is `h`".to_owned())
+    };
+    file.known_keys(top, &known, "at the top level", &step_size)?;
     let model = required(
         file,
         top,

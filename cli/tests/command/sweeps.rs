@@ -188,6 +188,9 @@ fn wrong_axes_are_named() {
     folder
         .clebsch("sweep heavy-top --out @out --vary gU.z=1 --vary gU.3=2")
         .refuses("given twice");
+    folder
+        .clebsch("sweep heavy-top --out @out --vary gU.z=0:1:3 --set gU.3=5")
+        .refuses("`--set gU.3=5` sets the same number; remove one of them");
     assert!(folder.names().is_empty());
 }
 

@@ -363,7 +363,7 @@ fn compensation_is_made_where_it_is_known_and_refused_elsewhere() {
     for order in [2, 10] {
         let refused = open(order, true).map(|_| ()).unwrap_err();
         assert!(matches!(refused, OpenError::Compensation { .. }), "{order}");
-        assert!(refused.to_string().contains("remove the compensation"));
+        assert!(refused.to_string().contains("leave out the compensation"));
     }
     // A composition is symplectic without compensation, so it rejects the option.
     let top = [matrix(poinsot()), vec![0.1, -0.2, 0.6], vec![0.0, 0.0, 1.0]];

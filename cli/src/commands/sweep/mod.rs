@@ -79,6 +79,23 @@ pub(crate) fn sweep(
             },
         ));
     }
+    for set in matches.get_many::<String>("set").into_iter().flatten() {
+        // A list or a table is not an axis: an axis may vary one of its components.
+        let text = resolved.case.text().map(|case| case.text.as_str());
+        let Ok(fixed) = Axis::read(set, card, &plan.motion, text) else {
+            continue;
+        };
+        if let Some(axis) = axes
+            .iter()
+            .find(|axis| axis.quantity.meets(&fixed.quantity))
+        {
+            return Err(Failure::Usage(format!(
+                "--vary {}: `--set {}` sets the same number; remove one of them",
+                shown(&axis.quantity.name),
+                shown(set)
+            )));
+        }
+    }
     let all = vary::points(&axes)?;
     let shard = matches.get_one::<Shard>("shard").copied();
     let (first, end) = shard.map_or((0, all), |shard| shard.points(all));

@@ -72,7 +72,7 @@ pub(super) fn model_name(name: &Name, errors: &mut Errors) {
         let d = Diagnostic::new(
             name.place,
             format!(
-                "`{}` names a type, so it must start with a capital letter",
+                "`{}` is the name of a model: it must start with a capital letter",
                 name.text
             ),
         );

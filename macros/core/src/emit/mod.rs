@@ -104,7 +104,7 @@ fn refused(d: &Derivation, most: &Most) -> Option<Diagnostic> {
             return Some(
                 Diagnostic::new(
                     c.group_place,
-                    "this version compiles steppers up to SO<8> and GL<5>",
+                    "this version has steppers up to SO<8> and GL<5>",
                 )
                 .help("use a smaller size; `clebsch derive` prints the equations for any size"),
             );
