@@ -8,10 +8,10 @@ use super::Blocks;
 use crate::Real;
 use crate::line::pivots;
 
-/// Column after column.
+/// A block in column-major order.
 pub(in crate::line) type Block<T, const N: usize> = [[T; N]; N];
 
-/// The closed form multiplies rounding by the product of the lengths of the columns over the volume that they span. The
+/// The closed form amplifies rounding by the product of the column lengths over the volume that the columns span. The
 /// square of the inverse ratio must be at least this.
 const VOLUME: f64 = 1.0 / 64.0;
 
