@@ -1,5 +1,5 @@
-//! Rotations as unknowns of Newton's method: the vector `v` of the Cayley transform `Ω = (Id - hat(v)/2)^-1 (Id +
-//! hat(v)/2)`. It represents every rotation except half turns.
+//! Rotations as unknowns of Newton's method: the vector `v` of the Cayley transform
+//! `Ω = (Id - hat(v)/2)^-1 (Id + hat(v)/2)`. It represents every rotation except half turns.
 
 use crate::Real;
 use nalgebra::{Matrix3, Vector3};

@@ -59,8 +59,8 @@ const LATE: usize = 8;
 /// the new trial is cheaper.
 const WORTH_KEEPING: f64 = 0.02;
 
-/// The largest age, in steps, of a tangent that still reduces a residual at rounding level. By then it has rotated with
-/// the motion by a few step angles.
+/// A tangent younger than this many steps still reduces a residual at rounding level. By then it has rotated with the
+/// motion by a few step angles.
 const OLDEST_TANGENT: u32 = 8;
 
 /// The next residual may exceed its prediction, from the rate of the last correction, by at most this factor.

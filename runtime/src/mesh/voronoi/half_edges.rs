@@ -9,8 +9,8 @@ pub(super) struct HalfEdges {
     pub origin: Vec<u32>,
     /// The opposite half-edge, in the triangle on the right.
     pub twin: Vec<u32>,
-    /// The whole periods along each direction that belong to the vector of the edge: `place[target] - place[origin] +
-    /// offset * period`.
+    /// The whole periods along each direction that belong to the vector of the edge:
+    /// `place[target] - place[origin] + offset * period`.
     pub offset: Vec<[i16; 2]>,
 }
 

@@ -9,8 +9,8 @@ use crate::mesh::{Functional, MeshError, Setting, Wall};
 use crate::{ParameterError, Problem, Real};
 use nalgebra::SVector;
 
-/// Half the energy of all pairs that contain a particle. A pair at the distance `R < rc` has the energy `kappa <m> (1 -
-/// R/rc)^3`, where `<m>` is the mean of the masses and `kappa` is a squared velocity.
+/// Half the energy of all pairs that contain a particle. A pair at the distance `R < rc` has the energy
+/// `kappa <m> (1 - R/rc)^3`, where `<m>` is the mean of the masses and `kappa` is a squared velocity.
 ///
 /// The energy is twice continuously differentiable, and zero if all particles are at least `rc` apart. For a layer
 /// with the depth `h0` and the wave speed `c0^2 = g h0`, use `kappa = c0^2 / 10` and `rc` of 0.7 times the distance of

@@ -1,6 +1,7 @@
-//! `A + alpha^2 G`, where the Laplace operator `G` couples all pairs within a radius, `(G f)_a = sum_b A_a A_b W(R)
-//! (f_a - f_b)`. `W` is Wendland's kernel of second order, scaled so that `G` approximates the Laplace operator for
-//! smooth functions on even meshes. Derivatives are continuous when neighbours change.
+//! `A + alpha^2 G`, where the Laplace operator `G` couples all pairs within a radius,
+//! `(G f)_a = sum_b A_a A_b W(R) (f_a - f_b)`. `W` is Wendland's kernel of second order, scaled so that `G`
+//! approximates the Laplace operator for smooth functions on even meshes. Derivatives are continuous when neighbours
+//! change.
 
 use super::bins::Bins;
 use super::mesh::{Plane, Voronoi};

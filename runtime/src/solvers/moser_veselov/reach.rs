@@ -1,5 +1,5 @@
-//! Where the Moser-Veselov equation stops having a principal solution.
-//! Takes the body and `h N`; gives the bound ratio.
+//! The bound beyond which the Moser-Veselov equation has no principal solution. Takes the body and `h N`; gives the
+//! ratio to the bound.
 
 use super::Poinsot;
 use crate::linalg::symmetric_eigenvalues;

@@ -1,9 +1,9 @@
 //! Follows the principal root of the equations of a step from rest.
 //!
-//! With fixed node momenta `m` and fixed data at the node, the equations are `P(v) = m`. The curve `P(v) = (1 - τ) P(0)
-//! + τ m` starts at rest for `τ = 0` and ends at the principal root for `τ = 1`. At a fold the tangent becomes singular
-//! and the curve turns back. The equations may have further roots beyond the fold, but no motion with small steps leads
-//! to them.
+//! With fixed node momenta `m` and fixed data at the node, the equations are `P(v) = m`. The curve
+//! `P(v) = (1 - τ) P(0) + τ m` starts at rest for `τ = 0` and ends at the principal root for `τ = 1`. At a fold the
+//! tangent becomes singular and the curve turns back. The equations may have further roots beyond the fold, but no
+//! motion with small steps leads to them.
 //!
 //! The curve is followed in stages. A stage is accepted if its first two corrections with the same tangent decrease by
 //! a factor of four. This bounds the change of the tangent along the stage (Deuflhard, Newton Methods for Nonlinear
