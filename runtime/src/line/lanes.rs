@@ -370,7 +370,7 @@ mod tests {
         }
     }
 
-    /// Tests groups in which no body, one or several bodies need more than one iteration or have no solution.
+    /// Tests groups with zero, one or several bodies that need more than one iteration or are unsolvable.
     #[test]
     fn bodies_turn_together_as_each_does() {
         let full = Matrix3::new(0.5, 0.1, 0.0, 0.1, 0.7, 0.05, 0.0, 0.05, 1.5);

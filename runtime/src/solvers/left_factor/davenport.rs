@@ -125,7 +125,7 @@ fn eigenvector<T: Real>(c: &Matrix3<T>, v: &Vector3<T>) -> Option<Rotation<T>> {
         let slope = (T::from_f64(4.0) * kk + c2 + c2) * k + c1;
         let falls = slope.least();
         if falls <= 0.0 || falls.is_nan() {
-            // The derivative vanishes before the polynomial, so there is no real eigenvalue, or a double one.
+            // The derivative vanishes before the polynomial, so a real eigenvalue is missing or double.
             break;
         }
         let step = value / slope;

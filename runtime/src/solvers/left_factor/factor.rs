@@ -210,6 +210,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
     /// `h_n` is the step times the edge momentum, a skew matrix: `Omega C^T - C Omega^T = h_n`.
     /// Equal arguments give equal results. Nothing is allocated.
     ///
+    /// # Errors
     /// [`Unsolved`] if the momentum exceeds the exact bound of the principal solution, with the ratio of both; if the
     /// solver does not support the factor; or if it does not converge.
     #[inline]

@@ -1,4 +1,4 @@
-//! The bound beyond which the equation of a left factor has no principal solution. Takes the factor and `h N`; gives
+//! The existence bound of the principal solution for a left factor. Takes the factor and `h N`; gives
 //! the ratio to the exact bound, and the plane that rotates fastest.
 
 use super::factor::LeftFactor;

@@ -576,7 +576,7 @@ impl<T: Real> Free<T> {
     }
 }
 
-/// Whether the scalar type has no derivatives.
+/// Whether the scalar type is without derivatives.
 #[inline(always)]
 fn plain<T: Real>() -> bool {
     T::ORDER == 0

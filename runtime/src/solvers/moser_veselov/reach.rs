@@ -1,4 +1,4 @@
-//! The bound beyond which the Moser-Veselov equation has no principal solution. Takes the body and `h N`; gives the
+//! The existence bound of the principal solution of the Moser-Veselov equation. Takes the body and `h N`; gives the
 //! ratio to the bound.
 
 use super::Poinsot;

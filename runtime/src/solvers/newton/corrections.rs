@@ -199,7 +199,7 @@ mod tests {
         // An equation without terms at rest has a large residual relative to its scale; the other corrections decrease
         // quadratically.
         assert_eq!(next([2.9e-2, 8.4e-7]), Next::Correct);
-        // At zero velocity, there is no length to compare the first correction with.
+        // At zero velocity, the first correction cannot be compared with a length.
         assert_eq!(next([4.7e307, 1.1e-6]), Next::Correct);
         // Corrections that decrease as much as the residual are not rounding.
         assert_eq!(next([2.9e-2, 1e-14]), Next::CorrectAndEnd);

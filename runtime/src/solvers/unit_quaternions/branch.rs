@@ -35,7 +35,7 @@ fn turns<T: Real>(mask: T, then: Turn<T>, otherwise: Turn<T>) -> Turn<T> {
     }
 }
 
-/// The rotation, if one Newton step does not suffice; `None` if some lane has no solution. Each lane's result is
+/// The rotation, if one Newton step does not suffice; `None` if some lane is unsolvable. Each lane's result is
 /// independent of the other lanes.
 #[inline(never)]
 pub(super) fn turn<T: Real>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<Turn<T>> {

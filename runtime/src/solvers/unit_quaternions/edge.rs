@@ -19,7 +19,7 @@ impl<T: Real> QuaternionBody<T> {
     /// the body frame.
     ///
     /// # Errors
-    /// [`QuaternionError`] if some lane has no solution or the momentum is not finite.
+    /// [`QuaternionError`] if the equation is unsolvable in some lane or the momentum is not finite.
     #[inline(always)]
     pub fn velocity(&self, h_n: &Vector3<T>) -> Result<UnitQuaternion<T>, QuaternionError> {
         let [[x, y, z]] = h_n.data.0;
@@ -36,7 +36,7 @@ impl<T: Real> Edge<T> {
     /// side.
     ///
     /// # Errors
-    /// [`QuaternionError`] if some lane has no solution or the momentum is not finite.
+    /// [`QuaternionError`] if the equation is unsolvable in some lane or the momentum is not finite.
     #[inline(always)]
     pub fn turn_in_quaternions(
         &self,

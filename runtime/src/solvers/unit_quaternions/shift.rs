@@ -1,5 +1,5 @@
 //! The scalar unknown `s` of the equation in unit quaternions, and the resulting velocity. Takes the body and
-//! `u = h N / 2`; gives the quaternion, or `None` if there is no solution.
+//! `u = h N / 2`; gives the quaternion, or `None` if the equation is unsolvable.
 //!
 //! Divided by `det I`, the equation is `Q(s) = β (|(det, n)| - det)` with the quartic `Q = u . n - s det` of the
 //! Moser-Veselov equation. `det` and `|n|^2` are polynomials of third and fourth degree in `s`.
