@@ -228,7 +228,7 @@ impl<T: Real> AnyBand<T> {
     }
 
     /// Solves for the velocities of sites with `n` components from the target momenta. Sites outside `moving` have zero
-    /// velocity. `all` sets the momenta of sites and adds those of coupling terms, with their derivatives. The
+    /// velocity. `all` sets the momenta of sites and adds the momenta of coupling terms, with their derivatives. The
     /// derivative for a rotation `Ω` is taken along `Ω hat(η)`.
     ///
     /// # Errors

@@ -42,7 +42,7 @@ pub struct QuaternionBody<T = f64> {
     pub(super) exact: T,
     /// The largest `|u|^2` for which one iteration from the series is exact to rounding.
     pub(super) easy: T,
-    /// The largest `|u|^2` for which a few iterations are.
+    /// The largest `|u|^2` for which a few iterations are exact to rounding.
     pub(super) moderate: T,
     /// Whether the off-diagonal entries are exactly zero.
     pub(super) diagonal: bool,
