@@ -1,13 +1,13 @@
-//! The attitude of one site: a rotation, or a unit quaternion over it. Stored as four numbers, from which each reader computes
-//! the matrix: long lists of matrices would not fit into the caches.
+//! The attitude of one site: a rotation, or a unit quaternion that covers it. It is stored as four numbers, and the
+//! matrix is computed when needed, because long lists of matrices exceed the caches.
 
 use crate::saved::{Saved, Words};
 use crate::solvers::moser_veselov::Poinsot;
 use crate::{Real, Rotation, TurnedRotation, UnitQuaternion, linalg};
 use nalgebra::{Matrix3, Vector3};
 
-/// A rotation, body to space. The quaternion that it is kept by has a sign, which stays what
-/// it is along a motion: read as a unit quaternion it is an element of SU(2).
+/// A rotation, body to space. It is stored as a quaternion whose sign is preserved along a trajectory, so that it can
+/// also be read as an element of SU(2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Attitude<T = f64> {
     rotation: Rotation<T>,
@@ -69,15 +69,15 @@ impl<T: Real> Attitude<T> {
     }
 }
 
-/// The quaternion from one to another, `q* p`: the second frame seen from the first.
+/// The relative quaternion `q* p`: the second frame seen from the first.
 #[inline(always)]
 pub fn between<T: Real>(from: &UnitQuaternion<T>, to: &UnitQuaternion<T>) -> UnitQuaternion<T> {
     from.to(to)
 }
 
-/// How the attitude at the end of an edge turns, seen from there, by an impulse at its start, seen from there: with
-/// `S = Ω J` and `h` the step, `h Ω^T (tr(S) Id - S)^-1`. The result is not finite if the equation of the edge has
-/// a fold there.
+/// The derivative of the attitude at the end of an edge by an impulse at its start, both in body axes at their own
+/// node: `h Ω^T (tr(S) Id - S)^-1` with `S = Ω J` and the step size `h`. The result is not finite at a fold of the edge
+/// equation.
 #[inline(always)]
 pub fn turned_by<T: Real>(
     body: &Poinsot<T>,
@@ -87,7 +87,7 @@ pub fn turned_by<T: Real>(
 ) -> Matrix3<T> {
     let turn = from.matrix().tr_mul(&to.matrix());
     let factor = linalg::trace_complement(&(turn * body.matrix()));
-    // The inverse by its adjugate: three columns that are cross products, over the determinant.
+    // The inverse is the adjugate, whose columns are cross products, divided by the determinant.
     let [a, b, c] = [0, 1, 2].map(|i| factor.row(i).transpose());
     let columns = [b.cross(&c), c.cross(&a), a.cross(&b)];
     let scale = h / a.dot(&columns[0]);

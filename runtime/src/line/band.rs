@@ -1,6 +1,6 @@
-//! Velocities of all sites together, if momenta depend on velocities of neighbours: Newton's method from rest
-//! with block-tridiagonal derivatives. Takes the momenta of sites and of coupling terms, with their
-//! derivatives; gives the velocities, or the site at which they cannot be followed.
+//! Solves for the velocities of all sites together if momenta depend on the velocities of neighbours, by Newton's
+//! method from rest with block-tridiagonal derivatives. Takes the momenta of sites and of coupling terms, with
+//! derivatives; gives the velocities, or the site at which the continuation fails.
 
 use super::blocks::{Blocks, Fixed, Read, Size};
 use super::root::{Lists, Momenta, NoRoot, begins, follow, of_vector, scales_of};
@@ -9,7 +9,7 @@ use crate::Real;
 use core::ops::Deref;
 use nalgebra::{Matrix3, SMatrix, SVector};
 
-/// Momenta of all sites and their derivatives at some velocities, to which sites and terms of neighbours add.
+/// Accumulates the momenta of all sites, and their derivatives, at given velocities.
 #[derive(Debug)]
 pub struct Sums<'a, T> {
     velocities: &'a [T],
@@ -25,13 +25,13 @@ impl<T: Real> Sums<'_, T> {
         &self.velocities[n * site..n * (site + 1)]
     }
 
-    /// Gives the momenta of a site, to which terms of neighbours are added.
+    /// Sets the momenta of a site. Coupling terms are added afterwards.
     #[inline(always)]
     pub fn put(&mut self, n: usize, site: usize, momenta: &[T]) {
         self.momenta[n * site..n * (site + 1)].copy_from_slice(momenta);
     }
 
-    /// Gives their derivative by the velocities of the site, column after column.
+    /// Sets the derivative of a site's momenta by its own velocities, in column-major order.
     #[inline(always)]
     pub fn put_derivative(&mut self, site: usize, derivative: &[T]) {
         if let Some(blocks) = &mut self.blocks {
@@ -48,7 +48,7 @@ impl<T: Real> Sums<'_, T> {
         }
     }
 
-    /// Adds to their derivative by the velocities of a site or of a neighbour, column after column.
+    /// Adds to the derivative of the momenta of site `row` by the velocities of site `column`, in column-major order.
     #[inline(always)]
     pub fn add_derivative(&mut self, row: usize, column: usize, derivative: &[T]) {
         if let Some(blocks) = &mut self.blocks {
@@ -134,7 +134,7 @@ impl<T: Real, F: FnMut(&mut Sums<'_, T>), S: Size> Momenta<T> for Line<'_, T, F,
 }
 
 impl<T: Real, F, S: Size> Line<'_, T, F, S> {
-    /// Converts changes of rotations to changes of their vectors.
+    /// Converts changes of rotations into changes of their Cayley vectors.
     #[inline(always)]
     fn turned(&self, x: &mut [T]) {
         let n = self.n.rows();
@@ -147,13 +147,13 @@ impl<T: Real, F, S: Size> Line<'_, T, F, S> {
     }
 }
 
-/// The workspace for the equations of a chain whose sites have any number of components. It persists between steps.
+/// The workspace for a chain whose number of components per site is known at run time. It persists between steps.
 #[derive(Clone, Debug)]
 pub struct AnyBand<T> {
     sites: usize,
-    /// Whether derivatives are the same at all places and velocities: they are factored once.
+    /// Whether the derivatives are independent of positions and velocities, and therefore factored only once.
     constant: bool,
-    /// Which components of a site belong to the vector of a rotation.
+    /// The components of a site that belong to the vector of a rotation.
     turns: Vec<bool>,
     factored: bool,
     blocks: Blocks<T>,
@@ -164,13 +164,13 @@ pub struct AnyBand<T> {
     correction: Vec<T>,
     known: Vec<T>,
     scales: Vec<f64>,
-    /// The velocities at which the derivative was taken that is factored.
+    /// The velocities at which the factored derivative was evaluated.
     factored_at: Vec<T>,
 }
 
 impl<T: Real> AnyBand<T> {
-    /// Room for `sites` sites with `n` components each, of a ring or an open chain. Set `constant` if the derivatives
-    /// do not depend on positions and velocities, for one model and step.
+    /// A workspace for `sites` sites with `n` components each, on a ring or an open chain. Set `constant` if, for one
+    /// model and step size, the derivatives do not depend on positions and velocities.
     #[must_use]
     pub fn new(n: usize, sites: usize, ring: bool, constant: bool) -> Self {
         let list = || vec![T::zero(); n * sites];
@@ -191,29 +191,30 @@ impl<T: Real> AnyBand<T> {
         }
     }
 
-    /// This matrix with rotational velocities: `turns` marks the components of a site that belong to an angular velocity.
+    /// This workspace with rotations among the unknowns: `turns` marks the components of a site that belong to the
+    /// vector of a rotation.
     #[must_use]
     pub fn with_turns(self, turns: &[bool]) -> Self {
         let turns = turns.to_vec();
         Self { turns, ..self }
     }
 
-    /// Which components of a site belong to the vector of a rotation.
+    /// The components of a site that belong to the vector of a rotation.
     fn rotating<const N: usize>(&self) -> [bool; N] {
         core::array::from_fn(|k| self.turns.get(k).is_some_and(|turns| *turns))
     }
 
-    /// How many sites there are.
+    /// The number of sites.
     pub fn sites(&self) -> usize {
         self.sites
     }
 
-    /// The target momenta, site after site; set them before you solve.
+    /// The target momenta, site by site. Set them before you solve.
     pub fn known_mut(&mut self) -> &mut [T] {
         &mut self.known
     }
 
-    /// The velocities that were found last, site after site.
+    /// The last solution, site by site.
     pub fn velocities(&self) -> &[T] {
         &self.velocity
     }
@@ -226,9 +227,9 @@ impl<T: Real> AnyBand<T> {
         sum * T::from_f64(0.5)
     }
 
-    /// The velocities of sites with `n` components whose momenta are known; sites outside `moving` have velocity zero.
-    /// `all` sets the momenta of sites and adds the momenta of coupling terms, with their derivatives. The derivative
-    /// by a rotation `Ω` is taken along `Ω hat(η)`.
+    /// Solves for the velocities of sites with `n` components from the target momenta. Sites outside `moving` have zero
+    /// velocity. `all` sets the momenta of sites and adds the momenta of coupling terms, with their derivatives. The
+    /// derivative for a rotation `Ω` is taken along `Ω hat(η)`.
     ///
     /// # Errors
     /// [`NoRoot`] if the solution is not connected to rest, with the site of the largest correction.
@@ -262,7 +263,7 @@ impl<T: Real> AnyBand<T> {
             factored: &mut self.factored_at,
         };
         if self.constant {
-            // Linear: from rest in one step.
+            // The momenta are linear in the velocities, so one step from rest suffices.
             self.velocity.fill(T::zero());
             line.evaluate(&self.velocity, &mut self.momenta, !self.factored);
             if !self.factored {
@@ -298,7 +299,7 @@ impl<T: Real> AnyBand<T> {
         }
     }
 
-    /// The site of the largest correction, or of the first that is NaN.
+    /// The site of the largest correction, or the first site with a NaN.
     #[cold]
     fn worst(&self, n: usize) -> usize {
         let sizes = self.correction.iter().zip(&self.scales);
@@ -316,16 +317,16 @@ impl<T: Real> AnyBand<T> {
     }
 }
 
-/// The trial velocities of a site: numbers, and `R` rotations.
+/// The trial velocities of a site: its components, and up to `R` rotations.
 #[derive(Clone, Copy, Debug)]
 pub struct Velocity<T, const N: usize, const R: usize> {
     numbers: SVector<T, N>,
-    /// By a third of the component at which the vector of one begins.
+    /// The rotations; a vector that starts at component `k` has its rotation at index `k / 3`.
     turns: [Matrix3<T>; R],
 }
 
 impl<T: Real, const N: usize, const R: usize> Velocity<T, N, R> {
-    /// The rotation whose vector begins at this component.
+    /// The rotation whose vector starts at component `row`.
     #[inline(always)]
     pub fn turn(&self, row: usize) -> Matrix3<T> {
         self.turns[row / 3]
@@ -341,27 +342,27 @@ impl<T, const N: usize, const R: usize> Deref for Velocity<T, N, R> {
     }
 }
 
-/// The workspace for `N` components at each site, with up to `R` rotations.
+/// The workspace for sites with `N` components and up to `R` rotations each.
 #[derive(Clone, Debug)]
 pub struct Band<T, const N: usize, const R: usize> {
     all: AnyBand<T>,
     velocities: Vec<Velocity<T, N, R>>,
 }
 
-/// Momenta and derivatives, to which sites and coupling terms add.
+/// Accumulates momenta and derivatives of sites and coupling terms.
 #[derive(Debug)]
 pub struct Rows<'a, 'b, T, const N: usize, const R: usize> {
     sums: &'a mut Sums<'b, T>,
     velocities: &'a [Velocity<T, N, R>],
 }
 
-/// Momenta of the sites of a term, and their nonzero derivatives: of the momentum at the first index by the velocity at
-/// the second.
+/// The momenta that a coupling term adds at its sites, and their nonzero derivatives. An entry `(i, j, D)` is the
+/// derivative of the momentum at the term's site `i` by the velocity at its site `j`.
 pub type Added<T, const N: usize, const K: usize, const M: usize> =
     ([SVector<T, N>; K], [(usize, usize, SMatrix<T, N, N>); M]);
 
 impl<T: Real, const N: usize, const R: usize> Rows<'_, '_, T, N, R> {
-    /// Gives the momenta of all sites, or momenta and their derivatives.
+    /// Sets the momenta of all sites and, on request, their derivatives.
     #[inline(always)]
     fn own(
         &mut self,
@@ -387,8 +388,8 @@ impl<T: Real, const N: usize, const R: usize> Rows<'_, '_, T, N, R> {
         }
     }
 
-    /// Adds what terms of neighbours give to the sites that they touch, for each index from the first to the one before
-    /// the last: momenta, or momenta and their derivatives.
+    /// Adds the momenta of coupling terms at their sites and, on request, their derivatives, for each index from
+    /// `first` up to, but not including, `last`.
     #[inline(always)]
     pub fn tie<const K: usize, const M: usize>(
         &mut self,
@@ -430,8 +431,8 @@ impl<T: Real, const N: usize, const R: usize> Rows<'_, '_, T, N, R> {
 }
 
 impl<T: Real, const N: usize, const R: usize> Band<T, N, R> {
-    /// Room for this number of sites, of a ring or an open chain. Set `constant` if the derivatives do not
-    /// depend on positions and velocities, for one model and step.
+    /// A workspace for `sites` sites, on a ring or an open chain. Set `constant` if, for one model and step size, the
+    /// derivatives do not depend on positions and velocities.
     #[must_use]
     pub fn new(sites: usize, ring: bool, constant: bool) -> Self {
         let none = Velocity {
@@ -444,7 +445,8 @@ impl<T: Real, const N: usize, const R: usize> Band<T, N, R> {
         }
     }
 
-    /// This matrix with rotational velocities: `turns` marks the components of a site that belong to an angular velocity.
+    /// This workspace with rotations among the unknowns: `turns` marks the components of a site that belong to the
+    /// vector of a rotation.
     #[must_use]
     pub fn with_turns(self, turns: [bool; N]) -> Self {
         let Self { all, velocities } = self;
@@ -452,9 +454,9 @@ impl<T: Real, const N: usize, const R: usize> Band<T, N, R> {
         Self { all, velocities }
     }
 
-    /// The velocities of sites whose momenta are `known`; sites outside `moving` have velocity zero. `momenta` gives
-    /// the momenta of one site at its velocity, `whole` gives them with their derivative. The derivative by a rotation
-    /// `Ω` is taken along `Ω hat(η)`. `between` adds the momenta of coupling terms.
+    /// Solves for the velocities of sites with the momenta `known`. Sites outside `moving` have zero velocity.
+    /// `momenta` computes the momentum of one site at its velocity; `whole` also computes its derivative. The
+    /// derivative for a rotation `Ω` is taken along `Ω hat(η)`. `between` adds the momenta of coupling terms.
     ///
     /// # Errors
     /// [`NoRoot`] if the solution is not connected to rest, with the site of the largest correction.
@@ -501,9 +503,9 @@ impl<T: Real, const N: usize, const R: usize> Band<T, N, R> {
         Ok(())
     }
 
-    /// The kinetic energy of momenta that are linear in the velocities of sites and of their neighbours. `known` and
-    /// `between` are as for [`Band::solve_along`]; `own` gives the momenta at rest with their derivative. NaN if the
-    /// velocities cannot be found.
+    /// The kinetic energy if momenta are linear in the velocities of sites and their neighbours. `known` and `between`
+    /// are as for [`Band::solve_along`]; `own` computes the momentum at rest and its derivative. NaN if the velocities
+    /// cannot be found.
     pub fn kinetic(
         [sites, first, last]: [usize; 3],
         ring: bool,
@@ -521,8 +523,8 @@ impl<T: Real, const N: usize, const R: usize> Band<T, N, R> {
     }
 }
 
-/// Adds to values at sites what terms of neighbours give at these velocities, for each index from the first to the one
-/// before the last.
+/// Adds the contributions of coupling terms at the given velocities, for each index from `first` up to, but not
+/// including, `last`.
 #[inline(always)]
 pub fn spread<T: Real, const N: usize, const K: usize>(
     [first, last]: [usize; 2],

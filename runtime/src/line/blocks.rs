@@ -1,9 +1,8 @@
-//! Block-tridiagonal matrices of open chains, and of rings, where the first and the last site are also
-//! neighbours. Takes blocks, site by site; gives factors and solutions, in a number of operations that
-//! grows with the number of sites.
+//! Block-tridiagonal matrices of open chains and of rings, where the first and the last site are neighbours. Takes
+//! blocks, site by site; gives factors and solutions, in time proportional to the number of sites.
 //!
-//! A ring is solved by bordering: its last site is eliminated last, and the others form an open chain. Their
-//! effect on the last site is one block. Pivots are chosen within blocks.
+//! A ring is solved by bordering: the other sites form an open chain, which is eliminated first and contributes one
+//! block to the last site. Pivoting stays within blocks.
 
 mod lists;
 mod small;
@@ -13,25 +12,25 @@ mod tests;
 use crate::Real;
 use small::Block;
 
-/// The size of blocks: the same operations whether it is known when a model is built or when it is read.
+/// The size of blocks, known at compile time or at run time. Both cases perform the same operations.
 pub(super) trait Size: Copy {
     /// The number of rows.
     fn rows(self) -> usize;
-    /// [`Blocks::factor_and_solve`].
+    /// See [`Blocks::factor_and_solve`].
     fn factor_and_solve<T: Real>(
         self,
         blocks: &mut Blocks<T>,
         floor: f64,
         x: &mut [T],
     ) -> Result<(), usize>;
-    /// [`Blocks::solve`].
+    /// See [`Blocks::solve`].
     fn solve<T: Real>(self, blocks: &mut Blocks<T>, x: &mut [T]);
 }
 
-/// Blocks of up to so many rows are arrays.
+/// Blocks with at most this many rows are arrays.
 const SMALL: usize = 6;
 
-/// Known at compile time.
+/// A size known at compile time.
 #[derive(Clone, Copy)]
 pub(super) struct Fixed<const N: usize>;
 
@@ -63,7 +62,7 @@ impl<const N: usize> Size for Fixed<N> {
     }
 }
 
-/// Known only at run time.
+/// A size known only at run time.
 #[derive(Clone, Copy)]
 pub(super) struct Read(pub usize);
 
@@ -107,19 +106,20 @@ impl Size for Read {
     }
 }
 
-/// A matrix of blocks of size `n`, each column after column, and its factors.
+/// A matrix of blocks of size `n`, each in column-major order, and its factors.
 #[derive(Clone, Debug)]
 pub(super) struct Blocks<T> {
     n: usize,
     sites: usize,
     /// Whether the first and the last site are also neighbours.
     closed: bool,
-    /// The block of a site with itself; once factored, what is left of it when those before are eliminated, inverted or
-    /// factored.
+    /// The diagonal block of each site. After factorisation: what remains of it once the previous sites are eliminated,
+    /// inverted or factored.
     own: Vec<T>,
-    /// The block with the site before.
+    /// The block that couples each site to the previous site.
     before: Vec<T>,
-    /// With the one after; once factored, the inverse of what is left times it, but for the last site of an open line.
+    /// The block that couples each site to the next site. After factorisation: the inverse of the remaining diagonal
+    /// block times this block, except for the last site of an open chain.
     after: Vec<T>,
     inverted: Vec<bool>,
     pivots: Vec<usize>,
@@ -131,9 +131,9 @@ pub(super) struct Blocks<T> {
 }
 
 impl<T: Real> Blocks<T> {
-    /// All zeros.
+    /// A zero matrix.
     pub fn new(n: usize, sites: usize, ring: bool) -> Self {
-        // In a ring of two sites both neighbours are the other site; in a ring of one, the site itself.
+        // In a ring of two sites both neighbours are the other site; in a ring of one, both are the site itself.
         let closed = ring && sites > 2;
         let list = || vec![T::zero(); n * n * sites];
         Self {
@@ -151,13 +151,13 @@ impl<T: Real> Blocks<T> {
         }
     }
 
-    /// The blocks of sites with themselves.
+    /// The diagonal blocks.
     #[inline(always)]
     pub fn own_mut<const N: usize>(&mut self) -> &mut [Block<T, N>] {
         small::blocks_mut(&mut self.own)
     }
 
-    /// Adds to the block of a site and of a neighbour.
+    /// Adds `block` to the block of site `row` and its neighbour `column`.
     #[inline(always)]
     pub fn add_block<const N: usize>(&mut self, row: usize, column: usize, block: &Block<T, N>) {
         let (list, _) = self.place(row, column);
@@ -169,30 +169,30 @@ impl<T: Real> Blocks<T> {
         }
     }
 
-    /// Gives the block of a site with itself.
+    /// Sets the diagonal block of a site.
     #[inline(always)]
     pub fn put_own(&mut self, site: usize, block: &[T]) {
         let size = self.n * self.n;
         self.own[size * site..size * (site + 1)].copy_from_slice(block);
     }
 
-    /// Sets the blocks of neighbours to zero.
+    /// Sets the blocks that couple neighbours to zero.
     #[inline(always)]
     pub fn clear_neighbours(&mut self) {
         self.before.fill(T::zero());
         self.after.fill(T::zero());
     }
 
-    /// Back to zeros.
+    /// Sets all blocks to zero.
     #[inline(always)]
     pub fn clear(&mut self) {
         self.own.fill(T::zero());
         self.clear_neighbours();
     }
 
-    /// Gives the blocks of a site: with the one before, with itself, with the one after, side by side. Blocks beyond an open end
-    /// stay zero. Not for rings of one or two sites, whose neighbours are the same. The size `n` is given for where it is known
-    /// when a model is built.
+    /// Sets the blocks of a site: `row` contains the blocks with the previous site, with the site itself, and with the
+    /// next site. Blocks beyond an open end stay zero. Do not use this for rings of one or two sites, whose neighbours
+    /// coincide. The size `n` is an argument so that the compiler can use it where it is constant.
     #[inline(always)]
     pub fn put_row(&mut self, n: usize, site: usize, row: &[T]) {
         let size = n * n;
@@ -206,7 +206,7 @@ impl<T: Real> Blocks<T> {
         }
     }
 
-    /// Where a block begins.
+    /// The list and the index at which a block starts.
     #[inline(always)]
     fn place(&mut self, row: usize, column: usize) -> (&mut [T], usize) {
         let n = self.n;
@@ -220,7 +220,7 @@ impl<T: Real> Blocks<T> {
         (list, n * n * row)
     }
 
-    /// Adds to the block of a site and of a neighbour.
+    /// Adds `block` to the block of site `row` and its neighbour `column`.
     #[inline(always)]
     pub fn add(&mut self, row: usize, column: usize, block: &[T]) {
         let (list, from) = self.place(row, column);
@@ -229,13 +229,13 @@ impl<T: Real> Blocks<T> {
         }
     }
 
-    /// The block of a site with itself, of a matrix that is not factored.
+    /// The diagonal block of a site, before factorisation.
     pub fn own(&self, site: usize) -> &[T] {
         let size = self.n * self.n;
         &self.own[size * site..size * (site + 1)]
     }
 
-    /// Replaces the equation of a site by `x = 0`, decoupled from all other equations.
+    /// Replaces the equation of a site by `x = 0` and decouples it from all other equations.
     pub fn hold(&mut self, site: usize) {
         let (n, last) = (self.n, self.sites - 1);
         let size = n * n;
@@ -269,7 +269,7 @@ impl<T: Real> Blocks<T> {
         self.own[size * site + n * k + k] = T::one();
     }
 
-    /// The site whose block had no pivot when the matrix was factored last.
+    /// The site whose block had no pivot in the last factorisation.
     pub fn without_pivot(&self) -> Option<usize> {
         self.without_pivot
     }
@@ -279,8 +279,8 @@ impl<T: Real> Blocks<T> {
         self.sites - usize::from(self.closed)
     }
 
-    /// Factors the matrix in place, and computes `x = A^-1 x`. Fails with the site of the first block without a pivot
-    /// above `floor` times its own columns.
+    /// Factors the matrix in place and computes `x = A^-1 x`. If a pivot is not above `floor` times its own columns,
+    /// the error is the first such site.
     #[inline(always)]
     pub fn factor_and_solve(
         &mut self,
@@ -293,7 +293,7 @@ impl<T: Real> Blocks<T> {
         done
     }
 
-    /// `x = A^-1 x` of the matrix that was factored last.
+    /// Computes `x = A^-1 x` with the last factored matrix.
     #[inline(always)]
     pub fn solve(&mut self, size: impl Size, x: &mut [T]) {
         size.solve(self, x);

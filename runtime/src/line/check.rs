@@ -1,10 +1,10 @@
-//! Checks the data at sites before anything is built from them.
+//! Validates per-site data before a chain is built.
 
 use super::error::{LineError, Place};
 use crate::solvers::largest_step::search_of;
 use crate::{ParameterError, Real};
 
-/// Whether a list has a value for each of its sites.
+/// Checks that a list has one value for each site.
 ///
 /// # Errors
 /// [`LineError::Length`].
@@ -25,10 +25,10 @@ pub fn length_of<S>(
     }
 }
 
-/// Most sites: beyond it not even their numbers are counted.
+/// The largest admissible number of sites.
 const MOST: usize = 1 << 40;
 
-/// Whether there are enough sites, and not too many.
+/// Checks that the number of sites is neither too small nor too large.
 ///
 /// # Errors
 /// [`LineError::Count`].
@@ -46,7 +46,7 @@ pub fn count_of(count: &'static str, found: usize, least: usize) -> Result<(), L
 /// Checks or computes one value for each site.
 ///
 /// # Errors
-/// [`LineError::Site`] of the first that is not admissible.
+/// [`LineError::Site`] for the first inadmissible value.
 pub fn each<S, R>(
     quantity: &'static str,
     list: &[S],
@@ -61,8 +61,7 @@ pub fn each<S, R>(
     list.iter().enumerate().map(site).collect()
 }
 
-/// The list with this number of sites appended: on a ring the first sites, otherwise copies of the
-/// last site, which no term reads.
+/// Appends `beyond` sites to a list: the first sites on a ring, otherwise copies of the last site, which no term reads.
 pub fn repeated<S: Clone>(list: &[S], beyond: usize, ring: bool) -> Vec<S> {
     let mut out = list.to_vec();
     for i in 0..beyond {
@@ -75,7 +74,8 @@ pub fn repeated<S: Clone>(list: &[S], beyond: usize, ring: bool) -> Vec<S> {
     out
 }
 
-/// The first of twenty successive halves of a step that succeeds. A trial does not search for a step size itself.
+/// Halves the step size up to twenty times until the step succeeds. These trials do not search for a step size
+/// themselves.
 #[cold]
 pub fn shorter<T: Real>(h: T, made: impl Fn(T) -> bool) -> Option<f64> {
     let mut half = h;

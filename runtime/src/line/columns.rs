@@ -1,5 +1,5 @@
-//! Lists with a value of several numbers for each site, the same number of all sites side by side: loops over sites read and
-//! write several sites at a time. Takes values; gives each of them back, or a part of the list to be filled.
+//! Lists that store each number of a site's value in a separate column, so that loops can read and write several sites
+//! at a time. Takes values; gives single values, or a part of the list to be filled.
 
 use super::Attitude;
 use crate::saved::{Saved, Sites, Words};
@@ -10,38 +10,38 @@ use nalgebra::{SMatrix, Vector3};
 
 /// A value that consists of `N` numbers.
 pub trait Numbered<const N: usize>: Copy + Send + Sync {
-    /// Its numbers.
+    /// The scalar type.
     type Number: Real;
 
-    /// All of them.
+    /// The numbers of the value.
     fn numbers(&self) -> [Self::Number; N];
 
-    /// The value that has them.
+    /// The value with these numbers.
     fn of(numbers: [Self::Number; N]) -> Self;
 }
 
 /// A list with a value of `N` numbers for each site.
 #[derive(Clone, Debug)]
 pub struct Columns<V, T, const N: usize> {
-    /// One column after the other.
+    /// The columns, one after another.
     data: Vec<T>,
-    /// The distance between the starts of two columns.
+    /// The distance between the starts of consecutive columns.
     stride: usize,
     len: usize,
     of: PhantomData<V>,
 }
 
-/// A list with the attitude of each site.
+/// The attitudes of all sites.
 pub type Attitudes<T> = Columns<Attitude<T>, T, 4>;
 
-/// A list with the momentum in space of the edge that leaves each site.
+/// For each site, the spatial momentum of the edge that leaves it.
 pub type Edges<T> = Columns<Vector3<T>, T, 3>;
 
-/// From this length on, columns start at different offsets within a page of memory. Otherwise a processor that compares only
-/// these offsets confuses a write to one column with a read from another.
+/// From this length on, columns start at different offsets within a memory page. Otherwise a processor that compares
+/// only these offsets mistakes a write to one column for a read from another.
 const PAGE: usize = 512;
 
-/// The shift of a column's offset in its page, compared with the column before.
+/// The difference of the page offsets of consecutive columns.
 const SHIFT: usize = 40;
 
 fn stride_of(len: usize) -> usize {
@@ -115,7 +115,7 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize> Columns<V, T, N> {
         *self = other;
     }
 
-    /// Takes over the values of some sites from another list.
+    /// Copies the values of some sites from another list.
     pub fn keep(&mut self, sites: Range<usize>, from: &Self) {
         for k in 0..N {
             let (own, other) = (k * self.stride, k * from.stride);
@@ -124,7 +124,7 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize> Columns<V, T, N> {
         }
     }
 
-    /// The column of each number from a site on, `M` sites long.
+    /// All columns, from site `first`, `M` sites long.
     #[inline(always)]
     pub(super) fn columns<const M: usize>(&self, first: usize) -> [&[T; M]; N] {
         // A loop: `map` of an array is not always inlined.
@@ -140,7 +140,7 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize> Columns<V, T, N> {
         of_length(&self.data[k * self.stride..][..self.len][first..first + M])
     }
 
-    /// Some sites, to be written.
+    /// A writable part of the list.
     pub fn part(&mut self, sites: Range<usize>) -> ColumnsPart<'_, V, T, N> {
         assert!(sites.end <= self.len, "sites {sites:?} of {}", self.len);
         let mut rest = self.data.as_mut_slice();
@@ -156,7 +156,7 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize> Columns<V, T, N> {
     }
 }
 
-/// Keeps a single value if all sites have the same value.
+/// Reduces the list to one value if all sites have the same value.
 pub fn once<V: PartialEq>(list: &mut Vec<V>) {
     if list.windows(2).all(|two| two[0] == two[1]) {
         list.truncate(1);
@@ -172,7 +172,7 @@ pub(super) fn of_length<T, const M: usize>(list: &[T]) -> &[T; M] {
     }
 }
 
-/// Some sites of a list, to be written.
+/// Some sites of a list, open for writing.
 pub struct ColumnsPart<'a, V, T, const N: usize> {
     pub(super) columns: [&'a mut [T]; N],
     pub(super) of: PhantomData<V>,
@@ -216,7 +216,7 @@ impl<V, T: PartialEq, const N: usize> PartialEq for Columns<V, T, N> {
     }
 }
 
-/// Site by site, as a list of the values is.
+/// Saves values site by site, as a plain list of values does.
 impl<V: Numbered<N, Number = f64> + Saved, const N: usize> Sites for Columns<V, f64, N> {
     fn sites(&mut self, words: &mut Words) {
         words.same(self.len as u64);
@@ -257,7 +257,7 @@ impl<T: Real> Numbered<3> for Vector3<T> {
     }
 }
 
-/// [`Numbered`] for a struct of matrices, whose rows times columns are named.
+/// Implements [`Numbered`] for a struct of matrices; each field is listed with its number of entries.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! numbered {
@@ -293,7 +293,7 @@ macro_rules! numbered {
     };
 }
 
-/// The matrix with the numbers from index `at` on, column after column.
+/// The matrix stored from index `at` on, in column-major order.
 #[doc(hidden)]
 #[inline(always)]
 pub fn array_from<T: Real, const R: usize, const C: usize>(

@@ -1,17 +1,17 @@
-//! Errors of chains: data of a wrong length, a value at one site, a step at one site.
-//! Takes the failure and its site; gives messages that name both.
+//! Errors of chains: a list of the wrong length, an invalid value at a site, a failed step at a site. Takes the failure
+//! and its site; gives messages that name both.
 
 use crate::mesh::MeshError;
 use crate::said;
 use crate::{ParameterError, StepCause};
 use core::fmt;
 
-/// A quantity and the site where something happened, counted from 0.
+/// A quantity and a site, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
     /// The quantity as the model writes it.
     pub quantity: &'static str,
-    /// The site; [`Place::ALL`] of what belongs to the whole line.
+    /// The site, or [`Place::ALL`] for a quantity of the whole chain.
     pub site: usize,
 }
 
@@ -35,53 +35,53 @@ impl fmt::Display for Place {
 pub enum LineError {
     /// Too few sites, or more than can be counted.
     Count {
-        /// The name of the number of sites.
+        /// The model's name for the number of sites.
         count: &'static str,
         /// The requested number.
         found: usize,
-        /// The least number.
+        /// The smallest admissible number.
         least: usize,
     },
     /// The length of a list differs from the number of sites.
     Length {
         /// The quantity.
         quantity: &'static str,
-        /// How many sites there are.
+        /// The number of sites.
         expected: usize,
-        /// How long the list is.
+        /// The length of the list.
         found: usize,
-        /// Which sites, in words.
+        /// A description of the sites.
         sites: &'static str,
     },
-    /// A parameter or the step that is the same at all sites.
+    /// An invalid parameter or step size that is common to all sites.
     Parameter(ParameterError),
-    /// A parameter or an initial value at one site.
+    /// An invalid parameter or initial value at one site.
     Site {
-        /// Where.
+        /// The quantity and the site.
         at: Place,
-        /// The error of the value.
+        /// The reason.
         error: ParameterError,
     },
-    /// A functional of all sites, or its derivative, is undefined where it is needed; the state is unchanged.
+    /// A functional of all sites, or its derivative, is undefined at the current positions; the state is unchanged.
     Functional {
-        /// The node in time.
+        /// The time node.
         node: u64,
-        /// Its values, as the model names them.
+        /// The functional, as the model names it.
         quantity: &'static str,
-        /// Why.
+        /// The reason.
         cause: MeshError,
         /// A smaller step size for which a trial from the same state succeeded, if there is one.
         works: Option<f64>,
     },
     /// A step failed; the state is unchanged.
     Step {
-        /// The node in time from which it would have started.
+        /// The time node at which the step started.
         node: u64,
-        /// Where.
+        /// The quantity and the site.
         at: Place,
-        /// Why.
+        /// The reason.
         cause: StepCause,
-        /// A shorter step from the same state that was tried and works, where one was found.
+        /// A smaller step size for which a trial from the same state succeeded, if there is one.
         works: Option<f64>,
     },
 }

@@ -1,6 +1,6 @@
-//! Loops over sites that compute several of them together, with the feature `simd` on the widest instruction set. The
-//! results are the same, bit for bit, as of the loop over single sites. That loop also fills the remaining sites, and
-//! every group of sites in which one is not easy.
+//! Loops over sites that compute several sites at once, with the feature `simd` on the widest instruction set. Results
+//! agree bit for bit with the loop over single sites. That loop also handles the remaining sites, and every group in
+//! which the fast path fails for some site.
 
 use super::part::{InColumns, LANES};
 use super::sweep::{Threads, Two, try_fill_part, try_in_parts, update_part};
@@ -9,7 +9,7 @@ use crate::integrate::{InstructionSet, Work};
 use core::ops::Range;
 use nalgebra::SMatrix;
 
-/// How the values of several sites are computed together.
+/// Computes the values of several sites at once.
 pub trait Stage: Sync {
     /// The value of a site.
     type One;
@@ -19,7 +19,7 @@ pub trait Stage: Sync {
     fn lanes<P: InColumns<One = Self::One>>(&self, first: usize, out: &mut P::Lanes) -> bool;
 }
 
-/// How the values of several sites are computed together from stored values, which are updated for the next step.
+/// Computes the values of several sites at once from stored values, and updates the stored values.
 pub trait Change: Sync {
     /// The value of a site.
     type One;
@@ -36,16 +36,16 @@ pub trait Change: Sync {
     ) -> bool;
 }
 
-/// A value that may be finite or not.
+/// A value that can be tested for NaN and infinities.
 pub trait Finite {
-    /// Whether all its numbers are.
+    /// Whether all numbers of the value are finite.
     fn is_finite(&self) -> bool;
 }
 
 impl<T: Real, const R: usize, const C: usize> Finite for SMatrix<T, R, C> {
     #[inline(always)]
     fn is_finite(&self) -> bool {
-        // One branch at the end: none of the tests is worth one of its own.
+        // Combines all tests without branches, so that the caller branches once.
         let each = self.as_slice().iter();
         each.fold(true, |all, x| all & x.is_finite())
     }
@@ -116,7 +116,7 @@ where
     }
 }
 
-/// One site after the other: compiled once, for the build's own instruction set.
+/// Computes sites one by one. Compiled once, for the instruction set of the build.
 #[inline(never)]
 fn singly<P: InColumns, E>(
     first: usize,
@@ -193,7 +193,7 @@ where
     }
 }
 
-/// One site after the other: compiled once, for the build's own instruction set.
+/// Computes sites one by one. Compiled once, for the instruction set of the build.
 #[inline(never)]
 fn changed_singly<P: InColumns, K: InColumns>(
     first: usize,
@@ -205,7 +205,8 @@ fn changed_singly<P: InColumns, K: InColumns>(
     update_part(first, out, kept, sites, change)
 }
 
-/// A [`Stage`] or a [`Change`]: what it reads, of which lists how many sites beyond its own, and the value of one site.
+/// Defines a [`Stage`] or a [`Change`]: its inputs, the lists it reads with the number of sites ahead, and the value of
+/// one site.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! in_lanes {
@@ -269,7 +270,7 @@ macro_rules! in_lanes {
         $(#[$about])*
         struct $name<'a, T: $crate::Real> {
             $($read: &'a $of,)*
-            /// The site with which the part begins.
+            /// The first site of the part.
             first: usize,
         }
     };
@@ -283,7 +284,7 @@ mod tests {
     use crate::solvers::moser_veselov::{Edge, Poinsot};
     use nalgebra::{Matrix3, SMatrix, Vector2, Vector3};
 
-    /// A list that is read at a site and the one after, and a factor.
+    /// A factor, and a list read at a site and at the next one.
     struct Row<T> {
         list: Vec<SMatrix<T, 2, 1>>,
         factor: T,
@@ -297,7 +298,7 @@ mod tests {
     }
 
     crate::in_lanes! {
-        /// Values, of what is kept and a difference.
+        /// The sum of a stored value and a difference.
         Shifted(row: Row<T>) -> SMatrix<T, 2, 1>, SMatrix<T, 2, 1>
         { at: 1 = row.list }
         |site, kept| (kept + at.at(site), kept + at.ahead::<1>(site) * row.factor)
@@ -369,7 +370,7 @@ mod tests {
         }
     }
 
-    /// Bodies of which one or several, or none, are not found in one iteration, or not at all.
+    /// Tests groups with zero, one or several bodies that need more than one iteration or are unsolvable.
     #[test]
     fn bodies_turn_together_as_each_does() {
         let full = Matrix3::new(0.5, 0.1, 0.0, 0.1, 0.7, 0.05, 0.0, 0.05, 1.5);

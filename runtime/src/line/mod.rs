@@ -1,6 +1,5 @@
-//! Chains, rods and rings: what emitted steppers of models with labels call. Loops over sites, which
-//! threads share by ranges of sites, so that no result depends on their number; errors that name
-//! the site; what moves at a site.
+//! Runtime of chains, rods and rings: the functions that steppers of models with labels call. Threads share loops over
+//! sites by ranges, so results do not depend on the number of threads. Errors name the site.
 
 mod attitude;
 mod band;

@@ -1,14 +1,14 @@
-//! The impulses of the constraints of a chain. One search finds the impulses that make the constraints vanish at the
-//! end of a step, by Newton's method from zero with block-tridiagonal derivatives. The projection of a momentum solves
-//! one such system. Takes the constraints and their derivatives, site by site; gives impulses, or the site at which the
-//! search fails.
+//! Finds the impulses of the constraints of a chain. A search finds the impulses for which the constraints vanish at
+//! the end of a step, by Newton's method from zero with block-tridiagonal derivatives. Projecting a momentum solves one
+//! such linear system. Takes the constraints and their derivatives, site by site; gives impulses, or the site at which
+//! the search fails.
 //!
-//! The model drives the search: between its calls it computes the positions for the current impulses. Impulses `y` are
-//! followed along `c(y) = (1 - τ) c(0)` in stages, mostly one, by Newton's method. A stage is accepted if its second
+//! The model drives the search: between calls it computes the positions for the current impulses. Newton's method
+//! follows the impulses `y` along `c(y) = (1 - τ) c(0)` in stages, usually one. A stage is accepted if its second
 //! correction is at most a quarter of the first (Deuflhard, Newton Methods for Nonlinear Problems, 2011, sections 2.1
-//! and 5.1). That is a test at points, not a proof.
+//! and 5.1). The test samples points and proves nothing.
 
-// Several lists run along one index.
+// Loops use one index for several lists.
 #![allow(clippy::needless_range_loop)]
 
 use super::blocks::{Blocks, Fixed, Read, Size};
@@ -19,33 +19,33 @@ use crate::solvers::newton::principal::FALLS;
 use core::fmt;
 use nalgebra::{SMatrix, SVector};
 
-/// Shortest stage, as a part of the way.
+/// The shortest stage, as a fraction of the path.
 const SHORTEST: f64 = 1e-12;
 
-/// Most evaluations of a search.
+/// The largest number of evaluations in a search.
 const MOST: usize = 1000;
 
-/// A correction so small, of the impulses, leaves rounding when the next would be its square.
+/// If a correction is below this fraction of the impulses, the next one, about its square, is rounding.
 const LAST: f64 = 1e-8;
 
-/// The part of a stage that is tried where corrections do not fall.
+/// If corrections do not decrease, the next stage is shorter by this factor.
 const WORSE: f64 = 0.2;
 
 /// A constraint vanishes if it is at most this many roundings of its terms.
 const ROUNDINGS: f64 = 32.0;
 
-/// Rotations and positions have rounding of their own. If corrections no longer decrease, this many roundings count as
-/// zero.
+/// Rotations and positions have their own rounding errors. If corrections no longer decrease, constraints of up to this
+/// many roundings count as zero.
 const STALLED: f64 = 4096.0;
 
-/// A pivot below this share of the derivatives of its constraint is rounding of zero.
+/// A pivot below this fraction of the derivatives of its constraint is a rounded zero.
 const FLOOR: f64 = 64.0 * f64::EPSILON;
 
 /// The search for the constraint forces of a chain failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoReaction {
-    /// The share of the way from zero constraint forces to the constraints up to which they were found. It is 1 if they
-    /// were found, but the momentum there cannot be projected.
+    /// The fraction of the path, from zero impulses to satisfied constraints, for which impulses were found. It is 1 if
+    /// they were found but the momentum cannot be projected.
     pub share: f64,
 }
 
@@ -71,36 +71,36 @@ impl fmt::Display for NoReaction {
 
 impl std::error::Error for NoReaction {}
 
-/// Where a search is.
+/// The phase of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Phase {
     /// Before the first correction of a stage.
     Begin,
-    /// Before the second.
+    /// Before the second correction of a stage.
     Second,
-    /// Before another one.
+    /// Before a later correction.
     Later,
-    /// Derivatives of the solution are exact to one order more after each further correction.
+    /// Further corrections: each makes the solution's derivatives exact to one more order.
     Further,
-    /// Places are wanted for the last time.
+    /// The positions are needed once more, for the final impulses.
     Last,
     Found,
     Lost,
 }
 
-/// The search, and room for the constraints of a line.
+/// The search, and the workspace for the constraints of a chain.
 #[derive(Clone, Debug)]
 pub struct Multipliers<T> {
     n: usize,
     sites: usize,
     ring: bool,
-    /// Whether impulses belong to no site.
+    /// Whether the impulses belong to constraints on sums over all sites.
     of_sums: bool,
     /// The number of constrained sites of each component.
     counts: Vec<usize>,
     blocks: Blocks<T>,
     impulses: Vec<T>,
-    /// Where a stage began.
+    /// The impulses at the start of the stage.
     from: Vec<T>,
     correction: Vec<T>,
     /// The constraints at zero impulses.
@@ -114,11 +114,12 @@ pub struct Multipliers<T> {
     further: u32,
     /// The largest constraint, in roundings of its terms.
     roundings: f64,
-    /// Whether the last constraints were corrected by known derivatives.
+    /// Whether the last call corrected the impulses with a known derivative.
     corrected: bool,
 }
 
-/// Puts a value at each site of a list that has one place more on either side, which repeat a ring.
+/// Writes the impulses of site `i` to `out[i + 1]`. On a ring, the first and the last entry of `out` repeat the
+/// impulses of the neighbours across the seam.
 fn put<T: Real, const N: usize>(all: &Multipliers<T>, out: &mut [SVector<T, N>]) {
     let n = all.sites;
     for site in 0..n {
@@ -131,7 +132,8 @@ fn put<T: Real, const N: usize>(all: &Multipliers<T>, out: &mut [SVector<T, N>])
 }
 
 impl<T: Real> Multipliers<T> {
-    /// Room for the constraints of a line, open or a ring: at how many of its first sites each component is held.
+    /// A workspace for the constraints of an open chain or a ring. Component `k` is constrained at the first
+    /// `counts[k]` sites.
     #[must_use]
     pub fn new(counts: &[usize], ring: bool) -> Self {
         let (n, sites) = (counts.len(), counts.iter().copied().max().unwrap_or(0));
@@ -168,26 +170,26 @@ impl<T: Real> Multipliers<T> {
         }
     }
 
-    /// At how many sites constraints are held.
+    /// The number of constrained sites.
     #[must_use]
     pub fn sites(&self) -> usize {
         self.sites
     }
 
-    /// Whether the first site and the last are neighbours.
+    /// Whether the first and the last site are neighbours.
     #[must_use]
     pub fn is_ring(&self) -> bool {
         self.ring
     }
 
-    /// Begins a search: no impulses.
+    /// Starts a search and writes zero impulses to `out`.
     #[inline]
     pub fn begin_search<const N: usize>(&mut self, out: &mut [SVector<T, N>]) {
         self.begin();
         put(self, out);
     }
 
-    /// Begins a search with zero impulses, without writing any values.
+    /// Starts a search with zero impulses; writes no output.
     pub fn begin(&mut self) {
         self.impulses.fill(T::zero());
         self.from.fill(T::zero());
@@ -195,15 +197,15 @@ impl<T: Real> Multipliers<T> {
         (self.passes, self.further) = (0, T::ORDER);
     }
 
-    /// Whether places are wanted for the impulses that are put out.
+    /// Whether the search continues and needs the positions for the current impulses.
     #[inline]
     #[must_use]
     pub fn goes_on(&self) -> bool {
         !matches!(self.phase, Phase::Found | Phase::Lost)
     }
 
-    /// Takes the constraints at the current positions, with the sizes of their terms; returns whether it needs
-    /// derivatives. If the known derivatives suffice for the last correction, it corrects the impulses by them.
+    /// Takes the constraints at the current positions and the sizes of their terms; returns whether the search needs
+    /// derivatives. If a known derivative suffices for the last correction, the impulses are corrected with it.
     #[inline]
     pub fn wants_derivatives<const N: usize>(
         &mut self,
@@ -217,7 +219,7 @@ impl<T: Real> Multipliers<T> {
         wants
     }
 
-    /// Like `wants_derivatives`, given the numbers of each site: values, then sizes.
+    /// Like `wants_derivatives`, given the numbers of each site: first the values, then the sizes.
     pub fn wants<'a>(&mut self, n: usize, held: impl Fn(usize) -> &'a [T]) -> bool
     where
         T: 'a,
@@ -263,7 +265,7 @@ impl<T: Real> Multipliers<T> {
                 let r = aim - own[k];
                 self.correction[at] = r;
                 let size = r.magnitude() / (T::EPSILON * own[n + k].magnitude());
-                // NaN remains the worst, except zero over zero.
+                // NaN counts as the largest size, except for zero over zero.
                 if size > worst || size.is_nan() && r.magnitude() != 0.0 {
                     worst = if size.is_nan() { f64::INFINITY } else { size };
                 }
@@ -277,7 +279,7 @@ impl<T: Real> Multipliers<T> {
             }
             self.phase = Phase::Further;
         }
-        // The tangent of the correction before leaves as small a part of what is held as it did then.
+        // The last derivative reduces the constraint again by the same factor as before.
         let falls = worst * (worst / before) <= ROUNDINGS;
         let again = matches!(self.phase, Phase::Second | Phase::Later);
         if again && falls && left == 0.0 && self.further == 0 {
@@ -292,13 +294,13 @@ impl<T: Real> Multipliers<T> {
         true
     }
 
-    /// Whether the last call with constraints corrected the impulses.
+    /// Whether the last call that took constraints corrected the impulses.
     #[must_use]
     pub fn is_corrected(&self) -> bool {
         self.corrected
     }
 
-    /// The share of the initial constraints that remains at the end of the stage.
+    /// The fraction of the initial constraints that remains at the end of the stage.
     #[inline(always)]
     fn left(&self) -> f64 {
         match self.length >= 1.0 - self.share {
@@ -307,8 +309,8 @@ impl<T: Real> Multipliers<T> {
         }
     }
 
-    /// Corrects the impulses by the derivatives of the constraints: of each site by the impulses of the previous site,
-    /// of itself, and of the next site, side by side.
+    /// Corrects the impulses with the derivatives of the constraints. Each row holds the derivatives of a site by the
+    /// impulses of the previous site, of the site itself, and of the next site.
     #[inline]
     pub fn correct<const N: usize, const W: usize>(
         &mut self,
@@ -319,7 +321,7 @@ impl<T: Real> Multipliers<T> {
         put(self, out);
     }
 
-    /// Like `correct`, given the numbers of each site, column by column.
+    /// Like `correct`, given each row in column-major order.
     pub fn correct_by<'a>(&mut self, n: usize, rows: impl Fn(usize) -> &'a [T])
     where
         T: 'a,
@@ -380,7 +382,7 @@ impl<T: Real> Multipliers<T> {
         }
     }
 
-    /// At the end of a stage.
+    /// Ends a stage.
     fn arrive(&mut self) {
         if self.left() == 0.0 {
             self.phase = match self.further {
@@ -402,7 +404,7 @@ impl<T: Real> Multipliers<T> {
         }
     }
 
-    /// Restarts the stage with a shorter length.
+    /// Restarts the stage with a fraction `part` of its length.
     #[cold]
     fn shorter(&mut self, part: f64) {
         self.length = self.length.min(1.0 - self.share) * part;
@@ -413,7 +415,7 @@ impl<T: Real> Multipliers<T> {
         };
     }
 
-    /// Loads the derivatives of all sites into blocks. Components without a constraint at a site get a zero impulse.
+    /// Loads the derivatives of all sites into the blocks. Components without a constraint at a site get zero impulse.
     #[inline(always)]
     fn load<'a>(&mut self, n: usize, rows: impl Fn(usize) -> &'a [T])
     where
@@ -434,7 +436,7 @@ impl<T: Real> Multipliers<T> {
         }
     }
 
-    /// Like `load`, for a ring of one or two sites, where both neighbours of a site are the same site.
+    /// Like `load`, for a ring of one or two sites, where both neighbours of a site coincide.
     fn add_rows<'a>(&mut self, n: usize, rows: impl Fn(usize) -> &'a [T])
     where
         T: 'a,
@@ -451,7 +453,7 @@ impl<T: Real> Multipliers<T> {
         }
     }
 
-    /// The largest entry in units of scales; NaN if any is.
+    /// The largest scaled entry; NaN if any entry is NaN.
     #[inline(always)]
     fn largest(&self, list: &[T]) -> f64 {
         let mut most = 0.0;
@@ -467,7 +469,7 @@ impl<T: Real> Multipliers<T> {
         most
     }
 
-    /// The site, or [`Place::ALL`] if the impulses belong to sums.
+    /// The site, or [`Place::ALL`] if the constraints are on sums.
     fn place(&self, site: usize) -> usize {
         match self.of_sums {
             true => Place::ALL,
@@ -475,10 +477,10 @@ impl<T: Real> Multipliers<T> {
         }
     }
 
-    /// Whether impulses were found.
+    /// Checks that the search found impulses.
     ///
     /// # Errors
-    /// [`NoReaction`], and the site of the largest correction.
+    /// The site of the largest correction, with [`NoReaction`].
     pub fn root_found(&self) -> Result<(), (usize, NoReaction)> {
         match self.phase {
             Phase::Found => Ok(()),

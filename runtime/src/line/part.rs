@@ -1,14 +1,14 @@
-//! Parts of lists that loops over sites fill, one site after the other or several of them together, number by number.
+//! Parts of lists that loops over sites fill, either site by site or several sites at once.
 
 use super::columns::{ColumnsPart, Numbered, of_length};
 use crate::Real;
 use core::marker::PhantomData;
 use nalgebra::SMatrix;
 
-/// How many sites are computed together: two registers of the widest instruction set.
+/// The number of sites computed together: two registers of the widest instruction set.
 pub const LANES: usize = 16;
 
-/// Some sites of a list, to be filled.
+/// A range of sites of a list, to be filled.
 pub trait Part: Sized + Send {
     /// The value of a site.
     type One: Copy + Send;
@@ -16,34 +16,34 @@ pub trait Part: Sized + Send {
     /// The number of sites.
     fn count(&self) -> usize;
 
-    /// The sites before one, and the others.
+    /// Splits into the sites before `at` and the remaining sites.
     fn split(self, at: usize) -> (Self, Self);
 
     /// The value at a site.
     fn get(&self, site: usize) -> Self::One;
 
-    /// Puts another one there.
+    /// Sets the value at a site.
     fn put(&mut self, site: usize, value: Self::One);
 }
 
-/// Sites of which several are filled together.
+/// A range of sites that can be filled several at a time.
 pub trait InColumns: Part {
-    /// The values of [`LANES`] sites, number by number.
+    /// The values of [`LANES`] sites, in one column for each number.
     type Lanes;
 
-    /// Zeros.
+    /// All numbers zero.
     fn zeros() -> Self::Lanes;
 
-    /// The value of one of them.
+    /// The value in one lane.
     fn lane(lanes: &Self::Lanes, lane: usize) -> Self::One;
 
-    /// Puts another one there.
+    /// Sets the value in one lane.
     fn put_lane(lanes: &mut Self::Lanes, lane: usize, value: Self::One);
 
-    /// The values of the sites from one on.
+    /// Reads the values of [`LANES`] sites that start at `first`.
     fn read(&self, first: usize) -> Self::Lanes;
 
-    /// Puts others there.
+    /// Writes the values of [`LANES`] sites that start at `first`.
     fn write(&mut self, first: usize, lanes: &Self::Lanes);
 }
 
@@ -130,7 +130,7 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize> InColumns for ColumnsP
     }
 }
 
-/// Values one after the other.
+/// A list that stores values one after another.
 impl<V: Copy + Send> Part for &mut [V] {
     type One = V;
 

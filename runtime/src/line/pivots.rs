@@ -1,18 +1,18 @@
-//! Small square matrices in lists, column after column, factored in place with partial pivoting: of a
-//! size that is known when a model is built, or when it is read, in the same operations.
-//! Takes a matrix; gives its factors, with the reciprocals of pivots, and solutions.
+//! Factors small square matrices in place with partial pivoting. Matrices are lists in column-major order. The
+//! operations are the same whether the size is known at compile time or at run time. Takes a matrix; gives its factors
+//! with reciprocal pivots, and solutions.
 
-// Rows and columns of one list.
+// Loops index rows and columns of one list.
 #![allow(clippy::needless_range_loop)]
 
 use crate::Real;
 
-/// By what pivots are chosen: their size in the lane where it is least.
+/// The size by which pivots are chosen. Comparisons use the lane in which it is smallest.
 fn weight<T: Real>(x: T) -> T {
     x * x
 }
 
-/// Factors a matrix of size `n`; false where no pivot is found, or it is not finite.
+/// Factors a matrix of size `n`. Returns false if a pivot is zero or not finite.
 #[inline(always)]
 pub(super) fn factor<T: Real>(n: usize, a: &mut [T], pivots: &mut [usize]) -> bool {
     for k in 0..n {
@@ -48,7 +48,7 @@ pub(super) fn factor<T: Real>(n: usize, a: &mut [T], pivots: &mut [usize]) -> bo
     true
 }
 
-/// `x = A^-1 x` of a matrix that is factored.
+/// Computes `x = A^-1 x` with a factored matrix.
 #[inline(always)]
 pub(super) fn solve<T: Real>(n: usize, a: &[T], pivots: &[usize], x: &mut [T]) {
     for k in 0..n {
@@ -71,7 +71,7 @@ pub(super) fn solve<T: Real>(n: usize, a: &[T], pivots: &[usize], x: &mut [T]) {
     }
 }
 
-/// Whether the pivots of a matrix that is factored are more than this part of the columns of another.
+/// Whether every pivot of the factored matrix `a` exceeds `floor` times the largest entry of the same column of `of`.
 pub(super) fn are_above<T: Real>(n: usize, a: &[T], of: &[T], floor: f64) -> bool {
     (0..n).all(|k| {
         let column = &of[n * k..n * (k + 1)];

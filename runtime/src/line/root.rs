@@ -1,14 +1,14 @@
-//! The velocity of one site whose momentum is not linear in it: the root of `P(v) = m` that follows from
-//! rest. Takes the momentum of the edge, and `P` with its derivative; gives the velocity, or how far it
-//! could be followed.
+//! Solves `P(v) = m` for the velocity of one site if the momentum `P` is nonlinear in the velocity. The result is the
+//! principal root, connected to rest. Takes the edge momentum `m`, and `P` with its derivative; gives the velocity, or
+//! how far the curve could be followed.
 //!
-//! The curve `P(v) = (1 - τ) P(0) + τ m` begins at rest and ends at the principal root. Newton's method follows it
-//! in stages, mostly one. A stage is accepted if its first two corrections by one tangent decrease by a factor of
-//! four. This bounds the change of the tangent along the stage (Deuflhard, Newton Methods for Nonlinear Problems,
-//! 2011, sections 2.1 and 5.1). It is a test at points, not a proof. The same two corrections estimate the error
-//! after another correction.
+//! Newton's method follows the curve `P(v) = (1 - τ) P(0) + τ m` from rest to the principal root in stages, usually
+//! one. A stage is accepted if its first two corrections with the same derivative decrease by a factor of four. This
+//! bounds the change of the derivative along the stage (Deuflhard, Newton Methods for Nonlinear Problems, 2011,
+//! sections 2.1 and 5.1). The test samples points and proves nothing. The same two corrections estimate the error that
+//! another correction would leave.
 
-// Several lists run along one index.
+// Loops use one index for several lists.
 #![allow(clippy::needless_range_loop)]
 
 use super::pivots;
@@ -19,35 +19,35 @@ use crate::solvers::newton::principal::FALLS;
 use core::fmt;
 use nalgebra::{SMatrix, SVector, Vector3};
 
-/// Shortest stage, as a share of the way. For a momentum like `m v + b v^3` the first stage is about
-/// `m^(3/2)/(b^(1/2) p)`, which may be arbitrarily short.
+/// The shortest stage, as a fraction of the path. For a momentum like `m v + b v^3` the first stage is about
+/// `m^(3/2)/(b^(1/2) p)`, which can be arbitrarily short.
 const SHORTEST: f64 = 1e-100;
 
-/// Most stages on the way.
+/// The largest number of stages.
 const MOST_STAGES: usize = 1000;
 
-/// Most corrections of a stage; they fall quadratically.
+/// The largest number of corrections in a stage. They converge quadratically.
 const MOST_CORRECTIONS: usize = 20;
 
-/// A correction so small, of the velocity, leaves rounding when the next would be its square.
+/// If a correction is below this fraction of the velocity, the next one, about its square, is rounding.
 const LAST: f64 = 1e-8;
 
 /// The error of a velocity counts as zero if its estimate from the corrections is at most this many roundings.
 const NOTHING: f64 = 1.0 / 16.0;
 
-/// The part of a stage that is tried where corrections do not fall.
+/// If corrections do not decrease, the next stage is shorter by this factor.
 const WORSE: f64 = 0.2;
 
-/// So near the end of a stage another one can begin.
+/// A stage that is not the last ends once its corrections are below this fraction of the first.
 const NEAR: f64 = 1e-3;
 
-/// Residuals of so many roundings of both sides are none.
+/// A residual counts as zero if it is at most this many roundings of both sides.
 const ROUNDINGS: f64 = 32.0;
 
-/// A momentum without a velocity that is connected to rest.
+/// No velocity with this momentum is connected to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoRoot {
-    /// The share of the way from rest up to which velocities were found.
+    /// The fraction of the path from rest for which velocities were found.
     pub share: f64,
 }
 
@@ -65,25 +65,26 @@ impl fmt::Display for NoRoot {
 
 impl std::error::Error for NoRoot {}
 
-/// Momenta as functions of velocities, with a derivative that is factored on demand. The derivative by the vector `v`
-/// of a rotation `Ω` is taken along `Ω hat(η)`.
+/// Momenta as functions of velocities, with a derivative that is factored on demand. For the Cayley vector `v` of a
+/// rotation `Ω`, the derivative is taken along `Ω hat(η)`.
 pub(super) trait Momenta<T: Real> {
-    /// The momenta of velocities, and the derivative there.
+    /// Computes the momenta and their derivative at `velocity`.
     fn at(&mut self, velocity: &[T], momenta: &mut [T]);
-    /// The momenta alone.
+    /// Computes only the momenta.
     fn momenta_at(&mut self, velocity: &[T], momenta: &mut [T]);
-    /// A scale of each velocity, by the diagonal of the derivative.
+    /// Computes a scale for each velocity component from the diagonal of the derivative.
     fn scales(&self, scales: &mut [f64]);
-    /// Whether a component of a velocity is of the vector of a rotation, which is rounded as numbers of the size of 1.
+    /// Whether the component belongs to the vector of a rotation. Such components have the absolute rounding error of
+    /// numbers of size 1.
     fn turns(&self, component: usize) -> bool;
-    /// Factors the derivative, which was taken at these velocities, and replaces the change `x` of momenta by the
-    /// change of velocities. False if the derivative is singular or not finite.
+    /// Factors the derivative, which was evaluated at `velocity`, and overwrites the momentum change `x` by the
+    /// velocity change. Returns false if the derivative is singular or not finite.
     fn factor_and_solve(&mut self, velocity: &[T], x: &mut [T]) -> bool;
-    /// Solves with the derivative that was factored last.
+    /// Solves with the last factored derivative.
     fn solve(&mut self, x: &mut [T]);
 }
 
-/// Where the vectors of rotations begin among the components of a velocity.
+/// The indices of the velocity components at which the vector of a rotation starts.
 pub(super) fn begins(turns: &[bool]) -> impl Iterator<Item = usize> {
     let mut next = 0;
     turns.iter().enumerate().filter_map(move |(k, turns)| {
@@ -93,7 +94,8 @@ pub(super) fn begins(turns: &[bool]) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Converts a change `Ω hat(η)` of rotations to the change of their vector, at the vector of the derivative.
+/// Converts a change `Ω hat(η)` of a rotation into the change of its vector. `velocity` is the vector at which the
+/// derivative was taken.
 #[inline(always)]
 pub(super) fn of_vector<T: Real>(velocity: &[T], change: &mut [T]) {
     if let (&[x, y, z], [a, b, c]) = (velocity, change) {
@@ -102,23 +104,20 @@ pub(super) fn of_vector<T: Real>(velocity: &[T], change: &mut [T]) {
     }
 }
 
-/// Lists of the length of a velocity.
+/// Work lists, as long as the velocity.
 pub(super) struct Lists<'a, T> {
-    /// The trial, and the solution in the end.
+    /// The trial; at the end, the solution.
     pub velocity: &'a mut [T],
-    /// Where a stage began.
+    /// The velocity at the start of the stage.
     pub from: &'a mut [T],
-    /// The momenta of the trial.
     pub momenta: &'a mut [T],
     /// The target momenta minus the momenta at rest.
     pub whole: &'a mut [T],
-    /// A correction.
     pub correction: &'a mut [T],
-    /// The scales of the velocities.
     pub scales: &'a mut [f64],
 }
 
-/// The largest entry in units of scales; NaN if any is.
+/// The largest scaled entry; NaN if any entry is NaN.
 #[inline(always)]
 fn largest<T: Real>(x: &[T], scales: &[f64]) -> f64 {
     const SIDE_BY_SIDE: usize = 4;
@@ -128,7 +127,7 @@ fn largest<T: Real>(x: &[T], scales: &[f64]) -> f64 {
             x.magnitude(),
         )
     };
-    // Several maxima side by side, which do not wait for one another.
+    // Independent maxima, so that the processor computes them in parallel.
     let (mut most, mut lost) = ([0.0_f64; SIDE_BY_SIDE], false);
     let mut see = |k: usize, (size, magnitude): (f64, f64)| {
         lost |= size.is_nan() | magnitude.is_nan();
@@ -161,7 +160,7 @@ fn aim<T: Real>(known: &[T], end: f64, lists: &Lists<'_, T>, i: usize) -> T {
     }
 }
 
-/// `correction = target momenta - momenta`, and whether every component of it is rounding of its own terms.
+/// Sets `correction = target momenta - momenta`; returns whether each component is only rounding of its own terms.
 #[inline(always)]
 fn residual<T: Real>(known: &[T], end: f64, lists: &mut Lists<'_, T>) -> bool {
     let mut rounded = true;
@@ -175,9 +174,9 @@ fn residual<T: Real>(known: &[T], end: f64, lists: &mut Lists<'_, T>) -> bool {
     rounded
 }
 
-/// Whether the residual is rounding of the largest component, in units of scales. Rounding of one component changes the
-/// velocity and thereby the other components, as near rest in a vector potential that is large along one direction.
-/// Used only if corrections no longer decrease.
+/// Whether the residual is rounding relative to the largest component, in scaled units. Rounding in one component
+/// changes the velocity and thus the other components, for example near rest in a vector potential that is large along
+/// one direction. Used only if corrections no longer decrease.
 #[cold]
 fn rounded_together<T: Real>(known: &[T], end: f64, lists: &Lists<'_, T>) -> bool {
     let (mut most, mut reached) = (0.0_f64, 0.0_f64);
@@ -197,10 +196,10 @@ fn corrected<T: Real>(velocity: &mut [T], correction: &[T]) {
     }
 }
 
-/// Follows the curve from rest to its end.
+/// Follows the curve from rest to the principal root.
 ///
 /// # Errors
-/// The part of the way up to which it could be followed.
+/// [`NoRoot`], with the fraction of the path that could be followed.
 #[inline(always)]
 pub(super) fn follow<T: Real>(
     known: &[T],
@@ -215,7 +214,7 @@ pub(super) fn follow<T: Real>(
     }
     let (mut share, mut length) = (0.0_f64, 1.0_f64);
     for _ in 0..MOST_STAGES {
-        // Here the trial is the beginning of a stage, with its momenta and their derivative.
+        // At this point the trial is the start of a stage, and its momenta and derivative are known.
         length = length.min(1.0 - share);
         if length < SHORTEST {
             break;
@@ -248,8 +247,8 @@ pub(super) fn follow<T: Real>(
     Err(NoRoot { share })
 }
 
-/// The size of corrections that are rounding of rotations, in units of scales: in a short step, momenta are small
-/// differences of turned vectors.
+/// The size, in scaled units, of corrections that are only rounding of rotations. In a short step the momenta are small
+/// differences of rotated vectors.
 #[inline(always)]
 fn of_turns<T: Real>(equations: &impl Momenta<T>, scales: &[f64]) -> f64 {
     let mut most = 0.0_f64;
@@ -274,7 +273,7 @@ fn stage<T: Real>(
     let turned = of_turns(equations, lists.scales);
     let first = largest(lists.correction, lists.scales);
     corrected(lists.velocity, lists.correction);
-    // By the derivative at the beginning.
+    // Uses the derivative at the start of the stage.
     let (rounded, second) = again(known, end, equations, lists);
     if !(first.is_finite() && second.is_finite()) {
         return Some(WORSE);
@@ -284,8 +283,8 @@ fn stage<T: Real>(
         return Some((0.8 * FALLS * first / second).clamp(0.1, 0.8));
     }
     corrected(lists.velocity, lists.correction);
-    // The error after a correction `d` by the derivative before it is `bend d^2`. After another correction `e` by the
-    // same derivative it is `2 bend d e`.
+    // A correction `d` with its own derivative leaves an error of `bend d^2`. A further correction `e` with the same
+    // derivative leaves `2 bend d e`.
     let mut bend = second / (first * first);
     let nothing = |left: f64, size: f64| left <= NOTHING * T::EPSILON * size;
     let size = largest(lists.velocity, lists.scales);
@@ -303,7 +302,7 @@ fn stage<T: Real>(
         }
         let own = largest(lists.correction, lists.scales);
         corrected(lists.velocity, lists.correction);
-        // Corrections fall at least by half until they are rounding.
+        // Until they reach rounding level, corrections decrease by at least half.
         let noise = |own: f64, rounded: bool, lists: &Lists<'_, T>| {
             own.is_finite() && (rounded || own <= turned || rounded_together(known, end, lists))
         };
@@ -333,7 +332,7 @@ fn stage<T: Real>(
     if !done {
         return Some(WORSE);
     }
-    // Derivatives of the solution are exact to one order more after each further correction.
+    // Each further correction makes the solution's derivatives exact to one more order.
     let further = if last { T::ORDER } else { 0 };
     for _ in 0..further {
         equations.at(lists.velocity, lists.momenta);
@@ -349,7 +348,7 @@ fn stage<T: Real>(
     None
 }
 
-/// A correction by the derivative that was factored last: whether the residual is rounding, and the size of the
+/// Corrects with the last factored derivative. Returns whether the residual is rounding, and the size of the
 /// correction.
 #[inline(always)]
 fn again<T: Real>(
@@ -416,7 +415,7 @@ impl<T: Real, F: FnMut(&[T], &mut [T], Option<&mut [T]>)> Momenta<T> for Site<'_
     }
 }
 
-/// The scales of a diagonal block. Velocities times their scales have a common unit, the root of an action.
+/// Scales from a diagonal block. Scaled velocities have a common unit, the square root of an action.
 #[inline(always)]
 pub(super) fn scales_of<T: Real>(n: usize, tangent: &[T], scales: &mut [f64]) {
     for k in 0..n {
@@ -427,9 +426,9 @@ pub(super) fn scales_of<T: Real>(n: usize, tangent: &[T], scales: &mut [f64]) {
     }
 }
 
-/// The velocity of a site whose momentum is `known`. `turns` marks the components of the vector `v` of a rotation `Ω`.
-/// `momentum` gives the momentum at a velocity, `whole` gives it with its derivative. The derivative by `v` is taken
-/// along `Ω hat(η)`.
+/// The velocity of a site with the momentum `known`. `turns` marks the components of the vector `v` of a rotation `Ω`.
+/// `momentum` computes the momentum at a velocity; `whole` also computes its derivative, taken along `Ω hat(η)` for
+/// `v`.
 ///
 /// # Errors
 /// [`NoRoot`] if the solution is not connected to rest.
@@ -476,11 +475,11 @@ pub fn root<T: Real, const N: usize>(
     Ok(*velocity)
 }
 
-/// The same for a number of components that is known when a model is read: `momenta` writes momenta, and where it is wanted
-/// their derivative column after column.
+/// Like [`root`], if the number of components is known only at run time. `momenta` writes the momenta and, on request,
+/// their derivative in column-major order.
 ///
 /// # Errors
-/// As [`root`].
+/// [`NoRoot`], as for [`root`].
 pub fn root_of<T: Real>(
     known: &[T],
     turns: &[bool],
@@ -529,7 +528,7 @@ mod tests {
         root(&SVector::from([p]), [false], |v| momenta(v).0, momenta).map(|v| v[0])
     }
 
-    /// However stiff: the derivative is nowhere below m, so that the root is the only one.
+    /// The derivative is at least m everywhere, so the root is unique for any stiffness.
     #[test]
     fn a_cubic_momentum_is_followed_from_rest_at_any_scale() {
         for (m, b, p) in [
@@ -543,7 +542,7 @@ mod tests {
         ] {
             let v = cubic(m, b, p).unwrap_or_else(|e| panic!("{m} {b} {p}: {e}"));
             let terms = (m * v).abs() + (b * v * v * v).abs();
-            // Rounding of the terms, through a derivative of up to three times their size.
+            // The residual is rounding of the terms, amplified by a derivative of up to three times their size.
             assert!(
                 (m * v + b * v * v * v - p).abs() < 8.0 * f64::EPSILON * terms,
                 "{m} {b} {p}: {v}"
@@ -551,8 +550,8 @@ mod tests {
         }
     }
 
-    /// If a vector potential is large along one direction, the momenta of slow particles are rounding of it. The share
-    /// of this rounding in the other components exceeds their own rounding: one in a thousand of these cases failed.
+    /// If a vector potential is large along one direction, the momenta of slow particles are only its rounding error,
+    /// and it also dominates the rounding of the other components. One in a thousand of these cases failed.
     #[test]
     fn near_rest_in_a_large_vector_potential_velocities_are_found() {
         let mut state = 1_u64;
@@ -581,19 +580,20 @@ mod tests {
             let known = momenta(&SVector::zeros()).0 + moving;
             let found = root(&known, [false; 2], |v| momenta(v).0, momenta)
                 .unwrap_or_else(|e| panic!("{place} {moving}: {e}"));
-            // Rounding of the place in the potential, and some of the larger component.
+            // Allows for rounding of the position in the potential, and for part of the rounding of the larger
+            // component.
             let off = (known - momenta(&found).0).norm();
             let rounding = f64::EPSILON * (m * axis * place + 64.0 * known.norm());
             assert!(off <= rounding, "{place} {moving}: {off}");
         }
     }
 
-    /// One that turns back is not followed past its turn, at |v| = (m/3)^(1/2).
+    /// A momentum with a fold is not followed beyond it; the fold is at |v| = (m/3)^(1/2).
     #[test]
     fn what_turns_back_has_no_root_beyond() {
         let share = cubic(1.0, -1.0, 1.0).expect_err("turns back").share;
         let top = 2.0 / 27.0_f64.sqrt();
-        // At the turn itself a velocity is known to the root of rounding.
+        // At the fold a velocity is accurate only to the square root of rounding.
         assert!((share - top).abs() < 1e-8, "{share} {top}");
     }
 }

@@ -1,7 +1,7 @@
-//! Signs of unit quaternions along a line. `q` and `-q` are one attitude; from one site to the next they differ by a
-//! whole turn, which a term that holds the real part of `q* p` stores as energy. Where a trajectory starts the signs
-//! are therefore made to agree. Takes attitudes in order along the line; changes signs, or tells that around a ring
-//! they cannot agree.
+//! Signs of unit quaternions along a chain. `q` and `-q` are the same attitude. If neighbours differ in sign, a term
+//! with the real part of `q* p` stores the energy of a full turn. Signs are therefore made consistent at the start of a
+//! trajectory. Takes attitudes in order along the chain; changes signs, or reports that they cannot be consistent
+//! around a ring.
 
 use super::Attitudes;
 use crate::error::Problem;
@@ -9,20 +9,20 @@ use crate::linalg::{quaternion_imaginary, quaternion_real};
 use crate::{ParameterError, Real};
 use nalgebra::Matrix4;
 
-/// The scalar product.
+/// The scalar product of two quaternions.
 fn pairing<T: Real>(a: [T; 4], b: [T; 4]) -> T {
     let [a0, a1, a2, a3] = a;
     let [b0, b1, b2, b3] = b;
     (a0 * b0 + a1 * b1) + (a2 * b2 + a3 * b3)
 }
 
-/// -1 where the number is negative, else 1; in each lane.
+/// In each lane, -1 if the number is negative, otherwise 1.
 fn sign<T: Real>(x: T) -> T {
     let sign = x.sign();
     sign + (T::one() - sign * sign)
 }
 
-/// Replaces each unit quaternion by its opposite where its scalar product with the one before is negative.
+/// Negates each unit quaternion whose scalar product with the previous one is negative.
 pub fn agree<T: Real>(list: &mut Attitudes<T>) {
     let mut before: Option<[T; 4]> = None;
     for site in 0..list.len() {
@@ -34,8 +34,8 @@ pub fn agree<T: Real>(list: &mut Attitudes<T>) {
     }
 }
 
-/// Replaces all of them by their opposites where the one of a site disagrees with a quaternion that an end gives, as
-/// the matrix of its left multiplication.
+/// Negates all quaternions if the scalar product of the quaternion at `site` with a prescribed end quaternion is
+/// negative. `wall` is the matrix of left multiplication by the end quaternion.
 pub fn turn_towards<T: Real>(list: &mut Attitudes<T>, site: usize, wall: &Matrix4<T>) {
     let v = quaternion_imaginary(wall);
     let wall = [quaternion_real(wall), v.x, v.y, v.z];
@@ -47,10 +47,10 @@ pub fn turn_towards<T: Real>(list: &mut Attitudes<T>, site: usize, wall: &Matrix
     }
 }
 
-/// Whether the last of them agrees with the first.
+/// Checks that the signs of the last and the first quaternion are consistent.
 ///
 /// # Errors
-/// Where it does not: around the ring they make an odd number of turns.
+/// Fails if they are not: the attitudes make an odd number of turns around the ring.
 pub fn closes<T: Real>(quantity: &'static str, list: &Attitudes<T>) -> Result<(), ParameterError> {
     if list.is_empty() {
         return Ok(());
@@ -75,7 +75,7 @@ mod tests {
     use crate::{Rotation, UnitQuaternion};
     use nalgebra::Vector3;
 
-    /// Attitudes that make so many turns over the whole of a list, with signs that are given at random.
+    /// Attitudes that make `turns` turns along the list, with random signs.
     fn turning(turns: f64, count: usize) -> Attitudes<f64> {
         let each = (0..count).map(|i| {
             let half = std::f64::consts::PI * turns * i as f64 / count as f64;

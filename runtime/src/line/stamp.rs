@@ -1,5 +1,5 @@
-//! Which state a workspace was made for, without a comparison of states.
-//! Takes what a step depends on; gives numbers that are equal for equal histories only.
+//! Identifies the state for which a workspace was prepared, so that states need not be compared. Takes the inputs of a
+//! step; gives numbers that are equal only for equal histories.
 
 use core::sync::atomic::{AtomicU64, Ordering};
 
@@ -29,7 +29,7 @@ impl Stamp {
     }
 }
 
-/// All bits of a number spread over all of them (the finaliser of splitmix64, Steele and others 2014).
+/// Mixes the bits of a number (the finaliser of splitmix64, Steele and others 2014).
 #[inline]
 fn mixed(x: u64) -> u64 {
     let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);

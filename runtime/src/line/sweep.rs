@@ -1,5 +1,5 @@
-//! Loops over sites. Each site's value is computed from what stood before the loop, so that the order
-//! of sites, and how threads share them, changes no bit. Threads need the feature `rayon`.
+//! Loops over sites. Each value depends only on data from before the loop, so results are bitwise independent of the
+//! order of sites and the number of threads. Threads need the feature `rayon`.
 
 use super::part::Part;
 use crate::Real;
@@ -9,7 +9,7 @@ use nalgebra::SMatrix;
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 
-/// How many threads share a loop.
+/// The number of threads that share a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Threads(pub usize);
 
@@ -18,11 +18,11 @@ pub struct Threads(pub usize);
 const FEWEST: usize = 2048;
 
 impl Threads {
-    /// One.
+    /// A single thread.
     pub const ONE: Threads = Threads(1);
 
     #[cfg(feature = "rayon")]
-    /// The length of the ranges of `sites` sites, if there are to be several.
+    /// The number of sites for each thread; `None` if one thread suffices.
     fn share(self, sites: usize) -> Option<usize> {
         let parts = self.0.min(sites / FEWEST);
         (parts > 1).then(|| sites.div_ceil(parts).next_multiple_of(super::part::LANES))
@@ -52,7 +52,7 @@ pub fn try_fill<P: Part, E: Send>(
     })
 }
 
-/// Does what is to be done with the parts that threads share, each with the number of its first site.
+/// Splits the sites among threads and calls `done` for each part, with the number of its first site.
 #[inline(always)]
 pub(super) fn try_in_parts<P: Part, E: Send>(
     threads: Threads,
@@ -92,7 +92,7 @@ pub(super) fn try_fill_part<P: Part, E>(
     Ok(())
 }
 
-/// The first of the sites from `first` to the one before `last` at which a test fails, and why.
+/// Tests the sites from `first` up to, but not including, `last`, and stops at the first failure.
 ///
 /// # Errors
 /// The error of the site with the smallest number.
@@ -104,11 +104,11 @@ pub fn try_each<E>(
     (first..last).try_for_each(|i| test(i).map_err(|e| (i, e)))
 }
 
-/// `(value, kept[i]) = change(i, kept[i])`, the value put into `out[i]`, for every site. Says which
-/// site is the first whose change is none; what is kept then is of no meaning.
+/// For every site computes `(value, kept[i]) = change(i, kept[i])` and stores the value in `out[i]`. If `change`
+/// returns `None` at a site, `kept` is meaningless afterwards.
 ///
 /// # Errors
-/// The number of that site.
+/// The smallest site for which `change` returns `None`.
 #[inline]
 pub fn update<P: Part, K: Part>(
     threads: Threads,
@@ -139,7 +139,7 @@ pub(super) fn update_part<P: Part, K: Part>(
     Ok(())
 }
 
-/// Two lists of the same sites.
+/// Two lists over the same sites, processed together.
 pub(super) struct Two<P, K>(pub(super) P, pub(super) K);
 
 impl<P: Part, K: Part> Part for Two<P, K> {
@@ -164,7 +164,7 @@ impl<P: Part, K: Part> Part for Two<P, K> {
     }
 }
 
-/// The sum of the values of sites, in the order of sites and in two numbers (Neumaier).
+/// Sums the values in the order of the sites, with Neumaier's compensation.
 pub fn sum<T: Real>(sites: usize, value: impl Fn(usize) -> T) -> T {
     total(sites, |i| SMatrix::<T, 1, 1>::new(value(i)))[0]
 }
@@ -196,7 +196,7 @@ mod tests {
 
     #[test]
     fn sums_keep_what_large_terms_hide() {
-        // The large ones cancel; of the small ones a plain sum keeps none.
+        // The large values cancel; a plain sum would lose all the small ones.
         let values = [1.0, 1e20, 0.5, -1e20, 0.25];
         assert_eq!(sum(values.len(), |i| values[i]), 1.75);
         let both = total(values.len(), |i| Vector2::new(values[i], -2.0 * values[i]));

@@ -1,5 +1,5 @@
-//! Rotations of a step as they are found by Newton's method: by the vector `v` of the Cayley transform
-//! `Ω = (Id - hat(v)/2)^-1 (Id + hat(v)/2)`, which has every rotation but those by half a turn.
+//! Rotations as unknowns of Newton's method: the vector `v` of the Cayley transform
+//! `Ω = (Id - hat(v)/2)^-1 (Id + hat(v)/2)`. It represents every rotation except half turns.
 
 use crate::Real;
 use nalgebra::{Matrix3, Vector3};
@@ -10,7 +10,7 @@ fn factor<T: Real>(v: &Vector3<T>) -> T {
     T::one() / (T::one() + v.dot(v) * T::from_f64(0.25))
 }
 
-/// The rotation of a vector.
+/// The rotation with the Cayley vector `v`.
 #[inline(always)]
 #[must_use]
 pub fn turn_of<T: Real>(v: &Vector3<T>) -> Matrix3<T> {
@@ -29,7 +29,7 @@ pub fn turn_of<T: Real>(v: &Vector3<T>) -> Matrix3<T> {
     turn
 }
 
-/// The change of `v` with which its rotation changes by `Ω hat(η)`.
+/// The change of `v` that changes its rotation by `Ω hat(η)`.
 #[inline(always)]
 pub(super) fn vector_change<T: Real>(v: &Vector3<T>, eta: &Vector3<T>) -> Vector3<T> {
     let half = v * T::from_f64(0.5);
@@ -41,7 +41,7 @@ mod tests {
     use super::{turn_of, vector_change};
     use nalgebra::{Matrix3, Vector3};
 
-    /// Against the quotient that defines it, and central differences, whose error is of the square of their step.
+    /// Compares with the defining quotient, and with central differences, whose error is quadratic in their step.
     #[test]
     fn a_turn_is_its_cayley_transform_and_changes_with_its_vector() {
         let v = Vector3::new(0.7, -1.3, 0.4);

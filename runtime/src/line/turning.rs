@@ -1,5 +1,5 @@
-//! Attitudes where the edges of several bodies end, found together where one iteration of each solve finds them.
-//! Takes attitudes, edges and the one body that all of them are; gives a stage of the loop over sites.
+//! Computes the attitudes at the end of the edges of several bodies at once, if one solver iteration suffices for each.
+//! Takes attitudes, edges and a body shared by all sites; gives a stage of the loop over sites.
 
 use super::part::{InColumns, LANES};
 use super::window::Windowed;
@@ -7,17 +7,17 @@ use super::{Attitude, Attitudes, Edges, Stage};
 use crate::Real;
 use crate::solvers::moser_veselov::{Edge, Poinsot};
 
-/// The stage in which bodies turn by the principal solution of the Moser-Veselov equation.
+/// Rotates bodies by the principal solution of the Moser-Veselov equation.
 pub struct Turning<'a, T: Real> {
-    /// Attitudes at the nodes where edges begin.
+    /// The attitudes at the start of the edges.
     pub at: &'a Attitudes<T>,
-    /// Momenta of the edges, in space.
+    /// The momenta of the edges, in space.
     pub edges: &'a Edges<T>,
-    /// The bodies: one where all are alike.
+    /// The bodies; a single one if all sites have the same body.
     pub bodies: &'a [Poinsot<T>],
-    /// The step.
+    /// The step size.
     pub h: T,
-    /// The site with which the part begins.
+    /// The first site of the part.
     pub first: usize,
 }
 
@@ -46,7 +46,7 @@ impl<T: Real> Turning<'_, T> {
 impl<T: Real> Stage for Turning<'_, T> {
     type One = Attitude<T>;
 
-    /// Bodies that differ are not found together.
+    /// If the bodies differ, the sites are computed one by one.
     #[inline(always)]
     fn lanes<P: InColumns<One = Attitude<T>>>(&self, first: usize, out: &mut P::Lanes) -> bool {
         let [body] = self.bodies else {

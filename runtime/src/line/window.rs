@@ -6,35 +6,35 @@ use super::part::LANES;
 use crate::Real;
 use num_traits::Zero;
 
-/// A list of which `M` sites can be read together.
+/// A list from which `M` consecutive sites can be read together.
 pub trait Windowed<const M: usize> {
-    /// The view of these sites.
+    /// The view of `M` sites.
     type Window<'a>
     where
         Self: 'a;
 
-    /// The sites from one on.
+    /// The view that starts at site `first`.
     ///
     /// # Panics
-    /// Where there are fewer.
+    /// If fewer than `M` sites remain.
     fn window(&self, first: usize) -> Self::Window<'_>;
 }
 
-/// Sites of a list of values of several numbers.
+/// A view of a list that stores each number of a value in a separate column.
 pub struct Window<'a, V: Numbered<N>, const N: usize, const M: usize> {
     columns: [&'a [V::Number; M]; N],
     first: usize,
 }
 
 impl<V: Numbered<N>, const N: usize, const M: usize> Window<'_, V, N, M> {
-    /// The value at one of the [`LANES`] sites that are computed together.
+    /// The value at one of the [`LANES`] sites.
     #[inline(always)]
     pub fn at(&self, site: usize) -> V {
         self.ahead::<0>(site)
     }
 
-    /// The value `ON` sites further. The test of the index is the same as in the loop: another test may halve the
-    /// number of sites that are computed together.
+    /// The value `ON` sites ahead. The index check is the same as in the loop; a different check may halve the number
+    /// of sites computed together.
     #[inline(always)]
     pub fn ahead<const ON: usize>(&self, site: usize) -> V {
         // A loop: `map` of an array is not always inlined.
@@ -63,27 +63,27 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize, const M: usize> Window
     }
 }
 
-/// Sites of a list that stores value after value.
+/// A view of a list that stores values one after another.
 pub struct Stretch<'a, V, const M: usize> {
     list: &'a [V; M],
     first: usize,
 }
 
 impl<V: Copy, const M: usize> Stretch<'_, V, M> {
-    /// The value at one of the [`LANES`] sites that are computed together.
+    /// The value at one of the [`LANES`] sites.
     #[inline(always)]
     pub fn at(&self, site: usize) -> V {
         self.ahead::<0>(site)
     }
 
-    /// The value `ON` sites on.
+    /// The value `ON` sites ahead.
     #[inline(always)]
     pub fn ahead<const ON: usize>(&self, site: usize) -> V {
         lanes::<_, ON, M>(self.list)[site - self.first]
     }
 }
 
-/// The part of a window that begins `ON` sites further.
+/// The [`LANES`] sites of a window that start `ON` sites ahead.
 #[inline(always)]
 fn lanes<T, const ON: usize, const M: usize>(window: &[T; M]) -> &[T; LANES] {
     of_length(&window[ON..ON + LANES])

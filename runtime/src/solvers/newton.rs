@@ -1,6 +1,5 @@
-//! Newton's method on a Lie group, for implicit steps without a closed form.
-//! Takes a guess or the solutions before, the residual and its tangent; gives a converged element
-//! or an error.
+//! Newton's method on a Lie group, for implicit steps without a closed form. Takes an initial guess or previous
+//! solutions, the residual and its tangent; gives a converged element or an error.
 
 mod alone;
 mod any_size;
@@ -36,36 +35,35 @@ use reduced::AtRest;
 /// The largest number of iterations; quadratic convergence needs fewer than ten.
 const MOST_ITERATIONS: usize = 50;
 
-/// A residual below this many roundings of its equation's own terms is zero: it is a sum of some
-/// ten rounded products.
+/// A residual counts as zero below this many roundings of the terms of its equation. A residual is a sum of about ten
+/// rounded products.
 const CONVERGED_ROUNDINGS: f64 = 16.0;
 
-/// Below this the residual is nothing but rounding, and a further step would only change it.
+/// Below this the residual is pure rounding, and another step would only change the rounding.
 const POLISHED_ROUNDINGS: f64 = 4.0;
 
 /// Two evaluations may differ by twice their bounds of rounding, [`BOUND_ROUNDINGS`] each. If the
 /// residual stops decreasing below this, the cause is rounding.
 const STAGNATED_ROUNDINGS: f64 = 64.0;
 
-/// A bound of the rounding of an equation is taken to be this many roundings of its terms.
+/// The assumed bound of an equation's rounding, in roundings of its terms.
 const BOUND_ROUNDINGS: f64 = 8.0;
 
-/// The sizes of the terms are computed anew after this many steps: they vary little along a
-/// trajectory.
+/// The sizes of the terms are recomputed after this many steps, because they vary little along a trajectory.
 const OLDEST_SCALE: u32 = 256;
 
-/// They are also computed anew after this many iterations, since the terms may have grown.
+/// The sizes of the terms are also recomputed after this many iterations, because the terms may have grown.
 const LATE: usize = 8;
 
-/// A factored tangent serves further corrections while each leaves less than this of the residual;
-/// otherwise a tangent at the new trial is cheaper.
+/// A factored tangent is reused while each correction reduces the residual below this fraction. Otherwise a tangent at
+/// the new trial is cheaper.
 const WORTH_KEEPING: f64 = 0.02;
 
-/// A tangent of so many steps ago still makes a residual that is rounding already smaller: it has
-/// turned with the motion by a few angles of a step.
+/// A tangent younger than this many steps still reduces a residual at rounding level. By then it has rotated with the
+/// motion by a few step angles.
 const OLDEST_TANGENT: u32 = 8;
 
-/// How far the next residual may exceed the one foreseen at the rate of the last correction.
+/// The next residual may exceed its prediction, from the rate of the last correction, by at most this factor.
 const FORESIGHT: f64 = 4.0;
 
 /// A converged solution.
@@ -73,68 +71,67 @@ const FORESIGHT: f64 = 4.0;
 pub struct Solved<G> {
     /// The group element that solves the equation.
     pub element: G,
-    /// Newton steps made, the polishing one included.
+    /// The number of Newton steps, including the polishing step.
     pub iterations: usize,
-    /// The residual before the last step over the size of its terms: the largest of all equations
-    /// and lanes.
+    /// The residual before the last step relative to the size of its terms: the maximum over equations and lanes.
     pub residual: f64,
 }
 
-/// The neutral element, where the last attempt starts.
+/// The index of the last attempt, which starts at the neutral element.
 const LAST_ATTEMPT: u32 = 2;
 
-/// If the terms of an equation are smaller than this share of the terms of similar equations, it is judged by these.
+/// If the terms of an equation are smaller than this fraction of the terms of similar equations, the similar equations
+/// set its scale.
 const LEAST_SHARE: f64 = 1e-30;
 
 /// The number of solutions from which the next guess is extrapolated.
 const REMEMBERED: usize = 6;
 
-/// The search for the velocities along a trajectory. It remembers the last solutions and predicts the
-/// next one from them, to sixth order in the step.
+/// Finds the velocities along a trajectory. It stores the last solutions and predicts the next one from them, to sixth
+/// order in the step.
 ///
-/// Its memory affects the number of iterations and the rounding of a step, not the equations. If some
-/// unknowns are solved for beforehand, `W` is the group of all unknowns and `E` their number.
+/// The stored solutions affect the number of iterations and the rounding of a step, not the equations. If some unknowns
+/// are eliminated in closed form, `W` is the group of all unknowns and `E` is their number.
 #[derive(Clone, Copy, Debug)]
 pub struct Search<T, G, const D: usize, W = G, const E: usize = D> {
-    /// A ring, twice in a row, the newest at `newest`.
+    /// A ring buffer, stored twice in a row. The newest solution is at `newest`.
     past: [G; 2 * REMEMBERED],
     newest: usize,
     known: usize,
-    /// The node of the step that follows the newest solution.
+    /// The node of the step after the newest solution.
     next: u64,
-    /// One over the size of the terms of each equation.
+    /// For each equation, the inverse of the size of its terms.
     weights: SVector<T, D>,
-    /// One over the length of the part of the velocity that each coordinate belongs to.
+    /// For each coordinate, the inverse length of its part of the velocity.
     lengths: SVector<T, D>,
-    /// The number of steps since both were computed.
+    /// The number of steps since `weights` and `lengths` were computed.
     weighed: u32,
     /// The unit of length of each part, and the rounding error of its length.
     units: [f64; D],
     noise: [f64; D],
-    /// Whether a part lacks a scale of its own.
+    /// Whether some part lacks a natural scale.
     open: bool,
-    /// Whether these were computed since the sizes of the terms.
+    /// Whether the units were computed after the sizes of the terms.
     measured: bool,
-    /// Whether no step follows.
+    /// Whether this is a trial step.
     tries: bool,
     whole: AtRest<T, W, E>,
-    /// The tangent factored last, times `unit`.
+    /// The last factored tangent, times `unit`.
     factors: Factors<T, D>,
     unit: T,
-    /// How many steps ago that was.
+    /// The age of the factored tangent, in steps.
     age: u32,
     last: Summary,
 }
 
-/// How a step was solved.
+/// Statistics of a solved step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
-    /// Tangents made and factored: Newton's iterations proper. Zero if an earlier tangent sufficed.
+    /// The number of tangents evaluated and factored. Zero if an earlier tangent sufficed.
     pub tangents: usize,
-    /// Corrections made, those with a kept tangent included.
+    /// The number of corrections, including those with a reused tangent.
     pub corrections: usize,
-    /// The residual before the last of them over the size of its terms: the largest of all
-    /// equations.
+    /// The residual before the last correction, relative to the size of its terms: the maximum over equations.
     pub residual: f64,
 }
 
@@ -180,7 +177,7 @@ where
         }
     }
 
-    /// A search for other velocities of the same step, with the same purpose.
+    /// A search for other unknowns of the same step. It is a trial if this search is a trial.
     #[cold]
     #[must_use]
     pub fn alike<G2, const D2: usize, W2, const E2: usize>(&self) -> Search<T, G2, D2, W2, E2>
@@ -200,14 +197,14 @@ where
         self.tries
     }
 
-    /// How the last step was solved; zeros before the first.
+    /// Statistics of the last step; zeros before the first step.
     #[must_use]
     pub fn last(&self) -> Summary {
         self.last
     }
 
-    /// Begins the solution of the step that leaves `node`. The first trial is extrapolated from previous solutions.
-    /// If it fails, the last solution is tried, then the neutral element.
+    /// Starts the solution of the step that leaves `node`. The first trial is extrapolated from previous solutions. If
+    /// it fails, the next attempt starts at the last solution, and the final attempt at the neutral element.
     #[inline(always)]
     pub fn begin(&mut self, node: u64) -> Newton<'_, T, G, D, W, E> {
         if node != self.next {
@@ -240,7 +237,7 @@ where
         }
     }
 
-    /// Where the later attempts start.
+    /// The starting element of the later attempts.
     fn start(&self, attempt: u32) -> G {
         match attempt {
             1 if self.known > 0 => self.past[self.newest],
@@ -248,7 +245,7 @@ where
         }
     }
 
-    /// Takes the units of all parts and their rounding errors from a tangent.
+    /// Computes the units of all parts and their rounding errors from a tangent.
     #[cold]
     fn measure(&mut self, tangent: &SMatrix<T, D, D>) {
         let count = G::PARTS.min(D);
@@ -269,7 +266,7 @@ where
         self.measured = true;
     }
 
-    /// The polynomial through the last solutions, one step further.
+    /// Extrapolates the polynomial through the last solutions by one step.
     #[inline(always)]
     fn foreseen(&self) -> G {
         // Each solution is stored twice, so that the last solutions are contiguous.
@@ -284,7 +281,7 @@ where
         }
     }
 
-    /// Remembers the solution of the step that began at `node`.
+    /// Stores the solution of the step that began at `node`.
     #[inline(always)]
     pub fn remember(&mut self, node: u64, solution: &Solved<W>) {
         self.last = Summary {
@@ -345,18 +342,18 @@ pub struct Newton<'a, T, G, const D: usize, W = G, const E: usize = D> {
     previous: f64,
     corrections: Corrections,
     iteration: usize,
-    /// The iterations of a solution whose rest is requested.
+    /// The number of iterations of a solution whose remaining unknowns are still needed.
     found: Option<usize>,
 }
 
 /// The result of a correction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Progress<G> {
-    /// There is another trial.
+    /// Evaluate the equations at the new trial.
     Continue,
     /// The equations are solved.
     Solved(Solved<G>),
-    /// No attempt led to a solution.
+    /// All attempts failed.
     Failed(NewtonError),
 }
 
@@ -364,33 +361,33 @@ impl<T: Real, G, const D: usize, W: Group<T>, const E: usize> Newton<'_, T, G, D
 where
     G: Group<T> + Found<W>,
 {
-    /// The element at which the equations are needed.
+    /// The element at which to evaluate the equations.
     #[inline(always)]
     pub fn trial(&self) -> G {
         self.trial
     }
 
-    /// Whether no step follows.
+    /// Whether this is a trial step.
     #[cold]
     pub fn tries(&self) -> bool {
         self.search.tries()
     }
 
-    /// Whether the sizes of the terms are unknown or too old. At a start every trial needs them: at
-    /// rest, the first trial, the bounds of terms with a kink there are invalid.
+    /// Whether the sizes of the terms are unknown or too old. At the start every trial needs them: the first trial is
+    /// at rest, where the bounds of terms with a kink are invalid.
     #[inline(always)]
     pub fn wants_scale(&self) -> bool {
         self.search.weighed >= OLDEST_SCALE || self.attempt > 0
     }
 
-    /// The sizes of the terms at the trial: `rounding` bounds the rounding of each residual in a
-    /// lane, in plain numbers.
+    /// Takes the sizes of the terms at the trial. For each lane, `rounding` bounds the rounding of each residual, in
+    /// plain numbers.
     #[cold]
     pub fn set_scale(&mut self, rounding: impl Fn(usize) -> SVector<f64, D>) {
         for lane in 0..T::LANES {
             let mut scales = rounding(lane) / (BOUND_ROUNDINGS * f64::EPSILON / 2.0);
             for i in 0..G::DIMENSION.min(D) {
-                // An equation without terms is measured by the others of its kind.
+                // An equation without terms takes its scale from the other equations of its part.
                 let part = (0..G::DIMENSION.min(D)).filter(|k| G::part_of(*k) == G::part_of(i));
                 let most = part.fold(0.0, |most: f64, k| most.max(scales[k]));
                 scales[i] = scales[i].max(LEAST_SHARE * most);
@@ -540,17 +537,17 @@ where
     }
 }
 
-/// The largest absolute real part over components and lanes; NaN if any is.
+/// The largest absolute real part over components and lanes; NaN if any is NaN.
 #[inline(always)]
 fn largest<T: Real, const D: usize>(v: &SVector<T, D>) -> f64 {
     let (mut sum, mut largest) = (T::zero(), 0.0);
     for x in v.iter() {
         sum += *x;
-        // Equal for types with a single lane.
+        // For types with a single lane, both are equal.
         let (above, below) = (x.greatest().abs(), x.least().abs());
         let size = if above > below { above } else { below };
         largest = if size > largest { size } else { largest };
     }
-    // Comparisons ignore NaN, a sum does not.
+    // Comparisons ignore NaN; the sum propagates it.
     largest + 0.0 * sum.magnitude()
 }

@@ -1,11 +1,11 @@
-//! Elimination where the size of blocks is known when a model is read, or is large: blocks are parts of lists, factored
+//! Elimination for blocks that are large or whose size is known only at run time. Blocks are slices of lists, factored
 //! with pivots.
 
 use super::Blocks;
 use crate::Real;
 use crate::line::pivots;
 
-/// `out -= a x`, matrices of `n` rows, `x` and `out` of as many columns as they have.
+/// Computes `out -= a x` for matrices with `n` rows; `x` and `out` have equally many columns.
 #[inline(always)]
 fn take<T: Real>(n: usize, a: &[T], x: &[T], out: &mut [T]) {
     for (x, out) in x.chunks_exact(n).zip(out.chunks_exact_mut(n)) {
@@ -18,13 +18,13 @@ fn take<T: Real>(n: usize, a: &[T], x: &[T], out: &mut [T]) {
 }
 
 impl<T: Real> Blocks<T> {
-    /// Whether the pivots of a site are more than this part of the columns of its own block, which was kept.
+    /// Whether every pivot of a site exceeds `floor` times the largest entry of the same column of its original block.
     fn is_above(&self, n: usize, site: usize, floor: f64) -> bool {
         let here = n * n * site..n * n * (site + 1);
         floor <= 0.0 || pivots::are_above(n, &self.own[here], &self.scratch, floor)
     }
 
-    /// Factors the matrix. Fails with the site of the first block without a pivot above `floor` times its own columns.
+    /// Factors the matrix. If a pivot is not above `floor` times its own columns, the error is the first such site.
     pub(super) fn factor_lists(&mut self, n: usize, floor: f64) -> Result<(), usize> {
         let size = n * n;
         let open = self.open();
@@ -62,7 +62,7 @@ impl<T: Real> Blocks<T> {
         }
     }
 
-    /// The coupling of the last site of a ring with the others.
+    /// Computes the coupling of the last site of a ring to the other sites.
     fn factor_border(&mut self, n: usize) -> bool {
         let size = n * n;
         let (open, last) = (self.open(), self.sites - 1);
@@ -98,7 +98,7 @@ impl<T: Real> Blocks<T> {
         )
     }
 
-    /// The solution on the open line; `at` is where the part of a site stands.
+    /// Solves on the open chain; `at` gives the range of a site's entries in `x`.
     fn eliminate(&mut self, n: usize, x: &mut [T], at: impl Fn(usize) -> core::ops::Range<usize>) {
         let size = n * n;
         let open = self.open();
@@ -127,7 +127,7 @@ impl<T: Real> Blocks<T> {
         }
     }
 
-    /// `x = A^-1 x` of the matrix that was factored last.
+    /// Computes `x = A^-1 x` with the last factored matrix.
     pub(super) fn solve_lists(&mut self, n: usize, x: &mut [T]) {
         self.eliminate(n, x, |i| n * i..n * (i + 1));
         if !self.closed {

@@ -1,21 +1,21 @@
-//! Elimination where the size of blocks is known when it is built. A block is an array; one of up to three rows is inverted
-//! in closed form where its columns are far from dependent, any other is factored with pivots.
+//! Elimination for blocks whose size is known at compile time. Blocks are arrays. A block of up to three rows is
+//! inverted in closed form if its columns are far from linearly dependent; any other block is factored with pivots.
 
-// Rows and columns of arrays.
+// Loops index rows and columns of arrays.
 #![allow(clippy::needless_range_loop)]
 
 use super::Blocks;
 use crate::Real;
 use crate::line::pivots;
 
-/// Column after column.
+/// A block in column-major order.
 pub(in crate::line) type Block<T, const N: usize> = [[T; N]; N];
 
-/// The closed form multiplies rounding by the product of the lengths of the columns over the volume that they span. The
+/// The closed form amplifies rounding by the product of the column lengths over the volume that the columns span. The
 /// square of the inverse ratio must be at least this.
 const VOLUME: f64 = 1.0 / 64.0;
 
-/// The least squared share of a column that must remain after elimination, far more than rounding leaves.
+/// The smallest squared fraction of a column that must remain after elimination. It is far above rounding level.
 const LEFT: f64 = 1e-12;
 
 #[inline(always)]
@@ -59,8 +59,9 @@ fn dot<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
     sum
 }
 
-/// The inverse of a block of up to three rows in closed form. `None` unless, in every lane, its columns span a large
-/// share of the volume that their lengths allow. If `own` is given, they must also exceed the rounding of its columns.
+/// Inverts a block of up to three rows in closed form. Returns `None` unless, in every lane, the columns span a large
+/// fraction of the volume that their lengths allow. If `own` is given, the result must also exceed the rounding of the
+/// columns of `own`.
 #[inline(always)]
 fn inverse<T: Real, const N: usize>(
     a: &Block<T, N>,
@@ -95,7 +96,7 @@ fn inverse<T: Real, const N: usize>(
     for square in &squares[1..] {
         largest *= *square;
     }
-    // False for NaN, and for numbers whose squares overflow or underflow.
+    // The comparison is false for NaN, and if squares overflow or underflow.
     let mut far = (volume * volume - largest * T::from_f64(VOLUME)).exceeds(T::zero());
     if let Some(own) = own {
         for k in 0..N {
@@ -137,7 +138,7 @@ impl<'a, T: Real, const N: usize> Factors<'a, T, N> {
         }
     }
 
-    /// Multiplies `x` by the inverse of the remaining block of a site.
+    /// Multiplies `x` by the inverse of a site's remaining block.
     #[inline(always)]
     fn undo(&self, site: usize, x: &mut [T; N]) {
         match self.inverted[site] {
@@ -146,7 +147,7 @@ impl<'a, T: Real, const N: usize> Factors<'a, T, N> {
         }
     }
 
-    /// The first half of a solution on the open line, of several right sides side by side.
+    /// Forward substitution on the open chain, for several right sides at once.
     #[inline(always)]
     fn forward<const K: usize>(&self, x: &mut [[[T; N]; K]]) {
         let mut last = [[T::zero(); N]; K];
@@ -161,7 +162,7 @@ impl<'a, T: Real, const N: usize> Factors<'a, T, N> {
         }
     }
 
-    /// The second half.
+    /// Back substitution on the open chain.
     #[inline(always)]
     fn backward<const K: usize>(&self, x: &mut [[[T; N]; K]]) {
         let Some((last, before)) = x.split_last_mut() else {
@@ -177,7 +178,7 @@ impl<'a, T: Real, const N: usize> Factors<'a, T, N> {
     }
 }
 
-/// The remaining block of a site, inverted or factored, and its inverse times the next block.
+/// A site's remaining block, inverted or factored, and its inverse times the next block.
 struct Settled<T, const N: usize> {
     left: Block<T, N>,
     inverted: bool,
@@ -185,7 +186,7 @@ struct Settled<T, const N: usize> {
     value: [T; N],
 }
 
-/// Inverts or factors the remaining block of a site. If `own` is given, the remainder must exceed its rounding.
+/// Inverts or factors a site's remaining block. If `own` is given, the remainder must exceed the rounding of `own`.
 #[inline(always)]
 fn settle<T: Real, const N: usize>(
     left: Block<T, N>,
@@ -231,7 +232,7 @@ fn pivoted<T: Real, const N: usize>(
     })
 }
 
-/// Factors and solves. Fails with the site of the first block without a pivot above `floor` times its own columns.
+/// Factors and solves. If a pivot is not above `floor` times its own columns, the error is the first such site.
 pub(super) fn factor_and_solve<T: Real, const N: usize>(
     all: &mut Blocks<T>,
     floor: f64,
@@ -276,7 +277,7 @@ pub(super) fn factor_and_solve<T: Real, const N: usize>(
     Ok(())
 }
 
-/// The coupling of the last site of a ring with the others.
+/// Computes the coupling of the last site of a ring to the other sites.
 fn border<T: Real, const N: usize>(all: &mut Blocks<T>, floor: f64) -> Result<(), usize> {
     let (open, last) = (all.open(), all.sites - 1);
     let mut list = core::mem::take(&mut all.border);
@@ -312,7 +313,7 @@ fn border<T: Real, const N: usize>(all: &mut Blocks<T>, floor: f64) -> Result<()
     Ok(())
 }
 
-/// The solution around a ring; `begun` where the first half is done.
+/// Completes the solution on a ring; set `begun` if the forward substitution is done.
 fn close<T: Real, const N: usize>(all: &Blocks<T>, x: &mut [[T; N]], begun: bool) {
     let (open, last) = (all.open(), all.sites - 1);
     let factors = Factors::<T, N>::of(all);
@@ -331,7 +332,7 @@ fn close<T: Real, const N: usize>(all: &Blocks<T>, x: &mut [[T; N]], begun: bool
     }
 }
 
-/// `x = A^-1 x` of the matrix that was factored last.
+/// Computes `x = A^-1 x` with the last factored matrix.
 pub(super) fn solve<T: Real, const N: usize>(all: &Blocks<T>, x: &mut [T]) {
     let open = all.open();
     let x = x.as_chunks_mut::<N>().0;

@@ -1,5 +1,5 @@
-//! The area of each particle's Voronoi cell, `mesh A: Real at a = voronoi_area(X);`: mass over area is the depth of a
-//! layer that particles carry. Takes places on a torus; gives areas and their exact derivatives.
+//! The area of each particle's Voronoi cell, `mesh A: Real at a = voronoi_area(X);`. A particle's mass over this area
+//! is the depth of the layer. Takes positions on a torus; gives areas and their exact derivatives.
 
 use super::mesh::{Voronoi, cleared};
 use crate::line::Threads;
@@ -9,8 +9,8 @@ use nalgebra::SVector;
 
 /// Areas of Voronoi cells.
 ///
-/// With `l`, `R` and `c` of the faces, `dA_a/dX_a = sum_b (l/R) (c - X_a)` and `dA_b/dX_a = -(l/R) (c - X_a)`: the
-/// derivative is continuous where neighbours change.
+/// With `l`, `R` and `c` of the faces, `dA_a/dX_a = sum_b (l/R) (c - X_a)` and `dA_b/dX_a = -(l/R) (c - X_a)`. The
+/// derivative is continuous when neighbours change.
 #[allow(non_camel_case_types)] // Models name it.
 #[derive(Clone, Debug)]
 pub struct voronoi_area<T> {
@@ -18,7 +18,7 @@ pub struct voronoi_area<T> {
 }
 
 impl<T: Real> voronoi_area<T> {
-    /// The mesh at the places of the last value.
+    /// The mesh at the positions of the last evaluation.
     #[must_use]
     pub fn mesh(&self) -> &Voronoi<T> {
         &self.mesh

@@ -1,16 +1,16 @@
-//! Particles sorted into the squares of a grid, to find those that are near. Takes places on a torus; gives, for each
-//! particle, the candidates of its own square and the eight around it, in an order that depends on places alone.
+//! Sorts particles into the squares of a grid to find near neighbours. Takes positions on a torus; gives, for each
+//! particle, the candidates in its own square and the eight around it, in an order that depends only on the positions.
 
 use crate::mesh::MeshError;
 
-/// Squares at least as wide as a radius.
+/// A grid of squares that are at least one radius wide.
 #[derive(Clone, Debug)]
 pub(super) struct Bins {
     lengths: [f64; 2],
     count: [u32; 2],
     /// The first particle of each square, and the end of the last square.
     start: Vec<u32>,
-    /// Particles by squares.
+    /// The particles, ordered by square.
     sorted: Vec<u32>,
     /// The square of every particle, and the whole periods subtracted from its position.
     square: Vec<[u32; 2]>,
@@ -18,8 +18,8 @@ pub(super) struct Bins {
 }
 
 impl Bins {
-    /// For a radius that is at most half of either length. There are not many more squares than particles, however
-    /// small it is.
+    /// A grid for a radius of at most half of either period. For small radii, the number of squares stays proportional
+    /// to the number of particles.
     pub fn new(lengths: [f64; 2], radius: f64, particles: usize) -> Self {
         let spacing = (lengths[0] * lengths[1] / particles as f64).sqrt();
         let width = radius.max(0.5 * spacing);
@@ -34,7 +34,7 @@ impl Bins {
         }
     }
 
-    /// How many particles there are.
+    /// The number of particles.
     pub fn particles(&self) -> usize {
         self.square.len()
     }
@@ -43,7 +43,7 @@ impl Bins {
         j as usize * self.count[0] as usize + i as usize
     }
 
-    /// Sorts them.
+    /// Sorts the particles.
     pub fn sort(&mut self, at: impl Fn(usize) -> [f64; 2]) -> Result<(), MeshError> {
         self.start.fill(0);
         for site in 0..self.particles() {
@@ -75,8 +75,8 @@ impl Bins {
         Ok(())
     }
 
-    /// Calls for every other particle of the squares around a particle, with the whole periods, as a length, that bring
-    /// it there.
+    /// Calls `call` for every other particle in the squares around a particle, with the shift by whole periods, as a
+    /// length, that moves it to the nearby copy.
     #[inline]
     pub fn near(
         &self,
@@ -99,7 +99,7 @@ impl Bins {
         };
         for j in -1..=1 {
             if own[0] > 0 && own[0] + 1 < self.count[0] {
-                // Three in a row, one after another.
+                // Three consecutive squares of a row are adjacent in the list.
                 let (first, periods) = self.neighbour(own, [-1, j]);
                 visit(first, 3, periods)?;
             } else {
@@ -112,9 +112,9 @@ impl Bins {
         Ok(())
     }
 
-    /// A square next to another, and the periods between it and the one of its number. Where there are only one or two
-    /// squares in a direction the same one is met from several sides, as different copies: at most one copy of a
-    /// particle is within a radius of half a period.
+    /// The square next to another, and the periods between the two copies. If there are only one or two squares along a
+    /// direction, the same square is visited from several sides, as different copies. At most one copy of a particle is
+    /// within a radius of half a period.
     fn neighbour(&self, own: [u32; 2], by: [i64; 2]) -> ([u32; 2], [f64; 2]) {
         let mut square = own;
         let mut periods = [0.0; 2];

@@ -1,6 +1,7 @@
-//! Voronoi cells: area, centre of mass and second moment of each, the faces between them, and how areas change
-//! with places. Every formula is a sum over the two right triangles that a side of a Delaunay triangle, its middle
-//! and the circumcentre make with either end; these are signed, so that it holds beyond obtuse angles too.
+//! Voronoi cells: area, centre of mass and second moment of each cell, the faces between cells, and the derivatives of
+//! areas by positions. Every formula sums over right triangles: a side of a Delaunay triangle contributes two, each
+//! with the midpoint of the side, the circumcentre and one end. Their areas are signed, so the formulas also hold for
+//! obtuse triangles.
 
 use super::mesh::{Plane, Voronoi, dot, left};
 use crate::Real;
@@ -10,21 +11,21 @@ use nalgebra::SVector;
 /// The face between two cells, and the edge that crosses it.
 #[derive(Clone, Copy, Debug)]
 pub struct Face<T> {
-    /// The sites on either side: from the first to the second leads the edge.
+    /// The sites on either side; the edge leads from the first to the second.
     pub sites: [usize; 2],
     /// The edge.
     pub edge: SVector<T, 2>,
     /// Length of the face over length of the edge: the weight of the edge in the Laplace operator of finite elements.
     pub ratio: T,
-    /// Middle of the face, seen from the first site.
+    /// The midpoint of the face, relative to the first site.
     pub middle: SVector<T, 2>,
 }
 
 impl<T: Real> Voronoi<T> {
-    /// Area of every cell. Their sum is the area of the domain, whatever the mesh.
+    /// The areas of the cells. They add up to the area of the domain.
     ///
     /// # Errors
-    /// [`MeshError::Count`] where there are not as many numbers as sites, here and below.
+    /// [`MeshError::Count`] if the number of values differs from the number of sites.
     pub fn areas(&self, out: &mut [T]) -> Result<(), MeshError> {
         MeshError::unless_of_length(out, self.sites())?;
         self.sum_areas(out);
@@ -48,13 +49,13 @@ impl<T: Real> Voronoi<T> {
         }
     }
 
-    /// Adds to `out` how `sum seed_a A_a` changes with each place.
+    /// Adds the gradient of `sum seed_a A_a` with respect to the positions to `out`.
     pub(super) fn add_area_gradient(&self, seed: impl Fn(usize) -> T, out: &mut [Plane<T>]) {
         let half = T::from_f64(0.5);
         for triangle in self.triangles() {
             let [a, b, c] = triangle.sites;
             let seeds = [seed(a), seed(b), seed(c)];
-            // The part of a side for its two ends; `w left(d)` leads from its middle to the circumcentre.
+            // The contribution of a side to its two ends. `w left(d)` leads from its midpoint to the circumcentre.
             let part = |k: usize| {
                 let (d, w) = (triangle.sides[k], triangle.weights[k]);
                 let difference = (seeds[k] - seeds[(k + 1) % 3]) * w * half;
@@ -68,7 +69,7 @@ impl<T: Real> Voronoi<T> {
         }
     }
 
-    /// From every site to the centre of mass of its cell, whose area is given.
+    /// The vector from every site to the centre of mass of its cell; `areas` are the areas of the cells.
     ///
     /// # Errors
     /// [`MeshError::Count`].
@@ -83,7 +84,7 @@ impl<T: Real> Voronoi<T> {
         Ok(())
     }
 
-    /// Adds to `out` the integral of `x - X_a` over each cell, times a number.
+    /// Adds to `out` the integral of `x - X_a` over each cell, multiplied by `factor`.
     pub(super) fn add_first_moments(&self, factor: impl Fn(usize) -> T, out: &mut [Plane<T>]) {
         let twelfth = T::from_ratio(1, 12);
         for triangle in self.triangles() {
@@ -98,7 +99,7 @@ impl<T: Real> Voronoi<T> {
         }
     }
 
-    /// Integral of `|x - X_a|^2` over every cell.
+    /// The integral of `|x - X_a|^2` over every cell.
     ///
     /// # Errors
     /// [`MeshError::Count`].
@@ -118,7 +119,7 @@ impl<T: Real> Voronoi<T> {
         Ok(())
     }
 
-    /// The faces, three times as many as particles.
+    /// The faces, three for each particle.
     pub fn faces(&self) -> impl Iterator<Item = Face<T>> + '_ {
         let half = T::from_f64(0.5);
         self.edges().map(move |(e, f)| {

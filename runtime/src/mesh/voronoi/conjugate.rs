@@ -1,6 +1,6 @@
-//! Solution of `(A + alpha^2 K) x = b`: by conjugate gradients with the diagonal as preconditioner (Hestenes and
-//! Stiefel, 1952) for plain numbers, and by Chebyshev's iteration for numbers that carry derivatives: it is the same
-//! polynomial for every right side, so that derivatives converge with the values. Takes a start; gives the iterations.
+//! Solves `(A + alpha^2 K) x = b`. Plain numbers use conjugate gradients with the diagonal as preconditioner (Hestenes
+//! and Stiefel, 1952). Numbers with derivatives use Chebyshev iteration: it applies the same polynomial to every right
+//! side, so derivatives converge with the values. Takes an initial guess; gives the number of iterations.
 
 use super::rows::Rows;
 use super::shared::Sums;
@@ -14,7 +14,7 @@ const TOLERANCE: f64 = 1e-12 / (0.5 * f64::EPSILON);
 /// The largest number of iterations.
 const MOST: usize = 10_000;
 
-/// Vectors of an iteration.
+/// The work vectors of the iteration.
 #[derive(Clone, Debug)]
 pub(super) struct Iteration<T> {
     residual: Vec<T>,
@@ -34,12 +34,12 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Has the loops of conjugate gradients shared by so many threads.
+    /// Sets the number of threads that share the loops of conjugate gradients.
     pub fn share(&mut self, threads: Threads) {
         self.sums.share(threads);
     }
 
-    /// Solves, starting from the value of `x`; returns how many times the operator was applied.
+    /// Solves from the initial guess in `x`; returns how many times the operator was applied.
     pub fn solve(
         &mut self,
         operator: &Rows<T>,
@@ -94,7 +94,7 @@ impl<T: Real> Iteration<T> {
             });
             let length = sum / curvature;
             let before = sum;
-            // The residual over the diagonal overwrites the image.
+            // Overwrites the image by the residual over the diagonal.
             [left, sum] = sums.over(residual, image, |first, residual, image| {
                 let [mut left, mut sum] = [T::zero(); 2];
                 for (k, (residual, image)) in residual.iter_mut().zip(image).enumerate() {
@@ -124,8 +124,8 @@ impl<T: Real> Iteration<T> {
         })
     }
 
-    /// The scaled operator has its eigenvalues between `least` and `2 - least` (Gershgorin): the iteration is as long
-    /// as these ask for, once more for each order of derivatives.
+    /// Chebyshev iteration. The eigenvalues of the scaled operator lie between `least` and `2 - least` (Gershgorin),
+    /// which determines the number of iterations. The whole iteration is repeated once for each order of derivatives.
     fn chebyshev(&mut self, operator: &Rows<T>, right: &[T], x: &mut [T]) -> usize {
         let shares = operator.areas.iter().zip(&operator.diagonal);
         let least = shares
@@ -136,7 +136,7 @@ impl<T: Real> Iteration<T> {
         let cycle = ((TOLERANCE * T::EPSILON * 1e-3).ln() / rate.ln()).ceil() as usize;
         for _ in 0..=T::ORDER {
             self.direction.fill(T::zero());
-            // The weight of the three-term recurrence.
+            // The weight in the three-term recurrence.
             let mut weight = 0.0;
             for k in 0..cycle {
                 weight = match k {

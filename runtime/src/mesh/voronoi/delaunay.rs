@@ -1,7 +1,7 @@
-//! The Delaunay triangulation of sites on a torus. It is built by insertion, and updated by flips of edges while the
-//! sites move (Lawson, 1977; on flat surfaces Indermitte, Liebling, Troyanov and Clemencon, 2001). If a triangle has
-//! turned over, it is rebuilt. Takes positions; gives half-edges. The torus is never cut or copied, and even a single
-//! site needs no special case.
+//! The Delaunay triangulation of sites on a torus. Insertion builds it; edge flips update it as the sites move (Lawson,
+//! 1977; on flat surfaces Indermitte, Liebling, Troyanov and Clemencon, 2001). If a triangle has turned over, the
+//! triangulation is rebuilt. Takes positions; gives half-edges. The torus is never cut or copied, and a single site
+//! needs no special case.
 
 use super::half_edges::{HalfEdges, next, previous};
 use super::predicates::{in_circle, turn};
@@ -9,37 +9,37 @@ use super::torus::{Grains, Torus};
 use crate::line::Threads;
 use crate::mesh::MeshError;
 
-/// If a site is at least this many periods from its reference position, its periods are counted again.
+/// If a site is at least this many periods from its reference position, its whole periods are recomputed.
 const FAR: f64 = 2.0;
 
-/// The least height of a triangle in grains; below it, its angles are not known to three digits.
+/// The smallest height of a triangle, in grains. Below it, angles are accurate to less than three digits.
 const THINNEST: f64 = 2048.0;
 
-/// The largest offset that is updated.
+/// The largest offset that can be updated; beyond it, the triangulation is rebuilt.
 const LARGEST_OFFSET: f64 = 4096.0;
 
 /// A Delaunay triangulation that follows its sites.
 #[derive(Clone, Debug)]
 pub(super) struct Delaunay {
     pub torus: Torus,
-    /// Its edges; none before the first update.
+    /// The half-edges; empty before the first update.
     pub edges: HalfEdges,
-    /// Whole periods that are taken off each site.
+    /// The whole periods subtracted from each site.
     pub turns: Vec<[f64; 2]>,
     pub(super) places: Vec<Grains>,
     pub(super) suspects: Vec<u32>,
-    /// Edges flipped, and triangulations made anew, since the first update.
+    /// The numbers of flips and rebuilds since the first update.
     pub counted: Counted,
     /// The number of threads that look for suspect edges.
     pub threads: Threads,
 }
 
-/// The work for the motion of the sites.
+/// The work done to follow the motion of the sites.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counted {
-    /// Edges that were flipped.
+    /// The number of edge flips.
     pub flips: u64,
-    /// Triangulations made from nothing, the first among them.
+    /// The number of rebuilds, including the first construction.
     pub rebuilds: u64,
 }
 
@@ -62,7 +62,7 @@ impl Delaunay {
         self.places.len()
     }
 
-    /// An edge, in grains.
+    /// The vector of a half-edge, in grains.
     #[inline(always)]
     pub(super) fn edge(&self, e: usize) -> Grains {
         let from = self.places[self.edges.origin[e] as usize];
@@ -70,7 +70,7 @@ impl Delaunay {
         self.torus.between(from, to, self.edges.offset[e])
     }
 
-    /// Updates the triangulation to these sites, which need not be wrapped.
+    /// Updates the triangulation to new positions, which need not be wrapped.
     pub fn follow(&mut self, at: impl Fn(usize) -> [f64; 2]) -> Result<(), MeshError> {
         let kept = !self.edges.origin.is_empty() && self.place(&at)? && self.find_suspects();
         if kept {
@@ -102,7 +102,8 @@ impl Delaunay {
         Ok(!far || self.count_anew(at))
     }
 
-    /// Shifts far sites back by whole periods, with the offsets of their edges; returns whether this is possible.
+    /// Recomputes the whole periods of all sites and the offsets of their edges. Returns false if an offset would be
+    /// too large.
     fn count_anew(&mut self, at: &impl Fn(usize) -> [f64; 2]) -> bool {
         let lengths = self.torus.lengths;
         let beyond = |offset: &f64| offset.abs() > LARGEST_OFFSET;
@@ -135,7 +136,7 @@ impl Delaunay {
         true
     }
 
-    /// Collects the edges that are not Delaunay; whether every triangle still turns left.
+    /// Collects the edges that are not Delaunay; returns whether every triangle is still counterclockwise.
     pub(super) fn find_suspects(&mut self) -> bool {
         let mut suspects = core::mem::take(&mut self.suspects);
         suspects.clear();
@@ -149,7 +150,8 @@ impl Delaunay {
         left
     }
 
-    /// Collects the edges of a triangle that are not Delaunay, and one of a flat triangle; whether it turns left.
+    /// Collects the edges of a triangle that are not Delaunay, and one edge if the triangle is flat. Returns whether it
+    /// is counterclockwise.
     #[inline(always)]
     fn suspect(&self, e: usize, found: &mut Vec<u32>) -> bool {
         let (first, second) = (self.edge(e), self.edge(e + 1));
@@ -172,15 +174,15 @@ impl Delaunay {
         true
     }
 
-    /// Whether the circle of an edge's triangle holds the site across it.
+    /// Whether the circumcircle of an edge's triangle contains the opposite site of the adjacent triangle.
     pub(super) fn is_bad(&self, e: usize) -> bool {
         let before = self.edge(previous(e));
         let across = self.edge(next(self.edges.twin[e] as usize));
         in_circle(self.edge(e), [-before[0], -before[1]], across)
     }
 
-    /// Flips suspected edges, and suspects those around them, until all are Delaunay. Ends, because each flip lowers the
-    /// lifted surface.
+    /// Flips collected edges and collects the edges around them, until all are Delaunay. This terminates, because each
+    /// flip lowers the lifted surface.
     pub(super) fn repair(&mut self) -> Result<(), MeshError> {
         let mut flat = false;
         while let Some(e) = self.suspects.pop() {
@@ -194,7 +196,7 @@ impl Delaunay {
         if !flat {
             return Ok(());
         }
-        // A collected edge may no longer exist.
+        // A later flip may have removed the flat triangle found above.
         match (0..self.edges.len() / 3).find(|&t| self.is_flat(t)) {
             None => Ok(()),
             Some(t) => {
@@ -204,21 +206,22 @@ impl Delaunay {
         }
     }
 
-    /// Flips an edge and suspects the four around it.
+    /// Flips an edge and collects the four edges around it.
     pub(super) fn flip(&mut self, e: usize) {
         self.counted.flips += 1;
         let around = self.edges.flip(e);
         self.suspects.extend(around.map(|e| e as u32));
     }
 
-    /// Whether rounding decides the shape of a triangle.
+    /// Whether the shape of a triangle is at rounding level.
     fn is_flat(&self, t: usize) -> bool {
         let (first, second) = (self.edge(3 * t), self.edge(3 * t + 1));
         flat(turn(first, second), first, second)
     }
 }
 
-/// Whether two sides of a triangle with this doubled area are known too inaccurately; each length is known to half a grain.
+/// Whether a triangle with this doubled area is too thin for its side lengths, each of which is accurate to half a
+/// grain.
 #[inline(always)]
 fn flat(twice_area: f64, first: Grains, second: Grains) -> bool {
     let reach = first[0].abs() + first[1].abs() + second[0].abs() + second[1].abs();

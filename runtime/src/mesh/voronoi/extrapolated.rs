@@ -1,12 +1,12 @@
-//! The start of an iteration: the extrapolation of the last four solutions. Takes solutions one after another; stores
-//! the latest first.
+//! Extrapolates the last four solutions to a starting value for an iteration. Takes solutions in order; stores the
+//! latest first.
 
 use crate::Real;
 
 /// The last solutions of one equation.
 #[derive(Clone, Debug)]
 pub(super) struct Extrapolated<T> {
-    /// The latest first.
+    /// The solutions, the latest first.
     pub solutions: [Vec<T>; 4],
     /// The number of solutions.
     pub solved: usize,
@@ -20,12 +20,12 @@ impl<T: Real> Extrapolated<T> {
         }
     }
 
-    /// The last one.
+    /// The latest solution.
     pub fn latest(&self) -> &[T] {
         &self.solutions[0]
     }
 
-    /// Adds the extrapolation of the last solutions in front; if there are none, `first` for every site.
+    /// Puts the extrapolation of the last solutions in front; without solutions, it is `first` at every site.
     pub fn next(&mut self, first: impl Fn(usize) -> T) -> &mut [T] {
         let [latest, earlier, before, earliest] = &mut self.solutions;
         let (three, six) = (T::from_f64(3.0), T::from_f64(6.0));
@@ -44,7 +44,7 @@ impl<T: Real> Extrapolated<T> {
         &mut self.solutions[0]
     }
 
-    /// The entry in front is now a solution.
+    /// Marks the entry in front as a solution.
     pub fn accept(&mut self) {
         self.solved = (self.solved + 1).min(self.solutions.len());
     }

@@ -1,15 +1,15 @@
-//! A triangulated torus as half-edges: three to a triangle, counterclockwise, each with the site it leaves, its
-//! other half, and by how many periods the copy of the site it arrives at is away. A triangle may meet itself, and
-//! two sites may share several edges: on a torus a mesh of a single site is one.
+//! A triangulated torus as half-edges, three for each triangle, counterclockwise. Each half-edge stores its origin, its
+//! twin, and the number of periods to the copy of the site at its end. A triangle may be adjacent to itself, and two
+//! sites may share several edges, as in the mesh of a single site.
 
 /// Half-edges of triangles: `3 t`, `3 t + 1`, `3 t + 2` go around triangle `t`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct HalfEdges {
-    /// The site that each leaves.
+    /// The site at which each half-edge starts.
     pub origin: Vec<u32>,
-    /// The other half, in the triangle on the right.
+    /// The opposite half-edge, in the triangle on the right.
     pub twin: Vec<u32>,
-    /// Periods along either direction, which with the places of its sites give the edge:
+    /// The whole periods along each direction that belong to the vector of the edge:
     /// `place[target] - place[origin] + offset * period`.
     pub offset: Vec<[i16; 2]>,
 }
@@ -35,7 +35,7 @@ fn negative(a: [i16; 2]) -> [i16; 2] {
 }
 
 impl HalfEdges {
-    /// The torus with a single site: a rectangle and its diagonal.
+    /// The torus with a single site: a rectangle with its diagonal.
     pub fn with_one_site(&mut self, site: u32) {
         self.origin.clear();
         self.twin.clear();
@@ -46,25 +46,25 @@ impl HalfEdges {
             .extend([[1, 0], [0, 1], [-1, -1], [-1, 0], [0, -1], [1, 1]]);
     }
 
-    /// How many half-edges there are.
+    /// The number of half-edges.
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.origin.len()
     }
 
-    /// The site at which a half-edge arrives.
+    /// The site at which a half-edge ends.
     #[inline(always)]
     pub fn target(&self, e: usize) -> usize {
         self.origin[next(e)] as usize
     }
 
-    /// Makes two half-edges halves of one edge.
+    /// Makes two half-edges twins.
     fn glue(&mut self, e: usize, f: usize) {
         self.twin[e] = f as u32;
         self.twin[f] = e as u32;
     }
 
-    /// Replaces an edge by the other diagonal of its two triangles; gives the four sides of these.
+    /// Replaces an edge by the other diagonal of its two triangles; returns the four sides of the quadrilateral.
     ///
     /// ```text
     ///        c                  c
@@ -80,7 +80,7 @@ impl HalfEdges {
         let (c, d) = (self.origin[from_c], self.origin[from_d]);
         let to_a = self.offset[from_c];
         let to_b = self.offset[from_d];
-        // From c by a to d.
+        // The path from c to d through a.
         let diagonal = sum(to_a, self.offset[next(f)]);
         self.origin[e] = d;
         self.origin[f] = c;
@@ -89,7 +89,7 @@ impl HalfEdges {
         self.offset[from_c] = diagonal;
         self.offset[from_d] = negative(diagonal);
         self.glue(from_c, from_d);
-        // Either side may have been glued to the other.
+        // The two triangles may also share a second side.
         if right_of_d == from_c {
             self.glue(e, f);
         } else {
@@ -99,8 +99,8 @@ impl HalfEdges {
         [e, next(e), f, next(f)]
     }
 
-    /// Puts a site into triangle `t`, which it divides into three; `to_site` are the offsets of the edges to it
-    /// from the three corners. Gives the sides of the triangle.
+    /// Inserts a site into triangle `t` and divides it into three triangles. `to_site` are the offsets of the edges
+    /// from the corners to the site. Returns the sides of the triangle.
     pub fn divide(&mut self, t: usize, site: u32, to_site: [[i16; 2]; 3]) -> [usize; 3] {
         let first = 3 * t;
         let second = self.len();
@@ -128,7 +128,7 @@ impl HalfEdges {
         sides
     }
 
-    /// Numbers the triangles in the order of the sites, so that neighbours are near one another in memory.
+    /// Renumbers the triangles in the order of the sites, so that neighbours are close in memory.
     pub fn sort_by_sites(&mut self, sites: usize) {
         let triangles = self.len() / 3;
         let mut leaving = vec![u32::MAX; sites];

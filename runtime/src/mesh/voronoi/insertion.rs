@@ -1,7 +1,7 @@
-//! Builds a Delaunay triangulation: inserts one site after another into the triangulation of a torus with a single
-//! site. Takes positions; gives half-edges, numbered in the order of the sites. The sites are inserted in random rounds
-//! of doubling size, in each round along a curve that fills the torus (Amenta, Choi and Rote, 2003). The expected work
-//! is then proportional to the number of sites. The order depends only on the numbers and positions of the sites.
+//! Builds a Delaunay triangulation: inserts the sites one by one into the triangulation of a torus with a single site.
+//! Takes positions; gives half-edges, numbered in the order of the sites. The sites are inserted in random rounds of
+//! doubling size, and within a round along a space-filling curve (Amenta, Choi and Rote, 2003). The expected work is
+//! then proportional to the number of sites. The order depends only on the numbers and positions of the sites.
 
 use super::delaunay::Delaunay;
 use super::half_edges::{next, previous};
@@ -9,11 +9,11 @@ use super::predicates::turn;
 use super::torus::Grains;
 use crate::mesh::MeshError;
 
-/// Periods beyond which a place has less than six digits left within one.
+/// The largest distance in periods. Beyond it, a position has fewer than six digits within one period.
 const FARTHEST: f64 = 1e9;
 
 impl Delaunay {
-    /// Counts the periods of every site anew.
+    /// Recomputes the whole periods of every site.
     pub(super) fn begin(&mut self, at: &impl Fn(usize) -> [f64; 2]) -> Result<(), MeshError> {
         let lengths = self.torus.lengths;
         for site in 0..self.sites() {
@@ -53,12 +53,12 @@ impl Delaunay {
         }
         self.edges.sort_by_sites(self.sites());
         self.counted.flips = flips;
-        // Nothing is left to flip, but triangles may be flat.
+        // No edge needs a flip, but flat triangles must still be found.
         self.find_suspects();
         self.repair()
     }
 
-    /// Inserts a site, looked for from a half-edge; gives a half-edge nearby.
+    /// Inserts a site; the search starts at half-edge `near`. Returns a half-edge close to the site.
     fn insert(&mut self, site: u32, near: usize) -> Result<usize, MeshError> {
         let (e, to_site) = self.locate(site, near)?;
         let corners = [e, next(e), next(next(e))];
@@ -79,7 +79,7 @@ impl Delaunay {
                 second: other.max(site as usize),
             });
         }
-        // From the first half-edge of the triangle on.
+        // Reorders the offsets to start at the first half-edge of the triangle.
         let turned = e % 3;
         let rotated = |k: usize| (k + 3 - turned) % 3;
         let offsets = [0, 1, 2].map(|k| offsets[rotated(k)]);
@@ -87,10 +87,10 @@ impl Delaunay {
         let sides = self.edges.divide(e / 3, site, offsets);
         self.suspects.extend(sides.map(|e| e as u32));
         if let Some(k) = on.iter().position(|&on| on) {
-            // The site is on this side: its triangle is flat, and one flip divides the neighbour as well.
+            // The site is on this side, so the new triangle there is flat. One flip divides the adjacent triangle too.
             self.flip(sides[k]);
         }
-        // Edges of the new site as well: on a torus other copies of it may be near.
+        // Edges of the new site are tested as well, because other copies of it may be close on a torus.
         while let Some(e) = self.suspects.pop() {
             if self.is_bad(e as usize) {
                 self.flip(e as usize);
@@ -99,7 +99,7 @@ impl Delaunay {
         Ok(e)
     }
 
-    /// A half-edge of the triangle that holds a site, and the vector from where it leaves to the site.
+    /// A half-edge of the triangle that contains the site, and the vector from its origin to the site.
     fn locate(&self, site: u32, near: usize) -> Result<(usize, Grains), MeshError> {
         let place = self.places[site as usize];
         let mut e = near;
@@ -113,11 +113,11 @@ impl Delaunay {
             )
         };
         let mut inside = 0;
-        // A walk towards a site never comes back in a Delaunay triangulation.
+        // In a Delaunay triangulation, a walk towards a site visits no triangle twice.
         for _ in 0..4 * self.edges.len() {
             let edge = self.edge(e);
             if turn(edge, to_site) < 0.0 {
-                // The vector from the other end of the edge, where the half-edge of the adjacent triangle begins.
+                // The vector from the other end of the edge, where its twin starts.
                 to_site = less(to_site, edge);
                 e = self.edges.twin[e] as usize;
                 inside = 1;
@@ -154,14 +154,14 @@ impl Delaunay {
     }
 }
 
-/// Cells of the curve along either direction.
+/// The number of cells of the curve along each direction.
 const CURVE: u32 = 1 << 16;
 
 fn less(a: Grains, b: Grains) -> Grains {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// Bits of a number, mixed (Steele, Lea and Flood, 2014).
+/// Mixes the bits of a number (Steele, Lea and Flood, 2014).
 fn scrambled(site: u32) -> u64 {
     let z = u64::from(site).wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -169,7 +169,7 @@ fn scrambled(site: u32) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Where a cell is along Hilbert's curve.
+/// The index of a cell along Hilbert's curve.
 fn along_curve(mut x: u32, mut y: u32) -> u32 {
     let mut along = 0;
     let mut half = CURVE / 2;

@@ -9,7 +9,7 @@ use crate::Real;
 use crate::mesh::{MeshError, Setting};
 use nalgebra::SVector;
 
-/// The operator at the places of the last update.
+/// The operator at the positions of the last update.
 #[derive(Clone, Debug)]
 pub struct Cotangents<T> {
     rows: Rows<T>,
@@ -45,11 +45,11 @@ impl<T: Real> Operator<T> for Cotangents<T> {
             before += *start;
             *start = before;
         }
-        // From the last to the first, so that each row comes to begin where it should.
+        // Filling backwards moves the start of each row to its final index.
         for e in (0..edges.len()).rev() {
             let (a, b) = mesh.ends(e);
             let twin = edges.twin[e] as usize;
-            // Nothing flows between copies of one site.
+            // Edges between copies of the same site contribute nothing.
             let flow = if a == b {
                 T::zero()
             } else {
@@ -74,7 +74,7 @@ impl<T: Real> Operator<T> for Cotangents<T> {
         let half = T::from_f64(0.5) * self.alpha_squared;
         for triangle in mesh.triangles() {
             let [a, b, c] = triangle.sites;
-            // Gradients of the three linear functions that are 1 at one corner, times twice the area.
+            // Gradients of the three linear basis functions, times twice the area.
             let hats = [1, 2, 0].map(|k| left(triangle.sides[k]));
             let slope = |f: &[T]| hats[1] * (f[b] - f[a]) + hats[2] * (f[c] - f[a]);
             let (of_u, of_v) = (slope(u), slope(v));

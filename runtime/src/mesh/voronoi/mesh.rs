@@ -1,5 +1,5 @@
-//! The mesh that moves with the particles: triangles with the vectors of their sides. Takes places; which sites
-//! are neighbours is decided on their leading values, everything else is computed in the scalar of the places.
+//! The mesh that moves with the particles: triangles with the vectors of their sides. Takes positions. The real parts
+//! of the positions decide which sites are neighbours; everything else uses the scalar type of the positions.
 
 use super::delaunay::{Counted, Delaunay};
 use super::half_edges::next;
@@ -12,29 +12,29 @@ use nalgebra::SVector;
 /// A vector in the plane.
 pub(super) type Plane<T> = SVector<T, 2>;
 
-/// The Delaunay triangulation of particles on a torus, and with it their Voronoi diagram.
+/// The Delaunay triangulation of particles on a torus, and its dual, the Voronoi diagram.
 #[derive(Clone, Debug)]
 pub struct Voronoi<T> {
     pub(super) delaunay: Delaunay,
-    /// Places less whole periods.
+    /// The positions without their whole periods.
     local: Vec<Plane<T>>,
 }
 
 /// A Delaunay triangle, counterclockwise.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangle<T> {
-    /// Its corners.
+    /// The corners.
     pub sites: [usize; 3],
-    /// Its sides: the first leads from the first corner to the second, and so on.
+    /// The sides; the first leads from the first corner to the second, and so on.
     pub sides: [SVector<T, 2>; 3],
-    /// Twice its area.
+    /// Twice the area.
     pub twice_area: T,
-    /// Half the cotangent of the angle across each side: what part of the side's length the circumcentre is away
-    /// from the side's middle, into the triangle.
+    /// Half the cotangent of the angle opposite each side. Times the length of the side, this is the distance from its
+    /// midpoint to the circumcentre, positive towards the interior.
     pub weights: [T; 3],
 }
 
-/// Makes `out` zero, a vector for each particle.
+/// Sets `out` to zero; it has one vector for each particle.
 ///
 /// # Errors
 /// [`MeshError::Count`] if `seed` or `out` has another length.
@@ -49,13 +49,13 @@ pub(super) fn cleared<T: Real>(
     Ok(())
 }
 
-/// The vector turned left by a right angle.
+/// The vector rotated counterclockwise by a right angle.
 #[inline(always)]
 pub(super) fn left<T: Real>(v: Plane<T>) -> Plane<T> {
     Plane::new(-v[1], v[0])
 }
 
-/// The product of lengths and the cosine of the angle between.
+/// The scalar product.
 #[inline(always)]
 pub(super) fn dot<T: Real>(a: Plane<T>, b: Plane<T>) -> T {
     a[0] * b[0] + a[1] * b[1]
@@ -65,7 +65,7 @@ impl<T: Real> Voronoi<T> {
     /// The most particles of a mesh: half-edges are numbered with 32 bits.
     pub const MOST: usize = (u32::MAX / 6) as usize;
 
-    /// For as many particles, which are given by [`Voronoi::update`].
+    /// A mesh for this number of particles; set their positions with [`Voronoi::update`].
     ///
     /// # Errors
     /// - The domain is not periodic in both directions, or its area is not positive and finite.
@@ -135,24 +135,24 @@ impl<T: Real> Voronoi<T> {
         self.local.len()
     }
 
-    /// The work for its motion so far.
+    /// The work done so far to follow the motion.
     #[must_use]
     pub fn counted(&self) -> Counted {
         self.delaunay.counted
     }
 
-    /// Length of the periods.
+    /// The periods of the domain.
     #[must_use]
     pub fn lengths(&self) -> [f64; 2] {
         self.delaunay.torus.lengths
     }
 
-    /// Moves the particles to these positions, wrapped or not, and updates the mesh.
+    /// Moves the particles to new positions, wrapped or not, and updates the mesh.
     ///
     /// # Errors
-    /// [`MeshError::Coincident`] where two particles are nearer than 1e-15 of the longer period, [`MeshError::Flat`] where three
-    /// are nearly that, [`MeshError::NotFinite`], [`MeshError::TooFar`], [`MeshError::Count`]. The mesh is then unusable until the
-    /// next update.
+    /// [`MeshError::Coincident`] if two particles are closer than 1e-15 of the longer period, [`MeshError::Flat`] if
+    /// three particles are nearly that close, [`MeshError::NotFinite`], [`MeshError::TooFar`], [`MeshError::Count`].
+    /// After an error, do not use the mesh before the next successful update.
     pub fn update(&mut self, at: &[SVector<T, 2>]) -> Result<(), MeshError> {
         MeshError::unless_of_length(at, self.sites())?;
         self.delaunay.follow(|site| {
@@ -169,13 +169,13 @@ impl<T: Real> Voronoi<T> {
         Ok(())
     }
 
-    /// The particles' places, within the domain or two periods of it.
+    /// The positions of the particles, within the domain or at most two periods from it.
     #[must_use]
     pub fn places(&self) -> &[SVector<T, 2>] {
         &self.local
     }
 
-    /// The vector of an edge.
+    /// The vector between two sites, with the second shifted by `offset` periods.
     #[inline(always)]
     pub(super) fn side(&self, from: usize, to: usize, offset: [i16; 2]) -> Plane<T> {
         let mut side = self.local[to] - self.local[from];
@@ -188,13 +188,13 @@ impl<T: Real> Voronoi<T> {
         side
     }
 
-    /// Its triangles, twice as many as particles.
+    /// The triangles, two for each particle.
     #[inline]
     pub fn triangles(&self) -> impl Iterator<Item = Triangle<T>> + '_ {
         (0..self.delaunay.edges.len() / 3).map(|t| self.triangle(t))
     }
 
-    /// One of its triangles.
+    /// The triangle with number `t`.
     #[inline(always)]
     pub(super) fn triangle(&self, t: usize) -> Triangle<T> {
         let edges = &self.delaunay.edges;
@@ -218,13 +218,13 @@ impl<T: Real> Voronoi<T> {
         }
     }
 
-    /// The half-edges of every edge once: the one whose number is smaller.
+    /// One half-edge of every edge, the one with the smaller number, with its twin.
     pub(super) fn edges(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let twin = self.delaunay.edges.twin.iter().enumerate();
         twin.filter_map(|(e, &f)| (e < f as usize).then_some((e, f as usize)))
     }
 
-    /// Where a half-edge leads, and from where.
+    /// The origin and the target of a half-edge.
     pub(super) fn ends(&self, e: usize) -> (usize, usize) {
         let edges = &self.delaunay.edges;
         (edges.origin[e] as usize, edges.origin[next(e)] as usize)

@@ -1,8 +1,8 @@
-//! Moving Voronoi meshes on the periodic plane: the mesh itself ([`Voronoi`]), functionals of it that models take
-//! by name, and what can be seen on it. Takes the places of particles, wrapped or not; gives sums over cells.
+//! Moving Voronoi meshes on the periodic plane: the mesh ([`Voronoi`]), the functionals that models use by name, and
+//! diagnostics. Takes the positions of particles, wrapped or not; gives sums over cells.
 //!
-//! Conventions: an edge leads from site `a` to site `b`, along `d = X_b - X_a` of length `R`; the face between their
-//! cells has the length `l`, and its middle is `c`. Triangles go counterclockwise.
+//! Conventions: an edge leads from site `a` to site `b` along `d = X_b - X_a`, which has length `R`. The face between
+//! their cells has length `l` and midpoint `c`. Triangles are counterclockwise.
 
 mod area;
 mod bins;

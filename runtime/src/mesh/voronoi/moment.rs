@@ -1,6 +1,6 @@
 //! The second moment of each particle's Voronoi cell about the particle, `mesh I: Real at a = second_moment(X);`. In a
-//! potential it draws particles to the centres of their cells, at a price: the fluid resists shear like a soft solid.
-//! Takes places on a torus; gives moments and their exact derivatives.
+//! potential it moves particles towards the centres of their cells, but it also makes the fluid resist shear like a
+//! soft solid. Takes positions on a torus; gives moments and their exact derivatives.
 
 use super::mesh::{Voronoi, cleared, dot, left};
 use crate::line::Threads;
@@ -8,8 +8,8 @@ use crate::mesh::{Functional, MeshError, Setting};
 use crate::{ParameterError, Real};
 use nalgebra::SVector;
 
-/// `I_a`, the integral of `|x - X_a|^2` over the cell of `a`; of equal seeds the derivative is `2 A_a (X_a - C_a)` with
-/// `C` the centres of mass.
+/// The integral `I_a` of `|x - X_a|^2` over the cell of `a`. For equal seeds the derivative is `2 A_a (X_a - C_a)` with
+/// the centre of mass `C_a`.
 #[allow(non_camel_case_types)] // Models name it.
 #[derive(Clone, Debug)]
 pub struct second_moment<T> {
@@ -42,10 +42,10 @@ impl<T: Real> Functional<T, 2> for second_moment<T> {
         out: &mut [Self::Argument],
     ) -> Result<(), MeshError> {
         cleared(seed, out, self.sites())?;
-        // The integrand moves with the particle,
+        // The integrand depends on the position of the particle.
         let twice = T::from_f64(-2.0);
         self.mesh.add_first_moments(|a| twice * seed[a], out);
-        // and so do the faces, on which both cells have the same integrand: by (x - X_a).dX_a / R along the edge.
+        // The faces move too: by `(x - X_a).dX_a / R` along the edge. On a face, both cells have the same integrand.
         let [half, quarter, third, eighth] =
             [(1, 2), (1, 4), (1, 3), (1, 8)].map(|(n, d)| T::from_ratio(n, d));
         for triangle in self.mesh.triangles() {

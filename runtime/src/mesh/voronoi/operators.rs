@@ -1,5 +1,5 @@
 //! Gradient, divergence and curl of values at particles, on the Voronoi diagram. One set is consistent with the exact
-//! change of areas, the other uses means on faces. Takes values at all sites; gives values at all sites. Use them to
+//! change of areas; the other uses averages on faces. Takes and gives values at all sites. Use these operators to
 //! analyse a flow; the forces of a model are derivatives of its potential.
 
 use super::cells::Face;
@@ -9,7 +9,8 @@ use crate::mesh::MeshError;
 use nalgebra::SVector;
 
 impl<T: Real> Voronoi<T> {
-    /// `(1/A_a) sum_b (q_b - q_a) (l/R) (c - X_a)`: exact of linear functions on every mesh (Serrano and Espanol, 2001).
+    /// `(1/A_a) sum_b (q_b - q_a) (l/R) (c - X_a)`, exact for linear functions on every mesh (Serrano and Espanol,
+    /// 2001).
     ///
     /// # Errors
     /// [`MeshError::Count`] where there are not as many values as sites.
@@ -22,8 +23,8 @@ impl<T: Real> Voronoi<T> {
         })
     }
 
-    /// The relative rate of change of areas, `(1/A_a) dA_a/dt`, of particles with the velocities `u`: the divergence
-    /// whose negative adjoint in the areas is [`Voronoi::gradient`].
+    /// The relative rate of change of areas, `(1/A_a) dA_a/dt`, for particles with velocities `u`.
+    /// [`Voronoi::gradient`] is its negative adjoint in the area-weighted product.
     ///
     /// # Errors
     /// [`MeshError::Count`] where there are not as many values as sites.
@@ -37,7 +38,8 @@ impl<T: Real> Voronoi<T> {
         })
     }
 
-    /// The curl, `d_1 u_2 - d_2 u_1` by [`Voronoi::gradient`]: exact of linear velocities, but its integral is not zero.
+    /// The curl `d_1 u_2 - d_2 u_1` with [`Voronoi::gradient`]. It is exact for linear velocities, but its integral
+    /// does not vanish.
     ///
     /// # Errors
     /// [`MeshError::Count`] where there are not as many values as sites.
@@ -50,9 +52,9 @@ impl<T: Real> Voronoi<T> {
         })
     }
 
-    /// `(1/A_a) sum_b (q_a + q_b)/2 l n`: from means at the middles of edges, which differ from the middles of faces.
-    /// For linear functions it is exact on lattices only; elsewhere its error does not decrease with the distance of
-    /// particles. With `q = m h` and divided by `-m` it has been used for the acceleration of shallow water.
+    /// `(1/A_a) sum_b (q_a + q_b)/2 l n`, with averages at the midpoints of edges instead of faces. For linear
+    /// functions it is exact only on lattices; on other meshes its error does not decrease with the particle distance.
+    /// With `q = m h` and divided by `-m` it has been used for the acceleration of shallow water.
     ///
     /// # Errors
     /// [`MeshError::Count`] where there are not as many values as sites.
@@ -80,7 +82,7 @@ impl<T: Real> Voronoi<T> {
         })
     }
 
-    /// `(1/A_a) sum_b (u_a + u_b)/2 . l t`, with `t` along the face: its integral is zero.
+    /// `(1/A_a) sum_b (u_a + u_b)/2 . l t`, with `t` along the face. Its integral vanishes.
     ///
     /// # Errors
     /// [`MeshError::Count`] where there are not as many values as sites.
@@ -94,8 +96,8 @@ impl<T: Real> Voronoi<T> {
         })
     }
 
-    /// Potential vorticity `(zeta + f)/h` with [`Voronoi::curl`], where the rotation is `f` and the depth `h` at each
-    /// particle.
+    /// Potential vorticity `(zeta + f)/h` with [`Voronoi::curl`], for given Coriolis parameter `f` and depth `h` at
+    /// each particle.
     ///
     /// # Errors
     /// [`MeshError::Count`] where there are not as many values as sites.
@@ -115,7 +117,7 @@ impl<T: Real> Voronoi<T> {
         Ok(())
     }
 
-    /// Sums what faces add, over areas.
+    /// Sums the contributions of faces and divides by the areas.
     fn per_area<V, S: Summand<T>>(
         &self,
         values: &[V],
@@ -137,11 +139,13 @@ impl<T: Real> Voronoi<T> {
     }
 
     /// The circulation around every triangle, `sum (u_i + u_j)/2 . (X_j - X_i)`, in the order of
-    /// [`Voronoi::triangles`]. Their sum is zero. While a triangle's corners stay neighbours, its circulation changes at
-    /// the rate that the same sum gives of the accelerations: what velocities add goes around in a circle.
+    /// [`Voronoi::triangles`]. All circulations add up to zero. While the corners of a triangle remain neighbours, its
+    /// circulation changes at the rate that the same sum gives for the accelerations, because the terms from the
+    /// velocities cancel around the triangle.
     ///
     /// # Errors
-    /// [`MeshError::Count`] where there are not as many velocities as sites, or numbers as triangles: two for each site.
+    /// [`MeshError::Count`] unless there is one velocity for each site and two values for each site, one for each
+    /// triangle.
     pub fn circulations(&self, u: &[SVector<T, 2>], out: &mut [T]) -> Result<(), MeshError> {
         MeshError::unless_of_length(u, self.sites())?;
         MeshError::unless_of_length(out, 2 * self.sites())?;

@@ -1,13 +1,13 @@
-//! Initial positions of particles: rows of a lattice, shifted or not, hexagons, or at random and then spread evenly.
-//! Takes a periodic domain; gives positions in it. The random numbers are a linear congruential sequence (Knuth's
-//! multiplier), so that positions are the same on every machine.
+//! Initial positions of particles: rectangular, staggered or hexagonal lattices, or random positions that are then
+//! spread evenly. Takes a periodic domain; gives positions in it. The random numbers come from a linear congruential
+//! generator (Knuth's multiplier), so positions are the same on every machine.
 
 use super::mesh::{Plane, Voronoi};
 use crate::mesh::{Domain, MeshError};
 use crate::{ParameterError, Problem};
 use nalgebra::SVector;
 
-/// How uneven a lattice is.
+/// Random displacements from a lattice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jitter {
     /// The largest displacement along either direction, in units of the square root of the area of a particle.
@@ -17,11 +17,11 @@ pub struct Jitter {
 }
 
 impl Jitter {
-    /// None.
+    /// No displacement.
     pub const NONE: Self = Self { size: 0.0, seed: 0 };
 }
 
-/// Random numbers from 0 to 1, in a fixed sequence for each seed.
+/// A sequence of random numbers between 0 and 1, determined by its seed.
 #[derive(Clone, Copy, Debug)]
 struct Sequence(u64);
 
@@ -33,8 +33,7 @@ impl Sequence {
     }
 }
 
-/// `columns` particles in each of `rows` rows, every second row shifted by half a column if `shifted`: bricks, or
-/// squares.
+/// A lattice of `rows` rows of `columns` particles. If `shifted`, every second row is displaced by half a column.
 #[must_use]
 pub fn lattice(
     domain: &Domain<2>,
@@ -59,8 +58,8 @@ pub fn lattice(
     places
 }
 
-/// Shifted rows of `columns` particles, so many of them that cells are as near to regular hexagons as the domain
-/// admits.
+/// Staggered rows of `columns` particles. The number of rows is chosen so that the cells are as close to regular
+/// hexagons as the domain allows.
 #[must_use]
 pub fn hexagonal(domain: &Domain<2>, columns: usize, jitter: Jitter) -> Vec<SVector<f64, 2>> {
     let [width, height] = domain.lengths;
@@ -69,7 +68,7 @@ pub fn hexagonal(domain: &Domain<2>, columns: usize, jitter: Jitter) -> Vec<SVec
     lattice(domain, [columns, rows], true, jitter)
 }
 
-/// Particles at random, then moved `sweeps` times to the centres of mass of their cells, all at once (Lloyd, 1982).
+/// Random particles, moved `sweeps` times to the centres of mass of their cells, all at once (Lloyd, 1982).
 ///
 /// # Errors
 /// If [`Voronoi::new`] rejects the domain or the number of particles, or if two particles coincide.
@@ -101,10 +100,10 @@ pub fn scattered(
     Ok(places)
 }
 
-/// Moves particles to the centres of mass of their cells, all at once, `sweeps` times.
+/// Moves all particles to the centres of mass of their cells, `sweeps` times.
 ///
 /// # Errors
-/// As [`Voronoi::update`].
+/// The errors of [`Voronoi::update`].
 pub fn relax(
     mesh: &mut Voronoi<f64>,
     places: &mut [SVector<f64, 2>],

@@ -1,5 +1,5 @@
-//! Cells as polygons, and their parts in the boxes of a grid. Takes masses of cells; gives masses of boxes with the
-//! same sum.
+//! Cells as polygons, and their intersections with the boxes of a grid. Takes masses of cells; gives masses of boxes
+//! with the same total.
 
 use super::half_edges::previous;
 use super::mesh::{Plane, Voronoi, left};
@@ -7,7 +7,7 @@ use crate::mesh::MeshError;
 use nalgebra::SVector;
 
 impl Voronoi<f64> {
-    /// Calls for every cell, with its site and its corners counterclockwise, seen from the site.
+    /// Calls `each` with every site and the corners of its cell, counterclockwise and relative to the site.
     pub fn polygons(&self, mut each: impl FnMut(usize, &[SVector<f64, 2>])) {
         let edges = &self.delaunay.edges;
         let mut leaving = vec![None; self.sites()];
@@ -32,11 +32,11 @@ impl Voronoi<f64> {
         }
     }
 
-    /// Distributes the masses of cells over the boxes of a grid, each in proportion to the area of its cell in each box:
-    /// `out[j * columns + i]` is the mass in the box of column `i` and row `j`. No mass is lost.
+    /// Distributes the mass of each cell over the boxes of a grid, in proportion to the area of the cell in each box.
+    /// `out[j * columns + i]` is the mass in column `i` and row `j`. The total mass is conserved.
     ///
     /// # Errors
-    /// [`MeshError::Count`] where there are not as many masses as cells, or numbers as boxes.
+    /// [`MeshError::Count`] unless there is one mass for each cell and one value for each box.
     pub fn rezone(
         &self,
         masses: &[f64],
@@ -52,7 +52,7 @@ impl Voronoi<f64> {
             <(Vec<_>, Vec<_>, Vec<_>, Vec<_>)>::default();
         let mut shares: Vec<(usize, f64)> = Vec::new();
         self.polygons(|site, corners| {
-            // In units of boxes.
+            // Coordinates in units of boxes.
             let place = self.places()[site];
             cell.clear();
             cell.extend(corners.iter().map(|c| (place + c).component_div(&boxes)));
@@ -77,7 +77,7 @@ impl Voronoi<f64> {
     }
 }
 
-/// The whole numbers below and between the coordinates of a polygon; none of an empty one.
+/// The indices of the unit intervals that a polygon overlaps along a coordinate; empty for an empty polygon.
 fn span(corners: &[Plane<f64>], along: usize) -> core::ops::RangeInclusive<i64> {
     let mut ends = (f64::INFINITY, f64::NEG_INFINITY);
     for corner in corners {
@@ -89,7 +89,7 @@ fn span(corners: &[Plane<f64>], along: usize) -> core::ops::RangeInclusive<i64> 
     ends.0.floor() as i64..=ends.1.floor() as i64
 }
 
-/// The part of a convex polygon with a coordinate between `low` and `low + 1`.
+/// The part of a convex polygon whose coordinate is between `low` and `low + 1`.
 fn between(
     corners: &[Plane<f64>],
     along: usize,
@@ -101,7 +101,7 @@ fn between(
     clip(kept, along, |x| low + 1.0 - x, out);
 }
 
-/// The part of a convex polygon where a function of one coordinate is not negative (Sutherland and Hodgman, 1974).
+/// The part of a convex polygon on which a function of one coordinate is nonnegative (Sutherland and Hodgman, 1974).
 fn clip(
     corners: &[Plane<f64>],
     along: usize,
@@ -121,7 +121,7 @@ fn clip(
     }
 }
 
-/// Area of a polygon.
+/// The area of a polygon.
 fn area(corners: &[Plane<f64>]) -> f64 {
     let Some(first) = corners.first() else {
         return 0.0;

@@ -1,12 +1,12 @@
-//! Orientation of three points, and whether a fourth is inside their circle; exact for positions in whole
-//! grains. The sign of a determinant is taken from doubles where their rounding cannot change it, and from the
-//! adaptive arithmetic of Shewchuk (1997) elsewhere.
+//! The orientation of three points, and whether a fourth is inside their circumcircle. Both are exact for positions in
+//! whole grains. Double precision decides the sign of a determinant if rounding cannot change it; otherwise the
+//! adaptive arithmetic of Shewchuk (1997) does.
 
 use super::torus::Grains;
 use robust::Coord;
 
-/// Rounding of the determinants below, in units of the sum of the sizes of their terms; larger than what the same
-/// source proves for them.
+/// Bounds of the rounding of the determinants below, relative to the sum of the sizes of their terms. They exceed the
+/// bounds that Shewchuk proves.
 const TURN: f64 = 4.5e-16;
 const CIRCLE: f64 = 1.5e-15;
 
@@ -16,7 +16,7 @@ fn coord([x, y]: Grains) -> Coord<f64> {
     Coord { x, y }
 }
 
-/// Positive where `v` is to the left of `u`, seen from the origin; zero where all three are on a line.
+/// Positive if `v` is to the left of `u`, seen from the origin; zero if the three points are collinear.
 #[inline(always)]
 pub(super) fn turn(u: Grains, v: Grains) -> f64 {
     let (one, other) = (u[0] * v[1], u[1] * v[0]);
@@ -27,7 +27,7 @@ pub(super) fn turn(u: Grains, v: Grains) -> f64 {
     robust::orient2d(ORIGIN, coord(u), coord(v))
 }
 
-/// Whether `w` is inside the circle of the origin, `u` and `v`, which turn left.
+/// Whether `w` is inside the circumcircle of the origin, `u` and `v`, which are counterclockwise.
 #[inline(always)]
 pub(super) fn in_circle(u: Grains, v: Grains, w: Grains) -> bool {
     let square = |a: Grains| a[0] * a[0] + a[1] * a[1];

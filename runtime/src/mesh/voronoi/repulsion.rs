@@ -1,6 +1,6 @@
-//! A repulsion of particles that are too close to one another, `mesh core: Real at a = pair_core(X, m, rc, kappa);`.
-//! Cells have areas whatever the distance of their sites, so nothing else keeps particles apart in shear. Takes places
-//! on a torus, masses, a radius and a strength; gives energies and exact derivatives.
+//! A repulsion between particles that are too close, `mesh core: Real at a = pair_core(X, m, rc, kappa);`. Cell areas
+//! do not depend on the distance of their sites, so nothing else separates particles in shear. Takes positions on a
+//! torus, masses, a radius and a strength; gives energies and exact derivatives.
 
 use super::bins::Bins;
 use super::masses::check_masses;
@@ -9,8 +9,8 @@ use crate::mesh::{Functional, MeshError, Setting, Wall};
 use crate::{ParameterError, Problem, Real};
 use nalgebra::SVector;
 
-/// Half the energy of all pairs of a particle. A pair at the distance `R < rc` has the energy
-/// `kappa <m> (1 - R/rc)^3`, with `<m>` the mean of the masses and `kappa` the square of a velocity.
+/// Half the energy of all pairs that contain a particle. A pair at the distance `R < rc` has the energy
+/// `kappa <m> (1 - R/rc)^3`, where `<m>` is the mean of the masses and `kappa` is a squared velocity.
 ///
 /// The energy is twice continuously differentiable, and zero if all particles are at least `rc` apart. For a layer
 /// with the depth `h0` and the wave speed `c0^2 = g h0`, use `kappa = c0^2 / 10` and `rc` of 0.7 times the distance of
@@ -22,22 +22,22 @@ pub struct pair_core<T> {
     radius: T,
     /// `kappa <m>`.
     strength: T,
-    /// The pairs within the radius at the last value, both ways, in the order of their first particles.
+    /// The pairs within the radius at the last evaluation, in both orders, sorted by first particle.
     pairs: Vec<Pair<T>>,
 }
 
-/// A particle and a near neighbour.
+/// A particle and a close neighbour.
 #[derive(Clone, Copy, Debug)]
 struct Pair<T> {
     first: u32,
     second: u32,
-    /// From the first to the second.
+    /// The vector from the first particle to the second.
     apart: SVector<T, 2>,
     distance: T,
 }
 
 impl<T: Real> pair_core<T> {
-    /// Pairs within the radius at the last value.
+    /// The number of pairs within the radius at the last evaluation.
     #[must_use]
     pub fn pairs(&self) -> usize {
         self.pairs.len() / 2
@@ -51,7 +51,7 @@ impl<T: Real> pair_core<T> {
 
 impl<T: Real> Functional<T, 2> for pair_core<T> {
     type Argument = SVector<T, 2>;
-    /// Masses, the radius and the strength.
+    /// The masses, the radius and the strength.
     type Data<'a> = (&'a [T], T, T);
 
     fn new(
@@ -148,7 +148,8 @@ impl<T: Real> Functional<T, 2> for pair_core<T> {
             let (first, second) = (pair.first as usize, pair.second as usize);
             let nearness = self.nearness(pair.distance);
             let push = (seed[first] + seed[second]) * scale * nearness * nearness / pair.distance;
-            // Farther from the first, less energy: its derivative at the first is along the second.
+            // The energy rises if the first particle moves towards the second, so its gradient there points along
+            // `apart`.
             out[first] += pair.apart * push;
         }
         Ok(())

@@ -1,18 +1,18 @@
-//! A symmetric, positive definite operator on the sites of a mesh, by rows: areas of cells, and what flows between pairs
-//! of sites. Made by its owner at every update; gives a row applied to values.
+//! A symmetric, positive definite operator on the sites of a mesh, stored by rows: cell areas, and couplings between
+//! pairs of sites. Its owner recomputes it at every update. Gives the product of a row with values.
 
 use crate::Real;
 
-/// `(H x)_a = A_a x_a + sum_b w_ab (x_a - x_b)`, with `w_ab` not negative.
+/// `(H x)_a = A_a x_a + sum_b w_ab (x_a - x_b)`, with nonnegative `w_ab`.
 #[derive(Clone, Debug)]
 pub struct Rows<T> {
-    /// Where each row begins, and the last one ends.
+    /// The start of each row, and the end of the last row.
     pub(super) start: Vec<u32>,
-    /// The sites that each site is coupled to,
+    /// The sites to which each site is coupled.
     pub(super) columns: Vec<u32>,
-    /// and `-w_ab`.
+    /// The off-diagonal entries `-w_ab`.
     pub(super) entries: Vec<T>,
-    /// Diagonal entries, and one over them.
+    /// The diagonal entries and their inverses.
     pub(super) diagonal: Vec<T>,
     pub(super) inverse: Vec<T>,
     /// Areas of the cells.
@@ -31,20 +31,20 @@ impl<T: Real> Rows<T> {
         }
     }
 
-    /// Once the diagonal is complete.
+    /// Inverts the diagonal; call this once it is complete.
     pub(super) fn invert_diagonal(&mut self) {
         for (inverse, diagonal) in self.inverse.iter_mut().zip(&self.diagonal) {
             *inverse = T::one() / *diagonal;
         }
     }
 
-    /// Which entries belong to a site.
+    /// The range of a row's entries.
     #[inline(always)]
     pub(super) fn range(&self, a: usize) -> core::ops::Range<usize> {
         self.start[a] as usize..self.start[a + 1] as usize
     }
 
-    /// A row applied to `x`.
+    /// The product of a row with `x`.
     #[inline(always)]
     pub(super) fn row(&self, a: usize, x: &[T]) -> T {
         let range = self.range(a);

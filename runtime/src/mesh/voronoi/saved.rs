@@ -27,7 +27,7 @@ impl Saved for HalfEdges {
 }
 
 impl HalfEdges {
-    /// Whether these are the edges of a triangulated torus, or none.
+    /// Whether these half-edges form a triangulated torus, or are empty.
     fn fit(&self, sites: usize) -> bool {
         let count = self.len();
         if count == 0 {
@@ -102,7 +102,7 @@ impl<O, const TIMES: usize> Saved for Smoothed<f64, O, TIMES> {
     }
 }
 
-/// Nothing of it is kept from one value to the next.
+/// Nothing is stored between evaluations.
 impl Saved for pair_core<f64> {
     fn words(&mut self, _: &mut Words) {}
 }

@@ -1,6 +1,5 @@
-//! Loops over several threads, whose results are the same, bit for bit, for any number of threads. Collected items keep
-//! their order, and sums are computed for pieces of fixed length and added in their order. Threads need the feature
-//! `rayon`.
+//! Loops over several threads, with bitwise identical results for any number of threads. Collected items keep their
+//! order; sums are computed in pieces of fixed length and added in order. Threads need the feature `rayon`.
 
 use crate::Real;
 use crate::line::Threads;
@@ -11,12 +10,12 @@ use rayon::prelude::*;
 /// The number of sites in a piece.
 const PIECE: usize = 1024;
 
-/// The least number of pieces for a thread; with fewer, waking the thread costs more than it saves.
+/// The smallest number of pieces for a thread; with fewer, waking the thread costs more than it saves.
 #[cfg(feature = "rayon")]
 const FEWEST: usize = 2;
 
 impl Threads {
-    /// Pieces of each thread, of so many in all; none where one thread does.
+    /// The number of pieces for each thread; `None` if one thread suffices.
     #[cfg(feature = "rayon")]
     fn pieces_each(self, pieces: usize) -> Option<usize> {
         let parts = self.0.min(pieces / FEWEST);
@@ -50,7 +49,7 @@ impl Threads {
     }
 }
 
-/// Sums of pieces.
+/// Sums over pieces of a list.
 #[derive(Clone, Debug)]
 pub(super) struct Sums<T> {
     threads: Threads,
@@ -69,8 +68,8 @@ impl<T: Real> Sums<T> {
         self.threads = threads;
     }
 
-    /// Two sums over all sites, while `one` and `other` are written: `each` is called for pieces, with the number of their
-    /// first site.
+    /// Computes two sums over all sites, and writes `one` and `other`. `each` is called for every piece, with the
+    /// number of its first site.
     pub fn over(
         &mut self,
         one: &mut [T],

@@ -1,6 +1,6 @@
-//! Depths that are smoothed on a mesh, once or several times over: `phi_1 = H^-1 m`, `phi_2 = H^-1 A phi_1`, ..., with the
-//! areas `A` of the Voronoi cells and an operator `H = A + alpha^2 K` that leaves constants to `A`. Takes places on a
-//! torus, masses and the length; gives the last of these depths, and exact derivatives.
+//! Depths smoothed on a mesh, once or several times: `phi_1 = H^-1 m`, `phi_2 = H^-1 A phi_1`, ..., with the areas `A`
+//! of the Voronoi cells and an operator `H = A + alpha^2 K` that maps constants to multiples of `A`. Takes positions on
+//! a torus, masses and the length; gives the depth after the last smoothing, and exact derivatives.
 
 use super::conjugate::Iteration;
 use super::extrapolated::Extrapolated;
@@ -15,7 +15,7 @@ use nalgebra::SVector;
 
 /// A smoothing operator `H = A + alpha^2 K`, with `K` symmetric, positive semidefinite, and zero for constants.
 pub trait Operator<T: Real>: Clone + Send + Sync {
-    /// Its room.
+    /// A workspace for the operator.
     fn new(setting: &Setting<2>, alpha: T) -> Self;
 
     /// Updates the operator to a mesh.
@@ -27,7 +27,7 @@ pub trait Operator<T: Real>: Clone + Send + Sync {
     /// The rows of the operator.
     fn rows(&self) -> &Rows<T>;
 
-    /// Adds to `out` how `-u.(H v)` changes with each place.
+    /// Adds the gradient of `-u.(H v)` with respect to the positions to `out`.
     fn add_gradient(&mut self, mesh: &Voronoi<T>, u: &[T], v: &[T], out: &mut [SVector<T, 2>]);
 }
 
@@ -43,11 +43,11 @@ pub struct Smoothed<T, O, const TIMES: usize> {
     operator: O,
     iteration: Iteration<T>,
     masses: Vec<T>,
-    /// The positions of the last value.
+    /// The positions of the last evaluation.
     pub(super) at: Vec<Plane<T>>,
     /// The depths.
     pub(super) depths: [Extrapolated<T>; TIMES],
-    /// Whether mesh and operator belong to the last value.
+    /// Whether the mesh and the operator belong to the last evaluation.
     pub(super) ready: bool,
     adjoints: [Vec<T>; TIMES],
     right: Vec<T>,
@@ -56,22 +56,23 @@ pub struct Smoothed<T, O, const TIMES: usize> {
 }
 
 impl<T: Real, O: Operator<T>, const TIMES: usize> Smoothed<T, O, TIMES> {
-    /// The mesh at the places of the last value.
+    /// The mesh at the positions of the last evaluation.
     #[must_use]
     pub fn mesh(&self) -> &Voronoi<T> {
         &self.mesh
     }
 
-    /// Applications of the operator by the last value, and by the last derivative: 0 of a multiple of the masses.
+    /// How often the last evaluation and the last derivative applied the operator. The second number is 0 if the seed
+    /// is a multiple of the masses.
     #[must_use]
     pub fn products(&self) -> (usize, usize) {
         (self.products, self.adjoint_products)
     }
 
-    /// The masses with which the depth at the places `at` is `depth`.
+    /// The masses for which the depth at the positions `at` is `depth`.
     ///
     /// # Errors
-    /// As [`Voronoi::update`].
+    /// The errors of [`Voronoi::update`].
     pub fn masses(
         mesh: &mut Voronoi<T>,
         at: &[SVector<T, 2>],
@@ -103,7 +104,7 @@ impl<T: Real, O: Operator<T>, const TIMES: usize> Smoothed<T, O, TIMES> {
         Ok(depth)
     }
 
-    /// The factor between a seed and the masses.
+    /// The factor if the seed is a multiple of the masses.
     fn multiple(&self, seed: &[T]) -> Option<T> {
         let factor = seed[0] / self.masses[0];
         let rounding = 8.0 * T::EPSILON;
@@ -134,7 +135,7 @@ impl<T: Real, O: Operator<T>, const TIMES: usize> Smoothed<T, O, TIMES> {
         Ok(())
     }
 
-    /// Solves for the adjoint of each depth, the last one first.
+    /// Solves for the adjoints of the depths, in reverse order.
     fn solve_back(&mut self, seed: &[T]) -> Result<(), MeshError> {
         let rows = self.operator.rows();
         self.adjoint_products = 0;
@@ -154,7 +155,7 @@ impl<T: Real, O: Operator<T>, const TIMES: usize> Smoothed<T, O, TIMES> {
     }
 }
 
-/// Areas times values.
+/// Multiplies values by areas.
 fn weighted<T: Real>(out: &mut [T], areas: &[T], values: &[T]) {
     let pairs = areas.iter().zip(values);
     out.iter_mut()
@@ -164,7 +165,7 @@ fn weighted<T: Real>(out: &mut [T], areas: &[T], values: &[T]) {
 
 impl<T: Real, O: Operator<T>, const TIMES: usize> Functional<T, 2> for Smoothed<T, O, TIMES> {
     type Argument = SVector<T, 2>;
-    /// Masses, and the length.
+    /// The masses and the smoothing length.
     type Data<'a> = (&'a [T], T);
 
     fn new(setting: &Setting<2>, (masses, alpha): (&[T], T)) -> Result<Self, ParameterError> {
@@ -204,7 +205,7 @@ impl<T: Real, O: Operator<T>, const TIMES: usize> Functional<T, 2> for Smoothed<
             self.products = 0;
         } else {
             if let Err(error) = self.solve() {
-                // A failed solution is not used for extrapolation.
+                // After a failure, no stored solution is used for extrapolation.
                 self.depths.iter_mut().for_each(|depth| depth.solved = 0);
                 return Err(error);
             }
@@ -235,7 +236,7 @@ impl<T: Real, O: Operator<T>, const TIMES: usize> Functional<T, 2> for Smoothed<
             let (adjoint, depth) = (&self.adjoints[TIMES - 1 - turn], depth.latest());
             self.operator.add_gradient(&self.mesh, adjoint, depth, out);
             if turn + 1 < TIMES {
-                // The right side of the next equation.
+                // The right side of the next adjoint equation.
                 let next = &self.adjoints[TIMES - 2 - turn];
                 self.mesh.add_area_gradient(|a| next[a] * depth[a], out);
             }

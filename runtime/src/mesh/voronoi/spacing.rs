@@ -1,20 +1,21 @@
-//! Distances of particles, and the bound that they put on the step. Takes a mesh and the speeds of waves; gives
-//! distances and rates, with the sites where they are.
+//! Distances of particles, and the bound that waves put on the step size. Takes a mesh and wave speeds; gives distances
+//! and rates, with the sites at which they occur.
 
 use super::mesh::Voronoi;
 use crate::mesh::MeshError;
 
-/// A number and the two neighbours it belongs to.
+/// A value that belongs to two neighbouring sites.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Between {
-    /// The number.
+    /// The value.
     pub value: f64,
     /// The neighbours.
     pub sites: [usize; 2],
 }
 
 impl Voronoi<f64> {
-    /// The smallest distance of two particles, or of a particle and its own copy. The nearest are always neighbours.
+    /// The smallest distance between two particles, or between a particle and its own copy. The closest particles are
+    /// always neighbours.
     #[must_use]
     pub fn nearest(&self) -> Between {
         let mut nearest = Between {
@@ -33,9 +34,9 @@ impl Voronoi<f64> {
         nearest
     }
 
-    /// The largest speed over distance of two neighbours. If `speeds` are the wave speeds `sqrt(g h)` at particles, one
-    /// step should be at most about half of its inverse. Waves of a depth that is smoothed over the length `alpha` are
-    /// slower: for these you can use `1/alpha` instead of the inverse distance.
+    /// The largest ratio of speed to distance of two neighbours. If `speeds` are the wave speeds `sqrt(g h)` at the
+    /// particles, one step should be at most about half the inverse. If the depth is smoothed over the length `alpha`,
+    /// waves are slower, and you can use `1/alpha` instead of the inverse distance.
     ///
     /// # Errors
     /// [`MeshError::Count`].

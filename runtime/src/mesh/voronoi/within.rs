@@ -1,6 +1,7 @@
-//! `A + alpha^2 G` with a Laplace operator of all pairs within a radius, `(G f)_a = sum_b A_a A_b W(R) (f_a - f_b)`. The kernel
-//! `W` is Wendland's of second order, scaled so that `G` is the Laplace operator of smooth
-//! functions on even meshes; areas and kernel have continuous derivatives where neighbours change.
+//! `A + alpha^2 G`, where the Laplace operator `G` couples all pairs within a radius,
+//! `(G f)_a = sum_b A_a A_b W(R) (f_a - f_b)`. `W` is Wendland's kernel of second order, scaled so that `G`
+//! approximates the Laplace operator for smooth functions on even meshes. Derivatives are continuous when neighbours
+//! change.
 
 use super::bins::Bins;
 use super::mesh::{Plane, Voronoi};
@@ -10,24 +11,24 @@ use crate::Real;
 use crate::mesh::{MeshError, Setting};
 use nalgebra::SVector;
 
-/// The radius, in mean distances of particles.
+/// The radius, in mean particle distances.
 const RADIUS: f64 = 2.5;
 
-/// The operator at the places of the last update.
+/// The operator at the positions of the last update.
 #[derive(Clone, Debug)]
 pub struct Within<T> {
     rows: Rows<T>,
     bins: Bins,
     radius: f64,
-    /// From the first to the second of each entry of the rows.
+    /// For each entry of the rows, the vector from the first site to the second.
     apart: Vec<Plane<T>>,
     alpha_squared: T,
     seeds: Vec<T>,
 }
 
 impl<T: Real> Within<T> {
-    /// The share of the radius that a distance is, and the kernel's factor: half of the integral of `W` times the square of
-    /// one component of the distance is 1.
+    /// The distance as a fraction of the radius, and the factor of the kernel. It is normalised so that half the
+    /// integral of `W` times the square of one component of the distance is 1.
     fn share(&self, apart: Plane<T>) -> (T, T) {
         let square = apart[0] * apart[0] + apart[1] * apart[1];
         let share = square.sqrt() / T::from_f64(self.radius);
@@ -35,7 +36,7 @@ impl<T: Real> Within<T> {
         (share, T::from_f64(factor))
     }
 
-    /// `W`.
+    /// The kernel `W`.
     fn kernel(&self, apart: Plane<T>) -> T {
         let (share, factor) = self.share(apart);
         let left = T::one() - share;
@@ -43,7 +44,7 @@ impl<T: Real> Within<T> {
         factor * square * square * (T::one() + T::from_f64(4.0) * share)
     }
 
-    /// `W'/R`.
+    /// The derivative of the kernel over the distance, `W'/R`.
     fn slope(&self, apart: Plane<T>) -> T {
         let (share, factor) = self.share(apart);
         let left = T::one() - share;

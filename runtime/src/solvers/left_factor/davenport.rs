@@ -1,11 +1,11 @@
-//! The equation on SO(3) for any left factor, by a 4 x 4 eigenvalue problem for the quaternion.
-//! Takes `C` and the vector `v` of `hat(v) = h hat(N)`; gives the principal rotation.
+//! Solves the equation on SO(3) for any left factor, by a 4 x 4 eigenvalue problem for the quaternion. Takes `C` and
+//! the vector `v` of `hat(v) = h hat(N)`; gives the principal rotation.
 //!
-//! `(K(C) + L(v)) q = k q` with Davenport's matrix `K` of attitude determination and a matrix `L` that
-//! is skew; `k = tr(Omega C^T)` is the largest real eigenvalue. Newton's method descends to it on the
-//! quartic from above, as in QUEST (Shuster and Oh, J. Guidance and Control 4, 1981), an eigenvector is
-//! a column of the adjugate, and Newton's method on the group takes out what rounding left. `C` needs
-//! no preparation, so it may change from step to step.
+//! The problem is `(K(C) + L(v)) q = k q`, with Davenport's matrix `K` of attitude determination and a skew matrix `L`.
+//! `k = tr(Omega C^T)` is the largest real eigenvalue. Newton's method for the quartic descends to it from above, as in
+//! QUEST (Shuster and Oh, J. Guidance and Control 4, 1981). A column of the adjugate is an eigenvector, and Newton's
+//! method on the group removes the remaining rounding error. `C` needs no preparation, so it may change from step to
+//! step.
 
 use super::reach::{farthest_of, fastest_of};
 use super::{LeftFactor, Refusal, Unsolved};
@@ -14,13 +14,13 @@ use crate::solvers::Method;
 use crate::{Group, Real, Rotation};
 use nalgebra::{Matrix3, Matrix4, SMatrix, Vector3, Vector4};
 
-/// Steps of Newton's method for the eigenvalue; from the bound of the norm it needs about eight.
+/// The largest number of Newton steps for the eigenvalue. From the bound of the norm, about eight suffice.
 const STEPS: usize = 60;
 
-/// Steps on the group; one or two away from the bound, where the eigenvalue is double.
+/// The largest number of steps on the group. One or two suffice, except near the bound, where the eigenvalue is double.
 const POLISHING: usize = 40;
 
-/// A residual of this many roundings of the factor is zero.
+/// A residual counts as zero below this many roundings of the factor.
 const CONVERGED_ROUNDINGS: f64 = 8.0;
 
 /// If the residual stops decreasing below this many roundings, the cause is rounding.
@@ -73,7 +73,7 @@ pub fn davenport<T: Real>(c: &Matrix3<T>, v: &Vector3<T>) -> Result<Rotation<T>,
     Err(refuse(c, v, previous))
 }
 
-/// Like [`davenport`], with the solver `method`. Every other solver prepares the factor anew.
+/// Like [`davenport`], with the solver `method`. All other solvers prepare the factor in each call.
 ///
 /// # Errors
 /// [`Unsolved`]; for other solvers also if the matrix is not a left factor.
@@ -109,7 +109,7 @@ fn eigenvector<T: Real>(c: &Matrix3<T>, v: &Vector3<T>) -> Option<Rotation<T>> {
         (i, 0) => z[i - 1] + v[i - 1],
         (i, j) => lower[(i - 1, j - 1)],
     });
-    // Characteristic polynomial and adjugate together (Faddeev); the trace of n is zero.
+    // Computes the characteristic polynomial and the adjugate together (Faddeev); the trace of n is zero.
     let one = Matrix4::<T>::identity();
     let c2 = -(n * n).trace() * T::from_f64(0.5);
     let b3 = n * n + one * c2;
@@ -125,7 +125,7 @@ fn eigenvector<T: Real>(c: &Matrix3<T>, v: &Vector3<T>) -> Option<Rotation<T>> {
         let slope = (T::from_f64(4.0) * kk + c2 + c2) * k + c1;
         let falls = slope.least();
         if falls <= 0.0 || falls.is_nan() {
-            // The derivative vanishes before the polynomial: no real eigenvalue, or a double one.
+            // The derivative vanishes before the polynomial, so a real eigenvalue is missing or double.
             break;
         }
         let step = value / slope;
@@ -139,7 +139,7 @@ fn eigenvector<T: Real>(c: &Matrix3<T>, v: &Vector3<T>) -> Option<Rotation<T>> {
         }
     }
     let adjugate = ((one * k + n) * k + b3) * k + b4;
-    // The longest column, lane by lane: all are multiples of the eigenvector.
+    // Selects the longest column in each lane; all columns are multiples of the eigenvector.
     let length = |x: &Vector4<T>| x.dot(x);
     let mut best: Vector4<T> = adjugate.column(0).into_owned();
     for j in 1..4 {

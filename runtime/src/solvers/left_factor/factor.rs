@@ -1,5 +1,5 @@
-//! A left factor, validated and transformed to its principal frames once. Takes the matrix `C`;
-//! gives the data that the solvers need.
+//! A left factor, validated and transformed to its principal frames once. Takes the matrix `C`; gives the data for the
+//! solvers.
 
 use super::{Refusal, Unsolved};
 use crate::groups::Orthogonal;
@@ -12,24 +12,24 @@ use crate::{ParameterError, Problem, Real, Rotation};
 use core::fmt;
 use nalgebra::{SMatrix, SVector, Vector3};
 
-/// Largest size whose linear systems fit the work arrays.
+/// The largest matrix size for which the linear systems fit into the work arrays.
 pub(super) const LARGEST: usize = 8;
 
-/// A left factor `C = P Q`, `P` symmetric and positive, `Q` a rotation, with the principal frame of
-/// `P`, in which the factor is diagonal.
+/// A left factor `C = P Q` with a symmetric positive `P` and a rotation `Q`, and the principal frame of `P`, in which
+/// the factor is diagonal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeftFactor<const N: usize, T = f64> {
-    /// `C` as given.
+    /// The given `C`.
     pub(super) given: SMatrix<T, N, N>,
-    /// `U`: principal components -> given ones, on the left.
+    /// `U`: maps principal to given components, on the left.
     left: SMatrix<T, N, N>,
-    /// `W = Q^T U`: the same on the right.
+    /// `W = Q^T U`: maps principal to given components, on the right.
     right: SMatrix<T, N, N>,
     /// `U^T C W`, diagonal to rounding.
     pub(super) framed: SMatrix<T, N, N>,
     /// Whether both frames are the identity.
     plain: bool,
-    /// In three dimensions, `P` as a Poinsot matrix and `Q`; `None` in others.
+    /// `P` as a Poinsot matrix, and `Q`, in three dimensions; `None` in other dimensions.
     space: Option<(Poinsot<T>, Rotation<T>)>,
     /// Whether `Q` is the identity.
     symmetric: bool,
@@ -67,12 +67,11 @@ pub enum LeftFactorError {
         /// The determinant.
         determinant: f64,
     },
-    /// A symmetric factor with eigenvalues of which two have a sum that is not positive, or one is
-    /// negative.
+    /// A symmetric factor with a negative eigenvalue, or with two eigenvalues whose sum is not positive.
     NotPositive {
         /// The smallest eigenvalue.
         smallest: f64,
-        /// The next one.
+        /// The second smallest eigenvalue.
         second: f64,
     },
 }
@@ -116,7 +115,7 @@ impl LeftFactorError {
     }
 }
 
-/// Newton steps for the polar factor; scaled ones need fewer than ten.
+/// The largest number of Newton steps for the polar factor; with scaling, fewer than ten suffice.
 const POLAR_STEPS: usize = 20;
 
 /// The orthogonal factor `Q` of `C = P Q` (Higham, SIAM J. Sci. Stat. Comput. 7, 1986).
@@ -129,7 +128,7 @@ fn polar<T: Real, const N: usize>(c: &SMatrix<T, N, N>) -> Option<SMatrix<T, N, 
         let scale = (square(&back) / square(&q)).sqrt().sqrt();
         q = (q * scale + back * (T::one() / scale)) * half;
     }
-    // Unscaled: quadratic to the end, derivative parts included.
+    // Without scaling, the last steps converge quadratically, including derivative parts.
     for _ in 0..2 {
         q = (q + inverse(&q)?.transpose()) * half;
     }
@@ -137,13 +136,13 @@ fn polar<T: Real, const N: usize>(c: &SMatrix<T, N, N>) -> Option<SMatrix<T, N, 
 }
 
 impl<const N: usize, T: Real> LeftFactor<N, T> {
-    /// The factor of a matrix.
+    /// Validates a matrix as a left factor.
     ///
-    /// A symmetric one may have one eigenvalue zero, as a flat body has; any other must have a
-    /// positive determinant. Sizes above eight do not compile.
+    /// One eigenvalue of a symmetric matrix may be zero, as for a flat body. Any other matrix must have a positive
+    /// determinant. Sizes above eight do not compile.
     ///
     /// # Errors
-    /// [`LeftFactorError`] with the numbers that are wrong.
+    /// [`LeftFactorError`] with the invalid numbers.
     pub fn new(c: SMatrix<T, N, N>) -> Result<Self, LeftFactorError> {
         const { assert!(2 <= N && N <= LARGEST, "left factors have sizes 2 to 8") };
         if !c.iter().all(|x| x.is_finite()) {
@@ -201,7 +200,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
         Ok(factor)
     }
 
-    /// The matrix `C` as given.
+    /// The given matrix `C`.
     pub fn matrix(&self) -> SMatrix<T, N, N> {
         self.given
     }
@@ -212,8 +211,8 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
     /// Equal arguments give equal results. Nothing is allocated.
     ///
     /// # Errors
-    /// [`Unsolved`] if the momentum is beyond the exact bound of the principal solution, with the
-    /// ratio of both; if the solver does not apply; or if it does not converge.
+    /// [`Unsolved`] if the momentum exceeds the exact bound of the principal solution, with the ratio of both; if the
+    /// solver does not support the factor; or if it does not converge.
     #[inline]
     pub fn solve(
         &self,
@@ -250,7 +249,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
         }
     }
 
-    /// The skew matrix of a vector, where `N` is three.
+    /// The skew matrix of a vector, for `N = 3`.
     fn hat(&self, v: &Vector3<T>) -> SMatrix<T, N, N> {
         let hat = crate::linalg::hat(v);
         SMatrix::from_fn(|i, j| hat.get((i, j)).copied().unwrap_or_else(T::zero))
@@ -259,7 +258,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
     /// The principal solution in three dimensions, for a momentum vector.
     ///
     /// # Errors
-    /// As [`LeftFactor::solve`].
+    /// The errors of [`LeftFactor::solve`].
     #[inline]
     pub fn rotation(&self, h_n: &Vector3<T>, method: Method) -> Result<Rotation<T>, Unsolved> {
         if method == Method::Kappa {
@@ -273,11 +272,10 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
             .map_err(|_| self.unsolved(method, &h_n, Refusal::DoesNotApply))
     }
 
-    /// The principal solutions in three dimensions, for the momentum vectors of independent bodies. Each
-    /// equals the result of [`LeftFactor::rotation`], bit for bit.
+    /// Like [`LeftFactor::rotation`] for several independent bodies, with bitwise identical results.
     ///
     /// # Errors
-    /// As [`LeftFactor::solve`], for the first body that fails.
+    /// The error of [`LeftFactor::solve`] for the first body that fails.
     // A separate function: the bodies need all registers.
     #[inline(never)]
     pub fn rotations<const COUNT: usize>(
@@ -285,7 +283,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
         h_n: &[Vector3<T>; COUNT],
         method: Method,
     ) -> Result<[Rotation<T>; COUNT], Unsolved> {
-        // Numbers with lanes are solved side by side already, lane by lane.
+        // Numbers with lanes already solve several bodies at once.
         if let (Method::Kappa, true, Some((body, _)), 1) =
             (method, self.symmetric, &self.space, T::LANES)
         {
@@ -301,7 +299,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
         Ok(all)
     }
 
-    /// A skew matrix of the given frame in the principal one.
+    /// Transforms a skew matrix from the given frame to the principal frame.
     #[inline]
     pub(super) fn framed_momentum(&self, v: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         // If the frame is the identity, nothing is computed.
@@ -311,7 +309,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
         }
     }
 
-    /// A rotation found in the principal frame in the given one.
+    /// Transforms a rotation from the principal frame to the given frame.
     #[inline]
     pub(super) fn unframed(&self, r: &SMatrix<T, N, N>) -> Orthogonal<N, T> {
         match self.plain {
@@ -326,7 +324,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
         self.framed.diagonal()
     }
 
-    /// The error of a momentum that was not solved for.
+    /// The error for a momentum without a solution.
     #[cold]
     #[inline(never)]
     pub(super) fn unsolved(
@@ -354,7 +352,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
     }
 }
 
-/// Factor and momentum in three dimensions.
+/// Converts the factor and the momentum to three dimensions.
 fn three<T: Real, const N: usize>(
     c: &SMatrix<T, N, N>,
     v: &SMatrix<T, N, N>,

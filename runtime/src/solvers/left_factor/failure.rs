@@ -1,4 +1,4 @@
-//! Why the Moser-Veselov equation was not solved, with numbers.
+//! The error of a failed solve of the Moser-Veselov equation, with its numbers.
 
 use crate::groups::Part;
 use crate::said::{Times, in_lane, instead};
@@ -14,7 +14,7 @@ pub enum Refusal {
     BeyondBound,
     /// The iteration did not converge although the momentum is within the bound.
     NotConverged,
-    /// A solution was found, but not the principal one.
+    /// The solver found a solution, but not the principal one.
     NotPrincipal,
     /// The requested solver does not support this size, factor or scalar.
     DoesNotApply,
@@ -32,13 +32,12 @@ pub struct Unsolved {
     /// The scaled momentum over its exact bound, in the worst lane. Above 1 the principal solution
     /// does not exist.
     pub ratio: f64,
-    /// The component or the plane in which a short step turns fastest, in the frame of the factor:
-    /// it has the largest ratio of momentum to moment of inertia.
+    /// The component, or the plane in the frame of the factor, in which a short step rotates fastest: it has the
+    /// largest ratio of momentum to moment of inertia.
     pub fastest: Part,
     /// The lane of the worst ratio; 0 for types without lanes.
     pub lane: u8,
-    /// The largest entry of `Omega C^T - C Omega^T - h N` when the solver gave up; NaN where it
-    /// found none to try.
+    /// The largest entry of `Omega C^T - C Omega^T - h N` when the solver stopped; NaN if it found no candidate.
     pub residual: f64,
     /// The step size that failed, if the caller knows it.
     pub h: Option<f64>,

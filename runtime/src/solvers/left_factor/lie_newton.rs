@@ -1,12 +1,11 @@
-//! Newton's method on the group, the default solver of any size.
-//! Takes a left factor and `h N`; gives the principal solution, to rounding.
+//! Newton's method on the group, the default solver for any size. Takes a left factor and `h N`; gives the principal
+//! solution, to rounding.
 //!
-//! With `A = R C^T` and `F = A - A^T - V`, the perturbation `cay(X) R` changes `F` by
-//! `X A + A^T X`: the tangent of the method on the Lie algebra (Owren and Welfert, BIT 40, 2000). A
-//! factorised tangent serves several steps while they converge quickly. In the principal frame of
-//! the factor the tangent without momentum is `X_ij = F_ij / (c_i + c_j)`: up to half the bound it
-//! is enough, after the iteration for the symmetric part of `A`, and nothing is
-//! factorised.
+//! With `A = R C^T` and `F = A - A^T - V`, the perturbation `cay(X) R` changes `F` by `X A + A^T X`. This is the
+//! tangent of the method on the Lie algebra (Owren and Welfert, BIT 40, 2000). A factored tangent is reused in several
+//! steps while they converge quickly. In the principal frame of the factor, the tangent at zero momentum is diagonal:
+//! `X_ij = F_ij / (c_i + c_j)`. Up to half the bound, this tangent suffices after the iteration for the symmetric part
+//! of `A`, and no factorisation is needed.
 
 use super::factor::LeftFactor;
 use super::principal::is_principal;
@@ -19,23 +18,23 @@ use crate::linalg::{product, solve_many};
 use crate::solvers::Method;
 use nalgebra::SMatrix;
 
-/// Steps after which an attempt gives up; at the bound itself each step only halves the error.
+/// The largest number of steps in an attempt. At the bound itself, each step only halves the error.
 const MOST_STEPS: usize = 50;
 
 /// The number of attempts on the way from zero to the full momentum, if the direct attempt fails.
 const MOST_ATTEMPTS: usize = 60;
 
-/// A residual of this many roundings of twice the factor's largest entry is zero. Its remainder has
-/// the same effect in every step, so the iteration continues until it no longer decreases.
+/// A residual counts as zero below this many roundings of twice the factor's largest entry. The remaining error has the
+/// same effect in every step, so the iteration continues until it no longer decreases.
 const CONVERGED_ROUNDINGS: f64 = 1.0;
 
-/// Where the residual stops falling below this many roundings, rounding is the reason.
+/// If the residual stops decreasing below this many roundings, the cause is rounding.
 const STAGNATED_ROUNDINGS: f64 = 100.0;
 
-/// A factorised tangent is kept while each step reduces the residual to this part.
+/// A factored tangent is reused while each step reduces the residual to at most this fraction.
 const QUICK: f64 = 0.1;
 
-/// Steps below this take the series of the Cayley map.
+/// Below this size, steps use the series of the Cayley map.
 const SMALL: f64 = 0.05;
 
 /// The number of steps with the diagonal tangent that improve a guess; each costs a tenth of a factorisation.
@@ -43,9 +42,9 @@ const STEPS_BY_FACTOR: usize = 4;
 
 /// Why an attempt failed.
 enum Failed {
-    /// The last residual.
+    /// The iteration did not converge; contains the last residual.
     NotConverged(f64),
-    /// A solution, but not the principal one.
+    /// The iteration converged to a solution that is not the principal one.
     NotPrincipal,
 }
 
@@ -59,8 +58,8 @@ fn largest<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> f64 {
     })
 }
 
-/// `cay(X) R`, or for small `X` its series to second order, made orthogonal by a Newton step: of
-/// the fourth power of `X` that the series is off, the square is left.
+/// `cay(X) R`, or for small `X` its series to second order. A Newton step makes the series orthogonal: the error of
+/// fourth order in `X` remains only squared.
 #[inline]
 fn turned<T: Real, const N: usize>(
     x: &SMatrix<T, N, N>,
@@ -79,8 +78,7 @@ fn turned<T: Real, const N: usize>(
     Some(back + back - r)
 }
 
-/// The skew `X` of a right side by the part of the tangent that the factor alone makes:
-/// `X_ij = G_ij / (c_i + c_j)`.
+/// Solves for the skew `X` with the diagonal part of the tangent: `X_ij = G_ij / (c_i + c_j)`.
 #[inline]
 fn by_factor<T: Real, const N: usize>(
     reciprocals: &SMatrix<T, N, N>,
@@ -103,7 +101,7 @@ fn attempt<T: Real, const N: usize>(
     let mut factorised = false;
     let mut previous = f64::INFINITY;
     let mut size = f64::NAN;
-    // Steps still to make once the real parts have converged: one an order of derivatives.
+    // The number of steps after the real parts have converged: one for each order of derivatives.
     let mut rest = T::ORDER;
     for _ in 0..MOST_STEPS {
         let a = product(&r, &turned_factor);
@@ -129,7 +127,7 @@ fn attempt<T: Real, const N: usize>(
             factorised = true;
         }
         let mut x = linear.solve(&-f);
-        // A step of more than a radian says nothing about where the solution is.
+        // A step of more than a radian does not indicate the position of the solution.
         let length = largest(&x);
         if length > 1.0 {
             x *= T::from_f64(1.0 / length);
@@ -140,8 +138,8 @@ fn attempt<T: Real, const N: usize>(
     Err(Failed::NotConverged(size))
 }
 
-/// The principal solution from a guess, by steps whose tangent is that without momentum; the best rotation found as an
-/// error where they are not enough.
+/// The principal solution from a guess, by steps with the tangent at zero momentum. If they do not suffice, the error
+/// contains the best rotation found.
 #[inline]
 fn by_steps_of_the_factor<T: Real, const N: usize>(
     factor: &LeftFactor<N, T>,
@@ -173,13 +171,13 @@ fn by_steps_of_the_factor<T: Real, const N: usize>(
     Err(r)
 }
 
-/// One rounding of the residual.
+/// The size of one rounding of the residual.
 #[inline]
 fn unit<T: Real, const N: usize>(factor: &LeftFactor<N, T>, v: &SMatrix<T, N, N>) -> f64 {
     T::EPSILON * (2.0 * largest(&factor.framed)).max(largest(v))
 }
 
-/// Whether a residual is rounding, given the previous residual.
+/// Whether a residual is at rounding level, given the previous residual.
 #[inline]
 fn is_solved(size: f64, previous: f64, unit: f64) -> bool {
     size <= CONVERGED_ROUNDINGS * unit

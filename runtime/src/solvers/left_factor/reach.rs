@@ -1,5 +1,5 @@
-//! Where the equation of a left factor stops having a principal solution.
-//! Takes the factor and `h N`; gives the exact bound ratio, and which plane turns fastest.
+//! The existence bound of the principal solution for a left factor. Takes the factor and `h N`; gives
+//! the ratio to the exact bound, and the plane that rotates fastest.
 
 use super::factor::LeftFactor;
 use crate::Real;
@@ -29,7 +29,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
     }
 }
 
-/// The largest of the ratios of the lanes, and its lane; NaN is larger than all.
+/// The largest ratio over the lanes, and its lane; NaN counts as the largest.
 fn farthest<T: Real>(ratio: impl Fn(usize) -> f64) -> (f64, usize) {
     let mut worst = (0.0, 0);
     for lane in 0..T::LANES {
@@ -44,8 +44,8 @@ fn farthest<T: Real>(ratio: impl Fn(usize) -> f64) -> (f64, usize) {
     worst
 }
 
-/// The plane of the largest `|h N_ij| / (P_ii + P_jj)`, momentum over moment of inertia, in one
-/// lane: the one that a short step turns fastest.
+/// In one lane, the plane with the largest `|h N_ij| / (P_ii + P_jj)`, momentum over moment of inertia. A short step
+/// rotates fastest in this plane.
 pub(super) fn fastest<T: Real, const N: usize>(
     p: &SMatrix<T, N, N>,
     h_n: &SMatrix<T, N, N>,
@@ -64,7 +64,7 @@ pub(super) fn fastest<T: Real, const N: usize>(
     Part::plane(plane.0, plane.1, N)
 }
 
-/// The ratio of [`LeftFactor::reach`] for a factor that nothing is prepared of.
+/// Like [`LeftFactor::reach`], for a factor without prepared data.
 #[must_use]
 pub fn reach_of<T: Real, const N: usize>(c: &SMatrix<T, N, N>, v: &SMatrix<T, N, N>) -> f64 {
     farthest_of(c, v).0
@@ -94,7 +94,7 @@ fn positive_part<T: Real, const N: usize>(
     (frame, spectrum.map(|x| x.max(0.0).sqrt()))
 }
 
-/// [`fastest`] for a factor that nothing is prepared of.
+/// Like [`fastest`], for a factor without prepared data.
 pub(super) fn fastest_of<T: Real, const N: usize>(
     c: &SMatrix<T, N, N>,
     h_n: &SMatrix<T, N, N>,
@@ -142,8 +142,8 @@ fn ratio<const N: usize>(c: &SVector<f64, N>, v: &SMatrix<f64, N, N>) -> f64 {
     best * length / unit
 }
 
-/// The largest singular value of a skew matrix: of its square the largest eigenvalue, by Jacobi
-/// rotations.
+/// The largest singular value of a skew matrix: the square root of the largest eigenvalue of its negative square, by
+/// Jacobi rotations.
 fn largest_singular_value<const N: usize>(w: &SMatrix<f64, N, N>) -> f64 {
     let gram = w.tr_mul(w);
     let frame = crate::linalg::principal_frame(&gram);

@@ -14,10 +14,10 @@ use crate::groups::Orthogonal;
 use crate::solvers::Method;
 use nalgebra::{Complex, SMatrix};
 
-/// Rows of the largest Hamiltonian matrix.
+/// The number of rows of the largest Hamiltonian matrix.
 const ROWS: usize = 2 * LARGEST;
 
-/// Sweeps for one eigenvalue; two or three are the rule.
+/// The largest number of sweeps for one eigenvalue; two or three usually suffice.
 const SWEEPS: usize = 40;
 
 type Number = Complex<f64>;
@@ -69,7 +69,7 @@ impl Schur {
         }
     }
 
-    /// To Hessenberg form.
+    /// Reduces to Hessenberg form.
     fn hessenberg(&mut self) {
         for k in 0..self.size.saturating_sub(2) {
             for i in (k + 2..self.size).rev() {
@@ -94,7 +94,7 @@ impl Schur {
         }
     }
 
-    /// To triangular form; false when an eigenvalue needs too many sweeps.
+    /// Reduces to triangular form; returns false if an eigenvalue needs too many sweeps.
     fn triangular(&mut self) -> bool {
         let mut last = self.size - 1;
         let mut sweeps = 0;
@@ -138,7 +138,7 @@ impl Schur {
             for i in first..=last {
                 self.t[(i, i)] += shift;
             }
-            // The shift was subtracted in the block only, so the rotations alone change the entries outside.
+            // The shift was subtracted only in the block, so outside it only the rotations change entries.
         }
         true
     }

@@ -1,5 +1,5 @@
-//! The solution by the matrix sign function of the Hamiltonian matrix, a cross-check.
-//! Takes a left factor and `h N`; gives the principal solution to some tens of roundings.
+//! Solves by the matrix sign function of the Hamiltonian matrix, as a cross-check. Takes a left factor and `h N`; gives
+//! the principal solution to some tens of roundings.
 //!
 //! With `H = [[V/2, 1], [V^2/4 + C C^T, V/2]]` the columns of `1 + sign(H)` span the invariant
 //! subspace of the right half plane, `[1; S]`, and `Omega C^T = S + V/2` (Roberts, Int. J. Control
@@ -14,10 +14,10 @@ use crate::scalar::largest;
 use crate::solvers::Method;
 use nalgebra::SMatrix;
 
-/// Rows of the largest Hamiltonian matrix.
+/// The number of rows of the largest Hamiltonian matrix.
 const ROWS: usize = 2 * LARGEST;
 
-/// Steps of the iteration; within the bound scaled ones need about ten.
+/// The largest number of iterations. Within the bound, about ten suffice with scaling.
 const STEPS: usize = 40;
 
 /// The blocks `[[V/2, 1], [V^2/4 + C C^T, V/2]]` in the leading `2N` rows and columns.

@@ -1,10 +1,10 @@
-//! The symmetric part of `A = R C^T` by an iteration that costs one product of matrices, for momenta up to about half the
-//! bound. Takes the principal values of the factor and `V = h N`, in the principal frame; gives a rotation near the
+//! Finds the symmetric part of `A = R C^T` by an iteration that costs one matrix product, for momenta up to about half
+//! the bound. Takes the principal values of the factor and `V = h N`, in the principal frame; gives a rotation near the
 //! solution, or `None` if it converges too slowly.
 //!
-//! With `A = S + V/2` the skew part is right whatever `S`, and what is left of `R` being orthogonal is `A^T A = D^2`,
-//! the matrix Riccati equation. Its tangent without momentum is diagonal: `S_ij` is corrected by the defect at
-//! `ij` over `d_i + d_j`. (The tangent at the solution is a Lyapunov operator, a matrix of `N^2 / 2` rows.)
+//! With `A = S + V/2` the skew part is correct for every `S`. The orthogonality of `R` becomes `A^T A = D^2`, the
+//! matrix Riccati equation. Its tangent at zero momentum is diagonal: the correction of `S_ij` is the defect at `ij`
+//! over `d_i + d_j`. (The tangent at the solution is a Lyapunov operator, a matrix with `N^2 / 2` rows.)
 
 use crate::Real;
 use crate::linalg::product;
@@ -13,24 +13,25 @@ use nalgebra::{ArrayStorage, SMatrix, SVector};
 /// The largest number of sweeps: at the slowest admitted rate, the defect then reaches rounding.
 const MOST_SWEEPS: usize = 60;
 
-/// A sweep that leaves more than this of the defect is too slow; a factorised tangent is then the cheaper one.
+/// If a sweep leaves more than this fraction of the defect, a factored tangent is cheaper.
 const SLOW: f64 = 0.6;
 
-/// The first sweeps, in which the defect may fall more slowly than later.
+/// The number of first sweeps in which the defect may decrease more slowly.
 const OPENING: usize = 3;
 
-/// Defects below this many roundings of each row are rounding.
+/// Defects below this many roundings of each row are at rounding level.
 const CONVERGED_ROUNDINGS: f64 = 1.0;
 
 /// If the defect stops decreasing below this many roundings, the cause is rounding.
 const STAGNATED_ROUNDINGS: f64 = 64.0;
 
-/// Smallest part of the largest principal value: the rotation is `A` over them, and rounding grows by their ratio.
+/// The smallest admissible ratio of principal values. The rotation is `A` divided by them, so the ratio amplifies
+/// rounding.
 const FLATTEST: f64 = 1e-2;
 
 type Square<T, const N: usize> = [[T; N]; N];
 
-/// A rotation, to rounding times the ratio of the principal values.
+/// A rotation, accurate to rounding times the ratio of the principal values.
 #[inline]
 pub(super) fn nearby_rotation<T: Real, const N: usize>(
     spectrum: &SVector<T, N>,
@@ -42,7 +43,7 @@ pub(super) fn nearby_rotation<T: Real, const N: usize>(
         (low.min(x.least()), high.max(x.greatest()))
     });
     let unit = T::EPSILON * greatest * greatest * N as f64;
-    // Written so that NaN is refused.
+    // This form of the comparison also rejects NaN.
     let solid = least > FLATTEST * greatest;
     if !solid {
         return None;
@@ -68,7 +69,7 @@ pub(super) fn nearby_rotation<T: Real, const N: usize>(
         {
             return Some(over(&a, d));
         }
-        // Also refuses NaN.
+        // This form of the comparison also rejects NaN.
         if !(size <= SLOW * previous || (sweep < OPENING && size.is_finite())) {
             return None;
         }
@@ -82,7 +83,7 @@ pub(super) fn nearby_rotation<T: Real, const N: usize>(
     None
 }
 
-/// `A` and `A^T A`, in columns. `S` is symmetric to the last bit, hence the transpose is `S - V/2`.
+/// `A` and `A^T A`, in columns. `S` is exactly symmetric, so the transpose of `A` is `S - V/2`.
 #[inline(always)]
 fn gram<T: Real, const N: usize>(
     s: &Square<T, N>,
@@ -99,7 +100,7 @@ fn gram<T: Real, const N: usize>(
     (a, product(&transposed, &a_matrix))
 }
 
-/// `D^2 - A^T A`, made symmetric to the last bit, and the sum of its squares.
+/// `D^2 - A^T A`, made exactly symmetric, and the sum of its squares.
 #[inline(always)]
 fn defect<T: Real, const N: usize>(d: &[T; N], gram: &SMatrix<T, N, N>) -> (Square<T, N>, T) {
     let gram = &gram.data.0;
@@ -121,7 +122,7 @@ fn defect<T: Real, const N: usize>(d: &[T; N], gram: &SMatrix<T, N, N>) -> (Squa
     )
 }
 
-/// `A D^-1`, made orthogonal by a Newton step.
+/// `A D^-1`, orthogonalised by a Newton step.
 #[inline(always)]
 fn over<T: Real, const N: usize>(a: &Square<T, N>, d: &[T; N]) -> SMatrix<T, N, N> {
     let mut r = *a;

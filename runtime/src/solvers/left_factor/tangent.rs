@@ -1,14 +1,14 @@
-//! The linear equation `X A + A^T X = G` for a skew `X`, by elimination with partial pivoting.
-//! Takes `A`; gives a factorisation that serves several right sides.
+//! Solves the linear equation `X A + A^T X = G` for a skew `X`, by elimination with partial pivoting. Takes `A`; gives
+//! a factorisation that can be reused for several right sides.
 
 use crate::Real;
 use crate::linalg::{is_usable, weight};
 use nalgebra::SMatrix;
 
-/// The largest number of unknowns: pairs of eight axes.
+/// The largest number of unknowns: the number of pairs of eight axes.
 const MOST: usize = super::factor::LARGEST * (super::factor::LARGEST - 1) / 2;
 
-/// The factorised operator, in the coordinates `X_ij`, `i < j`, row by row.
+/// The factored operator in the coordinates `X_ij`, `i < j`, row by row.
 pub(super) struct Tangent<T, const N: usize> {
     rows: [[T; MOST]; MOST],
     pivots: [usize; MOST],
@@ -32,7 +32,7 @@ impl<T: Real, const N: usize> Tangent<T, N> {
         }
     }
 
-    /// Factorises in place; false for a singular operator, or one that is not finite.
+    /// Factors in place; returns false if the operator is singular or not finite.
     #[inline]
     pub(super) fn factorise(&mut self, a: &SMatrix<T, N, N>) -> bool {
         let Self { rows, pivots } = self;
@@ -86,7 +86,7 @@ impl<T: Real, const N: usize> Tangent<T, N> {
         true
     }
 
-    /// The skew `X` of a skew right side.
+    /// The skew `X` for a skew right side.
     #[inline]
     pub(super) fn solve(&self, g: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         let mut x = [T::zero(); MOST];
@@ -95,7 +95,7 @@ impl<T: Real, const N: usize> Tangent<T, N> {
                 x[place::<N>(i, j)] = g[(i, j)];
             }
         }
-        // Rows were exchanged whole: so is the right side, before it is reduced.
+        // Factorisation exchanged whole rows, so the right side is permuted before it is reduced.
         for k in 0..Self::UNKNOWNS {
             x.swap(k, self.pivots[k]);
         }

@@ -84,11 +84,11 @@ impl<T: Real> Pencil<T> {
     }
 }
 
-/// The same for one free trajectory in principal axes, the middle moment second.
+/// Like `Pencil`, for one free trajectory in principal axes with the middle moment second.
 ///
-/// Along it `|u|^2` and `u . adj(I) u` are constant, hence `u_1^2` and `u_3^2` are linear in
-/// `u_2^2`, and so is the determinant. Since the moment is the middle one both lines fall, by at
-/// most 1, and rounding is not amplified.
+/// Along it `|u|^2` and `u . adj(I) u` are constant, so `u_1^2` and `u_3^2`, and therefore the determinant, are linear
+/// in `u_2^2`. Since the second moment is the middle one, both linear functions decrease, with slopes of at most 1, and
+/// rounding is not amplified.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Orbit<T> {
     /// Diagonal entries of `adj d + a`.
@@ -129,7 +129,7 @@ impl<T: Real> Orbit<T> {
         self.determinant
     }
 
-    /// As [`Pencil::solve`].
+    /// See [`Pencil::solve`].
     #[inline(always)]
     pub(super) fn solve(&self, body: &Poinsot<T>, u: [T; 3]) -> (T, [T; 3]) {
         let ([x, y, z], [p, q, r]) = (u, self.adjugate);

@@ -19,7 +19,7 @@ use super::preprocess::Invariants;
 use super::{Order, Poinsot};
 use crate::{Real, Rotation};
 
-/// Powers of `h^2` that are kept, from none to all that are known.
+/// The number of powers of `h^2` that are kept, from zero to all known powers.
 const POWERS: usize = 5;
 
 /// A polynomial in `E = h^2 H` and `M = h^2 C`, up to a common degree: `[i][j]` is the factor of `E^i M^j`.
@@ -54,7 +54,7 @@ impl<T: Real> Polynomial<T> {
         Self(self.0.map(|row| row.map(|x| x * factor)))
     }
 
-    /// The product, without the powers that are not kept.
+    /// The product, truncated to the powers that are kept.
     fn times(&self, other: &Self) -> Self {
         let mut all = [[T::zero(); POWERS]; POWERS];
         for i in 0..POWERS {
@@ -157,7 +157,7 @@ pub(super) fn factor<T: Real>(body: &Poinsot<T>, u: [T; 3], order: Order) -> T {
     }
     let mut turn = effective_d.scaled(-T::one());
     for j in 0..POWERS {
-        // A function of C alone changes nothing.
+        // A function of C alone does not affect symplecticity.
         turn.0[0][j] = T::zero();
     }
     for i in 1..POWERS {
@@ -169,7 +169,7 @@ pub(super) fn factor<T: Real>(body: &Poinsot<T>, u: [T; 3], order: Order) -> T {
     turn.value(invariants.energy, invariants.momentum)
 }
 
-/// The rotation by twice the vector `half`, which is small: the series of sine and cosine.
+/// The rotation by twice the small vector `half`, by the series of sine and cosine.
 pub(super) fn rotation<T: Real>(half: [T; 3]) -> Rotation<T> {
     let [x, y, z] = half;
     let square = x * x + y * y + z * z;

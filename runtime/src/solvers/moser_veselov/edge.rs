@@ -22,9 +22,8 @@ pub struct Edge<T = f64> {
     space: Paired<T>,
 }
 
-/// Three numbers in memory: a pair, stored and loaded as a whole, and one alone. Side by side they
-/// would be loaded in overlapping pairs, which the processor cannot forward from the stores of the
-/// step before.
+/// Three numbers, stored as a pair and a single number. If they were adjacent, they would be loaded as overlapping
+/// pairs, which the processor cannot forward from the stores of the previous step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 struct Paired<T> {
@@ -94,7 +93,7 @@ impl<T: Real> Edge<T> {
     /// of the Moser-Veselov equation, body side.
     ///
     /// # Errors
-    /// As [`forced`](super::forced()).
+    /// The errors of [`forced`](super::forced()).
     #[inline(always)]
     pub fn turn(
         &self,
@@ -141,7 +140,7 @@ impl<T: Real> Edge<T> {
     /// Like [`Edge::turn`], with the solver `method`, which prepares the body anew.
     ///
     /// # Errors
-    /// As [`Edge::turn`]; also if the solver does not support this scalar.
+    /// The errors of [`Edge::turn`]; also if the solver does not support this scalar.
     #[cold]
     #[inline(never)]
     pub fn turn_by(

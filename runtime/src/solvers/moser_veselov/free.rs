@@ -73,24 +73,23 @@ pub struct Correction<T = f64> {
 pub struct Free<T = f64> {
     /// The momentum `h mu / (2 unit)`.
     axes: [Axis<T>; 3],
-    /// For plain numbers, in principal axes.
+    /// The constants for plain numbers, in principal axes.
     orbit: Orbit<T>,
-    /// For numbers with derivatives, in the axes given.
+    /// The constants for numbers with derivatives, in the given axes.
     pencil: Pencil<T>,
-    /// In the axes worked in, with the moments of the order.
+    /// The body in the solver's axes, with the moments modified for the order.
     body: Poinsot<T>,
-    /// Components in the axes worked in -> components in the axes given.
+    /// Maps components in the solver's axes to components in the given axes.
     frame: Matrix3<T>,
-    /// Whether the two sets of axes differ.
+    /// Whether the two frames differ.
     turned: bool,
     until_projection: u32,
-    /// Whether it is made.
+    /// Whether the projection is enabled.
     projects: bool,
-    /// The compensating rotation about the momentum, if requested, and the steps until the next
-    /// projection. The turn is made by the code of the projections, after every single step, so that
-    /// steps without it cost nothing.
+    /// The compensating rotation about the momentum, if requested, and the steps until the next projection. The
+    /// projection code applies the rotation after every step, so that steps without it cost nothing.
     compensation: Option<(Rotation<T>, u32)>,
-    /// Squares of the last [`Correction`].
+    /// The squares of the last [`Correction`].
     corrected: [T; 2],
     /// The attitude at the end of the last step. If the given attitude differs, the user has set it.
     attitude: Rotation<T>,
@@ -99,17 +98,17 @@ pub struct Free<T = f64> {
     order: Order,
     /// The solver of a step; all solvers but `kappa` ignore the constants.
     method: Method,
-    /// The body in the axes given.
+    /// The body in the given axes.
     given: Poinsot<T>,
     /// `|u|^2`; constant.
     square: T,
-    /// Its inverse; 0 for a body at rest.
+    /// The inverse of `|u|^2`; 0 for a body at rest.
     per_square: T,
     /// `u . adj(I) u`; constant.
     energy: T,
     /// The factor from `u` to the momentum: `2 unit / h`.
     per_scale: T,
-    /// For many plain steps at once.
+    /// The representation for many plain steps at once.
     phase: Phase<T>,
 }
 
@@ -142,15 +141,15 @@ impl<T: Real> Free<T> {
         Self::start_of_order(body, attitude, momentum, h, Order::Two)
     }
 
-    /// As [`Free::start`], with steps of the given order: the moments are modified once. A step
-    /// costs the same at every order.
+    /// Like [`Free::start`], for steps of the given order. The moments are modified once, so a step costs the same at
+    /// every order.
     ///
-    /// Above two the map of the momentum is Poisson and energy, `|mu|^2` and spatial momentum are
-    /// as exact as before, but the map of momentum and attitude together is not symplectic: the
-    /// defect is of the size of the error of the step. [`Free::compensated`] removes it.
+    /// Above order two the map of the momentum is Poisson, and energy, `|mu|^2` and spatial momentum are as exact as at
+    /// order two. The joint map of momentum and attitude is not symplectic: the defect has the size of the step's
+    /// error. [`Free::compensated`] removes it.
     ///
     /// # Errors
-    /// As [`Free::start`]; the largest step is then found by bisection.
+    /// The errors of [`Free::start`]; the largest step size is then found by bisection.
     pub fn start_of_order(
         body: &Poinsot<T>,
         attitude: &Rotation<T>,
@@ -227,7 +226,7 @@ impl<T: Real> Free<T> {
         BodyMomentum(self.frame * Vector3::from(self.u().map(|x| x * self.per_scale)))
     }
 
-    /// The order of its steps.
+    /// The order of the steps.
     #[inline]
     pub fn order(&self) -> Order {
         self.order
@@ -267,11 +266,11 @@ impl<T: Real> Free<T> {
         self
     }
 
-    /// As [`Free::step`], for a state that may have been replaced: the step starts from the given
-    /// attitude and momentum.
+    /// Like [`Free::step`], for a state that may have been replaced: the step starts from the given attitude and
+    /// momentum.
     ///
     /// # Errors
-    /// As [`Free::start`] after a replacement, as [`Free::step`] otherwise; nothing is changed.
+    /// The errors of [`Free::start`] after a replacement, otherwise of [`Free::step`]. The state is then unchanged.
     #[inline]
     pub fn follow(
         &mut self,
@@ -287,18 +286,18 @@ impl<T: Real> Free<T> {
     /// Advances the attitude, and the momentum kept inside, by one step.
     ///
     /// # Errors
-    /// When a number has become NaN or infinite (the start allows none); the attitude and the
-    /// momentum are then unchanged.
+    /// If a number becomes NaN or infinite (the start rejects such numbers); the attitude and the momentum are then
+    /// unchanged.
     #[inline]
     pub fn step(&mut self, attitude: &mut Rotation<T>) -> Result<(), MoserVeselovError> {
         let momentum = self.momentum;
         self.follow(attitude, &momentum)
     }
 
-    /// Starts anew with another body, step size and order as they were.
+    /// Restarts with another body, and the same step size and order.
     ///
     /// # Errors
-    /// As [`Free::start_of_order`]; nothing is changed.
+    /// The errors of [`Free::start_of_order`]; nothing is changed.
     #[cold]
     #[inline(never)]
     pub fn restart_as(
@@ -337,7 +336,7 @@ impl<T: Real> Free<T> {
                 for (axis, x) in self.axes.iter_mut().zip(u) {
                     axis.body = x;
                 }
-                // As at a start, so that the next steps do not depend on the number of steps before.
+                // As at a start, so the next steps do not depend on how many steps preceded them.
                 self.count_anew();
                 self.phase.lost();
                 return Ok(());
@@ -446,13 +445,13 @@ impl<T: Real> Free<T> {
         (pushed, turned.scaled(scale), norm)
     }
 
-    /// `count` steps at once, with the same result as one by one but for rounding: the attitude is
-    /// found at the end, from one angle. For lanes, whose numbers then stay in registers.
+    /// Takes `count` steps at once, with the same result as single steps up to rounding. The attitude is computed at
+    /// the end, from one angle. With lanes, the numbers then stay in registers.
     ///
     /// The result does not depend on how many steps one call takes, not even in rounding.
     ///
     /// # Errors
-    /// As [`Free::follow`]; nothing is changed.
+    /// The errors of [`Free::follow`]; nothing is changed.
     #[inline(always)]
     pub fn follow_many(
         &mut self,
@@ -490,7 +489,7 @@ impl<T: Real> Free<T> {
                 (moving, norm) = path.step(&moving);
             }
             left -= steps;
-            // `REPAIR_EVERY` at most.
+            // At most `REPAIR_EVERY` steps.
             until_projection -= steps as u32;
             if until_projection.is_multiple_of(REPAIR_EVERY) {
                 moving.repair();
@@ -500,7 +499,7 @@ impl<T: Real> Free<T> {
                     let before = phase.solver_axes(moving.u);
                     let u = self.on_quadrics(before);
                     moving.u = phase.relabelled(u);
-                    // The attitude turns with the momentum.
+                    // The attitude rotates with the momentum.
                     corrected = [self.relative_change(before, u); 2];
                 }
                 until_projection = PROJECT_EVERY;
@@ -569,7 +568,7 @@ impl<T: Real> Free<T> {
         self.count_anew();
     }
 
-    /// `u`, in the axes worked in.
+    /// `u`, in the solver's axes.
     #[inline(always)]
     fn u(&self) -> [T; 3] {
         let [x, y, z] = &self.axes;
@@ -577,7 +576,7 @@ impl<T: Real> Free<T> {
     }
 }
 
-/// Whether the numbers carry no derivatives.
+/// Whether the scalar type is without derivatives.
 #[inline(always)]
 fn plain<T: Real>() -> bool {
     T::ORDER == 0

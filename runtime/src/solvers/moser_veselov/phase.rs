@@ -1,5 +1,5 @@
-//! The attitude of a free body along its trajectory, as a turn about its spatial momentum.
-//! Takes the scaled body momentum, step by step; gives the attitude on request.
+//! Represents the attitude of a free body along its trajectory as a rotation about its spatial momentum. Takes the
+//! scaled body momentum, step by step; gives the attitude on request.
 //!
 //! The spatial momentum is constant, so the direction of the momentum in the body and one angle about
 //! it determine an attitude. Let `s(u)` be the shortest rotation that takes the direction of `u` to
@@ -10,8 +10,7 @@
 //! `(d - hat u) n = det u`. That takes six products instead of twenty and a root for the product of
 //! quaternions, and rounding of `z` can only turn the body about its momentum.
 //!
-//! The axis `e` is the principal one that the momentum goes round, so that `s(u)` never comes near
-//! half a turn.
+//! The axis `e` is the principal axis around which the momentum moves, so `s(u)` stays away from half turns.
 
 use super::Poinsot;
 use super::cayley::{Orbit, Pencil};
@@ -22,22 +21,22 @@ use crate::{Real, Rotation};
 /// a turn or a quarter about the second) so that `e` is the third and `u_e` is not negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Phase<T> {
-    /// 1 where `e` is the first axis of the solver, 0 where it is the third.
+    /// 1 if `e` is the first axis of the solver, 0 if it is the third.
     first: T,
     /// The sign of `u_e` in the axes of the solver.
     sign: T,
     /// `|u|`; 1 for a body at rest.
     length: T,
     kappa: T,
-    /// Components in the axes of the solver -> components in the axes given.
+    /// Maps components in the solver's axes to components in the given axes.
     frame: Rotation<T>,
-    /// Components in the axes given -> components in the axes relabelled.
+    /// Maps components in the given axes to components in the relabelled axes.
     tail: Rotation<T>,
     /// `g`.
     base: Rotation<T>,
     /// `z`.
     turn: [T; 2],
-    /// Whether `base` and `turn` belong to the attitude at hand.
+    /// Whether `base` and `turn` belong to the current attitude.
     current: bool,
 }
 
@@ -80,7 +79,7 @@ impl<T: Real> Phase<T> {
         }
     }
 
-    /// The attitude or the position on the trajectory was changed from outside.
+    /// Marks the attitude or the position on the trajectory as changed from outside.
     #[inline(always)]
     pub(super) fn lost(&mut self) {
         self.current = false;
@@ -91,7 +90,7 @@ impl<T: Real> Phase<T> {
     fn found(&mut self, body: &Poinsot<T>, attitude: &Rotation<T>, u: [T; 3]) {
         let (zero, one) = (T::zero(), T::one());
         let ([i, _, k], [p, _, r]) = (body.moments, body.differences);
-        // The momentum goes round the axis whose component is never zero on its path.
+        // The momentum moves around the axis along which its component never vanishes.
         let (round_first, round_third) = (u[0] * u[0] * (r * k), u[2] * u[2] * (p * i));
         let difference = round_first * round_first - round_third * round_third;
         self.first = difference.where_positive(one);
@@ -111,14 +110,14 @@ impl<T: Real> Phase<T> {
         self.current = true;
     }
 
-    /// In the axes relabelled.
+    /// Converts to the relabelled axes.
     #[inline(always)]
     pub(super) fn relabelled(&self, [x, y, z]: [T; 3]) -> [T; 3] {
         let (first, sign) = (self.first, self.sign);
         [sign * choose(first, -z, x), y, sign * choose(first, x, z)]
     }
 
-    /// In the axes of the solver.
+    /// Converts to the solver's axes.
     #[inline(always)]
     pub(super) fn solver_axes(&self, [x, y, z]: [T; 3]) -> [T; 3] {
         let (first, sign) = (self.first, self.sign);
@@ -139,7 +138,7 @@ impl<T: Real> Phase<T> {
         }
         let first = self.first;
         let exchange = |[x, y, z]: [T; 3]| [choose(first, z, x), y, choose(first, x, z)];
-        // Two axes exchanged: the differences change sign.
+        // Exchanging two axes changes the signs of the differences.
         let handed = T::one() - (first + first);
         let [_, _, d] = exchange(pencil.d_moments());
         let per_length = T::one() / self.length;
@@ -157,7 +156,7 @@ impl<T: Real> Phase<T> {
         (path, moving)
     }
 
-    /// Ends this representation; returns the attitude.
+    /// Leaves this representation and returns the attitude.
     #[inline(always)]
     pub(super) fn left_at(&mut self, moving: &Moving<T>) -> Rotation<T> {
         self.turn = moving.turn;

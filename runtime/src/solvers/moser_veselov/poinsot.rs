@@ -90,20 +90,20 @@ impl<T: Real> Form<T> {
 pub enum PoinsotError {
     /// An entry is NaN or infinite.
     NotFinite {
-        /// Its row.
+        /// The row.
         row: usize,
-        /// Its column.
+        /// The column.
         column: usize,
     },
     /// Two entries that should be equal differ.
     NotSymmetric {
         /// Row of the entry above the diagonal.
         row: usize,
-        /// Its column.
+        /// The column of this entry.
         column: usize,
-        /// That entry.
+        /// The entry above the diagonal.
         upper: f64,
-        /// Its mirror image.
+        /// The entry below the diagonal.
         lower: f64,
     },
     /// `J` has a negative eigenvalue: the triangle inequality of the moments of inertia fails.
@@ -112,10 +112,10 @@ pub enum PoinsotError {
         smallest: f64,
         /// The largest moment of inertia.
         largest_moment: f64,
-        /// The sum of the two others, which it must not exceed.
+        /// The sum of the other two moments, which the largest must not exceed.
         sum_of_others: f64,
     },
-    /// A moment of inertia vanishes: all mass is on a line.
+    /// A moment of inertia vanishes because all mass is on a line.
     NoInertia {
         /// The smallest moment of inertia.
         smallest_moment: f64,
@@ -193,7 +193,7 @@ impl<T: Real> Poinsot<T> {
     /// The body of the inertia tensor `I` (body axes): `J = tr(I)/2 1 - I`.
     ///
     /// # Errors
-    /// As [`Poinsot::new`], for `J`.
+    /// The errors of [`Poinsot::new`], for `J`.
     pub fn from_inertia(inertia: &Matrix3<T>) -> Result<Self, PoinsotError> {
         let half_trace = inertia.trace() * T::from_f64(0.5);
         Self::new(Matrix3::from_diagonal_element(half_trace) - *inertia)
@@ -268,8 +268,8 @@ impl<T: Real> Poinsot<T> {
         Matrix3::new(x, xy, xz, xy, y, yz, xz, yz, z).map(|entry| entry * self.symmetric.zeroth)
     }
 
-    /// The solver data with `inertia` as `I / unit`, in the same unit. It need not be a body: `J` may
-    /// have a negative eigenvalue, since the solver needs `I` alone.
+    /// The solver data for `inertia` as `I / unit`, in the same unit. It need not be a body: `J` may have a negative
+    /// eigenvalue, because the solver uses only `I`.
     pub(super) fn with_inertia(&self, inertia: &Matrix3<T>) -> Self {
         let half = T::from_f64(0.5);
         let inertia = (inertia + inertia.transpose()).map(|x| x * half);
@@ -277,7 +277,7 @@ impl<T: Real> Poinsot<T> {
         Self::with_constants(j.map(|x| x * T::from_f64(self.unit)), inertia, self.unit)
     }
 
-    /// Whether it is given in principal axes: the solver then has less to do.
+    /// Whether the body is given in principal axes; the solver is then faster.
     #[inline(always)]
     pub fn is_diagonal(&self) -> bool {
         self.diagonal
@@ -340,7 +340,7 @@ pub(in crate::solvers) fn symmetric_times<T: Real, const DIAGONAL: bool>(
     }
 }
 
-/// Checks one lane; gives the largest moment of inertia.
+/// Validates one lane; returns the largest moment of inertia.
 fn body_check(j: &Matrix3<f64>) -> Result<f64, PoinsotError> {
     let [small, middle, large] = symmetric_eigenvalues(j);
     let allowed = ROUNDINGS * f64::EPSILON * large.abs();
@@ -352,7 +352,7 @@ fn body_check(j: &Matrix3<f64>) -> Result<f64, PoinsotError> {
         });
     }
     let smallest_moment = small + middle;
-    // Written so that NaN is refused.
+    // This form of the comparison also rejects NaN.
     if smallest_moment > allowed {
         Ok(middle + large)
     } else {

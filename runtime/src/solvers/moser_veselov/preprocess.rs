@@ -1,5 +1,5 @@
-//! Modified moments, with which the Moser-Veselov step of a free body is of high order.
-//! Takes the body, its scaled momentum and the order; gives the body to step instead.
+//! Modified moments that give the Moser-Veselov step of a free body high order. Takes the body, its scaled momentum and
+//! the order; gives the body to step instead.
 //!
 //! With `1 / I_i' = s / I_i + d` the discrete motion stays on the orbit of the true body. `s` and `d`
 //! are series in the square of the step, chosen so that the motion along the orbit and the attitude
@@ -21,24 +21,24 @@ use nalgebra::Matrix3;
 /// The order of accuracy of a step, in momentum and attitude.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Order {
-    /// Plain: symplectic in momentum and attitude.
+    /// Order two, without modification: symplectic in momentum and attitude.
     #[default]
     Two,
-    /// Four.
+    /// Order four.
     Four,
-    /// Six.
+    /// Order six.
     Six,
-    /// Eight.
+    /// Order eight.
     Eight,
-    /// Ten.
+    /// Order ten.
     Ten,
 }
 
 impl Order {
-    /// All of them, from the lowest.
+    /// All orders, from the lowest.
     pub const ALL: [Self; 5] = [Self::Two, Self::Four, Self::Six, Self::Eight, Self::Ten];
 
-    /// As a number.
+    /// The order as a number.
     #[must_use]
     pub fn number(self) -> u32 {
         2 * (self as u32) + 2
@@ -50,7 +50,7 @@ impl Order {
         Self::ALL.into_iter().find(|o| o.number() == number)
     }
 
-    /// The number of terms of the series that it uses.
+    /// The number of terms of the series for this order.
     pub(super) fn terms(self) -> usize {
         self as usize
     }

@@ -52,7 +52,7 @@ impl<T: Real> PrincipalAxes<T> {
             frame = frame * annihilator(1, c - a, g, body.s1);
         }
         let ([a, b, c], _) = entries(&frame);
-        // If the second moment is not between the two others, it is exchanged with the nearer one.
+        // If the second moment is not between the other two, exchanges it with the nearer one.
         let (down, up) = (b - a, b - c);
         let outside = positive(down * up);
         let far = positive(down * down - up * up);

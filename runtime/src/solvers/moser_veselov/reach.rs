@@ -1,5 +1,5 @@
-//! Where the Moser-Veselov equation stops having a principal solution.
-//! Takes the body and `h N`; gives the bound ratio.
+//! The existence bound of the principal solution of the Moser-Veselov equation. Takes the body and `h N`; gives the
+//! ratio to the bound.
 
 use super::Poinsot;
 use crate::linalg::symmetric_eigenvalues;

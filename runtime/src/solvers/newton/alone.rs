@@ -1,13 +1,13 @@
-//! Solves a single equation, outside a trajectory.
-//! Takes a guess, the size of the terms, the residual and its tangent; gives a converged element or an error.
+//! Solves a single equation that does not belong to a trajectory. Takes a guess, the size of the terms, the residual
+//! and its tangent; gives a converged element or an error.
 
 use super::{BOUND_ROUNDINGS, LAST_ATTEMPT, NewtonError, Progress, REMEMBERED, Search, Solved};
 use crate::groups::Group;
 use crate::scalar::Real;
 use nalgebra::{SMatrix, SVector};
 
-/// Solves `residual(g) = 0` from the guess `g`, with `tangent(g)` and the size `scale` of the
-/// residual's terms as [`Newton`](super::Newton) has them.
+/// Solves `residual(g) = 0` from the guess `g`. `tangent(g)` and the size `scale` of the residual's terms are as in
+/// [`Newton`](super::Newton).
 ///
 /// # Errors
 /// [`NewtonError`]; an unconverged element is never returned.
@@ -21,7 +21,7 @@ pub fn solve<T: Real, G: Group<T>, const D: usize>(
     search.past = [guess; 2 * REMEMBERED];
     (search.known, search.next) = (1, 1);
     let mut newton = search.begin(1);
-    // One attempt.
+    // Makes a single attempt.
     newton.attempt = LAST_ATTEMPT;
     let rounding = SVector::repeat(scale * BOUND_ROUNDINGS * f64::EPSILON / 2.0);
     loop {

@@ -1,7 +1,7 @@
-//! Newton's method for equations whose group and number of unknowns are known at run time, over plain numbers.
-//! It uses lists instead of arrays. It makes the same decisions and operations as [`Search`](super::Search) and
-//! [`Newton`](super::Newton), so that solutions agree bit for bit.
-//! Takes a chart of the group, residuals and tangents; gives a converged element or an error.
+//! Newton's method over plain numbers, for groups and numbers of unknowns that are known only at run time. It uses
+//! lists instead of arrays, but makes the same decisions and operations as [`Search`](super::Search) and
+//! [`Newton`](super::Newton), so solutions agree bit for bit. Takes a chart of the group, residuals and tangents; gives
+//! a converged element or an error.
 
 mod chart;
 mod principal;
@@ -20,7 +20,7 @@ use super::{
 use crate::linalg::{Dense, DenseFactors, Reals};
 use crate::scalar::Real;
 
-/// The rounding of plain numbers.
+/// The rounding unit of plain numbers.
 const UNIT: f64 = <f64 as Real>::EPSILON;
 
 /// A principal root to be polished, with the distance within which a polished solution must stay.
@@ -30,7 +30,7 @@ struct Anchor<G> {
     reach: Reals,
 }
 
-/// The search for one velocity after the other: see [`Search`](super::Search).
+/// The search for successive velocities: see [`Search`](super::Search).
 #[derive(Clone, Debug)]
 pub struct AnySearch<C: Chart> {
     /// The last solutions, the newest first.
@@ -43,9 +43,9 @@ pub struct AnySearch<C: Chart> {
     noise: Vec<f64>,
     open: bool,
     measured: bool,
-    /// Whether no step follows.
+    /// Whether this is a trial step.
     tries: bool,
-    /// The tangent of all equations at rest and the units of its parts, where some unknowns are solved for beforehand.
+    /// The tangent of all equations at rest and the units of its parts, if some unknowns are eliminated.
     whole: Option<(DenseFactors, Reals)>,
     factors: DenseFactors,
     unit: f64,
@@ -53,7 +53,7 @@ pub struct AnySearch<C: Chart> {
     work: Work<C::Element>,
 }
 
-/// The buffers of one step, kept so that the next step does not allocate.
+/// The buffers of a step, stored so that the next step does not allocate.
 #[derive(Clone, Debug, Default)]
 struct Work<E> {
     trial: E,
@@ -62,8 +62,8 @@ struct Work<E> {
 }
 
 impl<C: Chart> AnySearch<C> {
-    /// A search without a past: the first guess is the neutral element. `in_blocks` allows to factor blocks of
-    /// three without exchange of rows. Set it if the static size equals the number of equations.
+    /// A search without previous solutions: the first guess is the neutral element. `in_blocks` allows factoring in
+    /// blocks of three without row exchanges. Set it if the static size equals the number of equations.
     #[must_use]
     pub fn new(dimension: usize, in_blocks: bool, tries: bool) -> Self {
         Self {
@@ -88,8 +88,8 @@ impl<C: Chart> AnySearch<C> {
         }
     }
 
-    /// Takes over what another search for the same velocities measured of the equations, without allocating anew. Past
-    /// solutions stay: only a step that is made changes them.
+    /// Copies the scales, units and factored tangent of another search for the same velocities, without allocating.
+    /// Stored solutions are unchanged, because only an actual step changes them.
     pub fn measure_as(&mut self, other: &Self) {
         self.next = other.next;
         self.weights.clone_from(&other.weights);
@@ -102,19 +102,19 @@ impl<C: Chart> AnySearch<C> {
         (self.unit, self.age) = (other.unit, other.age);
     }
 
-    /// All further steps are trials.
+    /// Marks all further steps as trials.
     pub fn only_try(&mut self) {
         self.tries = true;
     }
 
-    /// Whether no step follows.
+    /// Whether this is a trial step.
     #[must_use]
     pub fn tries(&self) -> bool {
         self.tries
     }
 
-    /// Begins the solution of the step that leaves `node`: see [`Search::begin`](super::Search::begin).
-    /// `whole` is the chart of all unknowns, where some are solved for beforehand.
+    /// Starts the solution of the step that leaves `node`: see [`Search::begin`](super::Search::begin). `whole` is the
+    /// chart of all unknowns, if some are eliminated.
     pub fn begin<'a>(&'a mut self, [chart, whole]: [&'a C; 2], node: u64) -> AnyNewton<'a, C> {
         if node != self.next {
             self.past.clear();
@@ -142,7 +142,7 @@ impl<C: Chart> AnySearch<C> {
         }
     }
 
-    /// Sets the trial to the start of an attempt.
+    /// Sets the trial to the starting element of an attempt.
     fn begin_at(&mut self, chart: &C, attempt: u32) {
         let trial = &mut self.work.trial;
         let weights: &[f64] = match (attempt, self.past.first()) {
@@ -156,7 +156,7 @@ impl<C: Chart> AnySearch<C> {
         chart.combined(weights, &self.past, trial);
     }
 
-    /// Remembers the solution of the step that began at `node`.
+    /// Stores the solution of the step that began at `node`.
     pub fn remember(&mut self, node: u64, solution: C::Element) {
         self.past.truncate(REMEMBERED - 1);
         self.past.insert(0, solution);
@@ -166,7 +166,7 @@ impl<C: Chart> AnySearch<C> {
     }
 }
 
-/// The weights of so many past solutions in the next one.
+/// The extrapolation weights for this number of previous solutions.
 fn foreseeing(known: usize) -> &'static [f64] {
     match known {
         0 | 1 => &[1.0],
@@ -196,7 +196,7 @@ pub struct AnyNewton<'a, C: Chart> {
 }
 
 impl<C: Chart> AnyNewton<'_, C> {
-    /// The element at which the equations are wanted.
+    /// The element at which to evaluate the equations.
     #[must_use]
     pub fn trial(&self) -> &C::Element {
         &self.search.work.trial
@@ -211,25 +211,25 @@ impl<C: Chart> AnyNewton<'_, C> {
         }
     }
 
-    /// Whether no step follows.
+    /// Whether this is a trial step.
     #[must_use]
     pub fn tries(&self) -> bool {
         self.search.tries
     }
 
-    /// Whether the sizes of the terms are not known, or too old.
+    /// Whether the sizes of the terms are unknown or too old.
     #[must_use]
     pub fn wants_scale(&self) -> bool {
         self.search.weighed >= OLDEST_SCALE || self.attempt > 0
     }
 
-    /// The sizes of the terms at the trial: `rounding` bounds the rounding of each residual.
+    /// Takes the sizes of the terms at the trial: `rounding` bounds the rounding of each residual.
     pub fn set_scale(&mut self, rounding: &[f64]) {
         let unit = BOUND_ROUNDINGS * f64::EPSILON / 2.0;
         let mut scales: Vec<f64> = rounding.iter().map(|x| x / unit).collect();
         let parts = self.chart.parts();
         for i in 0..scales.len() {
-            // An equation without terms is measured by the others of its kind.
+            // An equation without terms takes its scale from the other equations of its part.
             let kinds = parts.kinds();
             let part = kinds.own(parts.part_of(i));
             let most = part.fold(0.0, |most: f64, k| most.max(scales[k]));
@@ -254,7 +254,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         self.search.weighed = 0;
     }
 
-    /// Finds the principal root and compares it with the solution. If they differ, the iteration begins again at the
+    /// Finds the principal root and compares it with the solution. If they differ, the iteration restarts at the
     /// principal root, unless it already did so.
     ///
     /// # Errors
@@ -265,7 +265,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         equations: &Lane<C>,
         solution: Option<&C::Element>,
     ) -> Result<Settled, Fold> {
-        // A tangent of some steps ago may be why the test failed.
+        // An old tangent may be the reason that the test failed.
         self.search.age = OLDEST_TANGENT;
         let noise = match self.chart.parts() == self.whole.parts() {
             true => self.search.noise.as_slice(),
@@ -299,7 +299,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         self.found = None;
     }
 
-    /// Takes the residual at the trial; says whether the tangent there is wanted.
+    /// Takes the residual at the trial; returns whether it needs the tangent there.
     pub fn assess(&mut self, residual: &[f64]) -> bool {
         self.size = largest_of(residual, &self.search.weights);
         self.search.work.residual.clear();
@@ -340,13 +340,13 @@ impl<C: Chart> AnyNewton<'_, C> {
         search.age = 0;
     }
 
-    /// Whether the residual is needed: at the last trial, only its rest is.
+    /// Whether the residual is needed. At the last trial, only the remaining unknowns are.
     #[must_use]
     pub fn wants_residual(&self) -> bool {
         self.found.is_none()
     }
 
-    /// Like [`correct`](Self::correct), if some unknowns are solved for beforehand; `whole` is the trial with all unknowns.
+    /// Like [`correct`](Self::correct), if some unknowns are eliminated; `whole` is the trial with all unknowns.
     pub fn correct_part(&mut self, element: C::Element, from_left: bool) -> Progress<C::Element> {
         self.has_moved = false;
         let found = match self.polished() {
@@ -464,7 +464,7 @@ impl<C: Chart> AnyNewton<'_, C> {
     #[must_use]
     pub fn folded(&self, fold: Fold, failure: Option<NewtonError>) -> NewtonError {
         match failure {
-            // Nothing was followed.
+            // The curve could not be followed at all.
             Some(e) if fold.share == 0.0 => e,
             _ => NewtonError {
                 tried: self.tries(),
@@ -474,7 +474,7 @@ impl<C: Chart> AnyNewton<'_, C> {
     }
 }
 
-/// The largest absolute value of numbers in these units; NaN where one is.
+/// The largest absolute value in the given units; NaN if any number is NaN.
 fn largest_of(numbers: &[f64], units: &[f64]) -> f64 {
     let (mut sum, mut largest) = (0.0, 0.0);
     for (x, unit) in numbers.iter().zip(units) {
@@ -482,17 +482,17 @@ fn largest_of(numbers: &[f64], units: &[f64]) -> f64 {
         sum += x;
         largest = if x.abs() > largest { x.abs() } else { largest };
     }
-    // Comparisons pass over NaN, a sum does not.
+    // Comparisons ignore NaN; the sum propagates it.
     largest + 0.0 * f64::abs(sum)
 }
 
 /// The result of [`AnyNewton::settle`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Settled {
-    /// It is the principal root.
+    /// The solution is the principal root.
     Principal,
-    /// The principal root differs: the iteration has started again from it.
+    /// The principal root differs; the iteration has restarted from it.
     Again,
-    /// The principal root differs, and the iteration started from it.
+    /// The principal root differs, although the iteration started from it.
     Unpolished,
 }

@@ -1,10 +1,10 @@
-//! How much the tangent changes along a stage.
+//! Measures the change of the tangent along a stage.
 //!
-//! The tangent at a place times the inverse of the first, less one, has eigenvalues that are the same in all
-//! coordinates and units. They tell of parts that move little as of those that move far, and of directions in which nothing
-//! moves. Where all are below one the tangent is regular.
+//! For two points, it uses the eigenvalues of the tangent at one point times the inverse of the first tangent, minus
+//! the identity. They are independent of coordinates and units, so they also show changes in parts that move little and
+//! along directions without motion. If all moduli are below one, the tangent is regular.
 //!
-//! Only coordinates without a scale of their own are looked at: rotations turn with the motion.
+//! Only coordinates without a natural scale are checked, because rotations turn with the motion.
 //!
 //! Takes tangents; gives the largest modulus of these eigenvalues.
 
@@ -12,29 +12,29 @@ use super::parts::Parts;
 use crate::linalg::Dense;
 use crate::scalar::largest;
 
-/// The largest change along a stage.
+/// The largest admissible change along a stage.
 pub(super) const CHANGE: f64 = 0.75;
 
-/// Between places whose tangents differ by more, another one is looked at.
+/// If the tangents at two points differ by more than this, a point in between is checked.
 const DIFFERENCE: f64 = 0.125;
 
-/// In how many pieces a stage is looked at first, and how often a piece is halved at most.
+/// The number of pieces into which a stage is first divided, and the largest number of times that a piece is halved.
 const PIECES: u8 = 4;
 const HALVINGS: u8 = 6;
 
-/// How often a matrix is squared: the norm of its eighth power is the largest eigenvalue to the eighth, times a
-/// factor of a few.
+/// The number of times a matrix is squared. The norm of its eighth power is the eighth power of the largest eigenvalue,
+/// up to a factor of a few.
 const SQUARINGS: u8 = 3;
 
-/// Changes from the tangent at the beginning of a stage.
+/// Changes relative to the tangent at the start of a stage.
 pub(super) struct Changes<'a> {
     inverse: &'a Dense<f64>,
-    /// The coordinates without a scale of their own, and their units.
+    /// The coordinates without a natural scale, and their units.
     units: Vec<(usize, f64)>,
 }
 
 impl<'a> Changes<'a> {
-    /// From a tangent given by its inverse; `units` belong to the parts.
+    /// Starts from the inverse of a tangent; `units` belong to the parts.
     pub(super) fn from(inverse: &'a Dense<f64>, units: &[f64], parts: &Parts) -> Self {
         let known = |x: f64| if x > 0.0 && x.is_finite() { x } else { 1.0 };
         let of = |k: usize| {
@@ -49,14 +49,14 @@ impl<'a> Changes<'a> {
         }
     }
 
-    /// The largest change on the way to a tangent `end`, where `tangent` is that at a share of it. No more is looked at once
-    /// it is too large.
+    /// The largest change on the path to the tangent `end`; `tangent` gives the tangent at a fraction of the path.
+    /// Stops as soon as a change is too large.
     pub(super) fn on_the_way(&self, tangent: &dyn Fn(f64) -> Dense<f64>, end: &Dense<f64>) -> f64 {
         let last = self.seen(end);
         let mut most = modulus(last.clone());
         let mut before = (0.0, Dense::zeros(last.rows, last.cols));
         for k in 1..=PIECES {
-            // NaN is too much.
+            // The comparison is false for NaN, so NaN counts as too large.
             let little = most <= CHANGE;
             if !little {
                 break;
@@ -73,7 +73,7 @@ impl<'a> Changes<'a> {
         most
     }
 
-    /// The largest change on a piece of the way that follows its beginning.
+    /// The largest change on a piece of the path, relative to the start of the stage.
     fn between(
         &self,
         tangent: &dyn Fn(f64) -> Dense<f64>,
@@ -92,7 +92,7 @@ impl<'a> Changes<'a> {
         largest([before, after])
     }
 
-    /// A tangent in units of that at the beginning, less one.
+    /// The tangent times the inverse of the tangent at the start, minus the identity.
     fn seen(&self, tangent: &Dense<f64>) -> Dense<f64> {
         let less = self.inverse.times(tangent).minus_one();
         let size = self.units.len();
@@ -105,7 +105,7 @@ impl<'a> Changes<'a> {
     }
 }
 
-/// The largest modulus of the eigenvalues, or somewhat more; a bound where that is small.
+/// An upper estimate of the largest modulus of the eigenvalues; only a bound if it is small.
 fn modulus(mut a: Dense<f64>) -> f64 {
     let mut size = a.squares().sqrt();
     let mut modulus = size;

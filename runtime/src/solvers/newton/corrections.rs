@@ -1,31 +1,31 @@
-//! Decides from the corrections when a velocity is found: the last one must be rounding of the velocity in its own
-//! scale. Takes the corrections in order, each relative to the length of the part of the velocity that it changes.
-//! Scales of residuals do not enter, so that wrong scales cannot end an iteration.
+//! Decides when a velocity is found: the last correction must be rounding of the velocity at its own scale. Takes the
+//! corrections in order, each relative to the length of its part of the velocity. The scales of residuals are not used,
+//! so a wrong scale cannot end an iteration.
 
 use super::{CONVERGED_ROUNDINGS, FORESIGHT, POLISHED_ROUNDINGS, STAGNATED_ROUNDINGS};
 use crate::scalar::Real;
 
-/// A correction of fewer roundings of its part of the velocity is rounding: solving for it makes a few of a badly
-/// conditioned tangent.
+/// Corrections below this many roundings of their part of the velocity are rounding. With a badly conditioned tangent,
+/// solving alone leaves a few roundings.
 const ROUNDINGS: f64 = 64.0;
 
-/// A correction of fewer roundings need not be made.
+/// Corrections below this many roundings are not needed.
 const LEFT_ROUNDINGS: f64 = 4.0;
 
-/// A correction below this that does not fall is what rounding leaves: Newton's method squares it otherwise, and a
-/// tangent of some steps before still makes it a hundredth.
+/// A correction below this that does not decrease is caused by rounding. Otherwise Newton's method would square it, and
+/// even a tangent that is some steps old would reduce it to a hundredth.
 const SMALL: f64 = 1e-8;
 
-/// So many larger corrections that do not fall are rounding as well: if a velocity is negligible compared with the terms
-/// of its equations, at rest or at a turning point, only rounding is left to correct.
+/// After this many larger corrections without decrease, the cause is also rounding. If a velocity is negligible
+/// compared with the terms of its equations, at rest or at a turning point, only rounding is left to correct.
 const MOST_WITHOUT_FALL: u32 = 3;
 
-/// The residual at a trial, over the size of its terms.
+/// The residual relative to the size of its terms.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Residual {
-    /// There.
+    /// At the current trial.
     pub size: f64,
-    /// At the trial before.
+    /// At the previous trial.
     pub previous: f64,
     /// The number of corrections so far.
     pub iteration: usize,
@@ -34,22 +34,23 @@ pub(super) struct Residual {
 /// The next action after a correction is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Next {
-    /// Make the correction, then another.
+    /// Apply the correction and continue.
     Correct,
-    /// Make the correction, the last one.
+    /// Apply the correction and stop.
     CorrectAndEnd,
-    /// Do not make the correction: the error is rounding already, and the correction would add its own.
+    /// Stop without the correction: the error is already at rounding level, and the correction would add its own
+    /// rounding.
     End,
 }
 
-/// The judgement of a correction.
+/// The assessment of a correction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Judged {
-    /// Another follows.
+    /// Another correction is needed.
     More,
-    /// It is rounding of the velocity: the last.
+    /// The correction is rounding of the velocity, and therefore the last.
     Last,
-    /// It does not fall any more: rounding of what is ill conditioned, and the last too.
+    /// Corrections no longer decrease, because of rounding in an ill-conditioned problem. This is also the last.
     Noise,
 }
 
@@ -57,14 +58,14 @@ enum Judged {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corrections {
     last: f64,
-    /// The least decrement that was less than a quarter of those before: a correction of half the length.
+    /// The last decrement that was below a quarter of the previous minimum: its correction was half as long.
     least: f64,
-    /// How many followed that one.
+    /// The number of corrections since then.
     without_fall: u32,
 }
 
 impl Corrections {
-    /// None yet.
+    /// No corrections yet.
     pub const fn none() -> Self {
         Self {
             last: f64::INFINITY,
@@ -73,8 +74,8 @@ impl Corrections {
         }
     }
 
-    /// Whether the residual is pure rounding, and a further correction would be too. A predicted velocity is corrected
-    /// at least once.
+    /// Whether the residual and any further correction would be pure rounding. A predicted velocity is corrected at
+    /// least once.
     #[inline(always)]
     pub fn are_polished<T: Real>(&self, r: Residual) -> bool {
         T::ORDER == 0
@@ -93,7 +94,7 @@ impl Corrections {
         moved: f64,
         decrement: impl FnOnce() -> f64,
     ) -> Next {
-        // If no velocity was known, as from rest, any correction is large.
+        // If no velocity was known, as at rest, every correction counts as large.
         let fall = moved / self.last.min(1.0);
         self.last = moved;
         let unit = T::EPSILON;
@@ -103,13 +104,13 @@ impl Corrections {
             true => self.judged::<T>(decrement),
             false => Judged::More,
         };
-        // Derivatives are exact only once a correction is made.
+        // A correction is needed to make derivatives exact.
         let may_end = T::ORDER == 0 && r.iteration > 0;
         if may_end && r.size <= POLISHED_ROUNDINGS * unit && judged == Judged::Last {
             return Next::End;
         }
-        // The residual after this correction, if it is as good as the last. The decrease of the residual alone may be
-        // too optimistic: if one equation dominated at the first trial, it does not show the others.
+        // Predicts the residual after this correction, if it is as good as the last one. The decrease of the residual
+        // alone can be too optimistic: if one equation dominated at the first trial, it hides the others.
         let factor = FORESIGHT * (r.size / r.previous).max(fall);
         let is_foreseen = may_end && r.size * factor <= POLISHED_ROUNDINGS * unit;
         match judged != Judged::More || (is_foreseen && self.leave_rounding::<T>(factor)) {
@@ -139,7 +140,7 @@ impl Corrections {
         }
     }
 
-    /// Whether the correction after the last need not be made, if it is smaller by the same factor as the residual.
+    /// Whether the next correction can be skipped, if it is smaller than the last one by the factor of the residuals.
     #[inline(always)]
     fn leave_rounding<T: Real>(&self, factor: f64) -> bool {
         self.last * factor <= LEFT_ROUNDINGS * T::EPSILON
@@ -154,7 +155,7 @@ mod tests {
     use crate::solvers::newton::{Solved, solve};
     use nalgebra::SMatrix;
 
-    /// After how many of these corrections of a length the iteration may end.
+    /// The number of these corrections, for a velocity of this length, after which the iteration may end.
     fn ends(length: f64, moved: &[f64]) -> Option<usize> {
         let mut corrections = Corrections::none();
         let found = moved.iter().position(|m| {
@@ -168,7 +169,7 @@ mod tests {
     fn only_rounding_ends_an_iteration() {
         assert_eq!(ends(1.0, &[0.0]), Some(1));
         assert_eq!(ends(1.0, &[1.0, 1e-3, 1e-7, 1e-15]), Some(4));
-        // As Newton's method begins where a cubic term rules: each correction is two thirds of the one before.
+        // The start of Newton's method if a cubic term dominates: each correction is two thirds of the previous one.
         let slow: Vec<f64> = (0..20).map(|i| 0.5 * f64::powi(2.0 / 3.0, i)).collect();
         assert_eq!(ends(1.0, &slow), None);
         // Rounding, amplified by a badly conditioned tangent.
@@ -195,16 +196,17 @@ mod tests {
             }
             found
         };
-        // An equation without terms at rest is large compared with its scale; the other corrections decrease quadratically.
+        // An equation without terms at rest has a large residual relative to its scale; the other corrections decrease
+        // quadratically.
         assert_eq!(next([2.9e-2, 8.4e-7]), Next::Correct);
-        // A first correction from zero velocity lacks a length to compare with.
+        // At zero velocity, the first correction cannot be compared with a length.
         assert_eq!(next([4.7e307, 1.1e-6]), Next::Correct);
         // Corrections that decrease as much as the residual are not rounding.
         assert_eq!(next([2.9e-2, 1e-14]), Next::CorrectAndEnd);
     }
 
-    /// The root of `v + 4 b v^3 = p` from rest, judged by terms so many times as large as they are, and the one that
-    /// bisection finds.
+    /// Solves `v + 4 b v^3 = p` from rest, with the sizes of the terms multiplied by `factor`. Returns this root and
+    /// the root by bisection.
     fn stiffening(p: f64, b: f64, factor: f64) -> (f64, f64) {
         let of = |v: f64| v + 4.0 * b * v.powi(3) - p;
         let solved: Solved<Additive<1, 1>> = solve(

@@ -21,25 +21,24 @@ pub enum NewtonFailure {
     SingularTangent,
     /// The residual became NaN or infinite.
     NotFinite,
-    /// The principal root does not exist: on the way from rest to the momenta of the node the tangent
-    /// becomes singular, or the equations become undefined.
+    /// The principal root does not exist: between rest and the momenta of the node, the tangent becomes singular or the
+    /// equations become undefined.
     Fold {
-        /// The share of the way up to that point.
+        /// The fraction of the path that could be followed.
         share: f32,
     },
 }
 
-/// The equations of a step that Newton's method did not solve.
+/// The error of a step whose equations Newton's method did not solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewtonError {
     /// The kind of failure.
     pub failure: NewtonFailure,
-    /// Corrections made.
+    /// The number of corrections.
     pub iterations: u8,
-    /// The residual that is largest compared with the terms of its equation, over all lanes; NaN
-    /// if any is.
+    /// The largest residual relative to the terms of its equation, over all lanes; NaN if any residual is NaN.
     pub residual: f64,
-    /// The bound that the residual had to reach.
+    /// The tolerance that the residual exceeds.
     pub tolerance: f64,
     /// The step size that failed, if the caller knows it.
     pub h: Option<f64>,
@@ -51,19 +50,19 @@ pub struct NewtonError {
     /// the frame of the model. If a largest step was found, the equation comes from the shortest
     /// step that failed.
     pub worst: Coordinate,
-    /// The lane it is in; 0 for types without lanes.
+    /// The lane of the largest residual; 0 for types without lanes.
     pub lane: u8,
     /// The configurations of the model, in their order.
     pub(crate) configurations: &'static &'static [&'static str],
-    /// Whether the step was only a trial.
+    /// Whether this was a trial step.
     pub(crate) tried: bool,
 }
 
-/// Used if the names are not known.
+/// The configurations if their names are unknown.
 const NO_NAMES: &[&str] = &[];
 
 impl NewtonError {
-    /// The failure at this residual.
+    /// The failure with this residual.
     #[cold]
     #[inline(never)]
     pub(super) fn of<T: Real>(
@@ -98,7 +97,7 @@ impl NewtonError {
         }
     }
 
-    /// No principal root.
+    /// The failure of the principal root to exist.
     #[cold]
     #[inline(never)]
     pub(super) fn at_fold(fold: Fold, worst: Coordinate) -> Self {
@@ -118,15 +117,15 @@ impl NewtonError {
         }
     }
 
-    /// The configuration to whose momentum the worst equation belongs, where it is known.
+    /// The configuration of the worst equation, if it is known.
     #[must_use]
     pub fn configuration(&self) -> Option<&'static str> {
         let factor = usize::from(self.worst.factor);
         self.configurations.get(factor).copied()
     }
 
-    /// This error with the failed step size, the largest step size that succeeds, and the
-    /// names of the configurations. `step` makes a step of another size from the same state.
+    /// This error with the failed step size, the largest step size that succeeds, and the names of the configurations.
+    /// `step` tries a step of another size from the same state.
     #[cold]
     #[inline(never)]
     #[must_use]
@@ -144,7 +143,7 @@ impl NewtonError {
         self.explained_by(h, configurations, &|h| step(h, Search::to_try()))
     }
 
-    /// Like `explained`, if `step` makes its own search.
+    /// Like `explained`, if `step` searches by itself.
     #[cold]
     #[inline(never)]
     #[must_use]
@@ -254,11 +253,11 @@ impl<T: Real, G, const D: usize, W: Group<T>, const E: usize> Newton<'_, T, G, D
 where
     G: Group<T> + Found<W>,
 {
-    /// Another attempt, or the error of the last one.
+    /// Starts the next attempt, or returns the error of the last attempt.
     #[cold]
     #[inline(never)]
     pub(super) fn failed(&mut self) -> Progress<G> {
-        // Without a past, every attempt would be the first.
+        // Without previous solutions, all attempts are equal.
         if self.attempt < LAST_ATTEMPT && self.search.known > 0 {
             self.attempt += 1;
             self.begin_at(self.search.start(self.attempt));
@@ -308,7 +307,7 @@ where
     #[inline(never)]
     pub fn folded(&self, fold: Fold, failure: Option<NewtonError>) -> NewtonError {
         match failure {
-            // Nothing was followed.
+            // The curve could not be followed at all.
             Some(e) if fold.share == 0.0 => e,
             _ => NewtonError {
                 tried: self.search.tries(),

@@ -1,10 +1,10 @@
-//! The places on the way from rest, or along a stage, at which equations are looked at, and the tests there.
+//! The points between rest and the solution, or along a stage, at which the equations are checked, and the tests there.
 //!
-//! A correction leaves a share of the way at each look, which tells how the equations vary: its differences from look to
-//! look are what the tangent at hand does not foresee. Fourth differences of smooth equations are small; larger ones are
-//! the tails of something between two looks.
+//! The remainder at each point shows how the equations vary: the differences between successive points are what the
+//! current tangent does not predict. For smooth equations, fourth differences are small. A larger one indicates a
+//! variation between two points.
 //!
-//! Takes what is left at each look; gives what is compared with the first correction.
+//! Takes the remainder at each point; gives the quantities that are compared with the first correction.
 
 use super::principal::FALLS;
 use crate::scalar::larger;
@@ -12,10 +12,10 @@ use crate::scalar::larger;
 /// The number of pieces into which the checks divide the path.
 const PIECES: u8 = 16;
 
-/// The first look: nearly at rest, where the tangent at hand is not known to hold.
+/// The first point, close to rest, where the current tangent has not been verified.
 const FIRST: f64 = 1.0 / 128.0;
 
-/// The largest admitted deviation from the prediction of the tangent between two checks, per length.
+/// The largest deviation from the tangent's prediction between two points, per length.
 const SLOPE: f64 = 0.5;
 
 /// The largest fourth difference of smooth equations.
@@ -24,28 +24,29 @@ const ROUGH: f64 = 1e-4;
 /// The sum of the absolute weights of a fourth difference.
 const WEIGHTS: f64 = 16.0;
 
-/// One look.
+/// A point at which the equations are checked.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Look {
-    /// The share of the way.
+    /// The position, as a fraction of the path.
     pub share: f64,
-    /// The distance to the previous check.
+    /// The distance to the previous point.
     apart: f64,
-    /// Which of the equally distant looks it is, counted from rest.
+    /// The number of the point among the equidistant points, counted from rest.
     number: Option<u8>,
 }
 
 impl Look {
-    /// Whether it is one of those at equal distances.
+    /// Whether the point is one of the equidistant points.
     pub(super) fn is_regular(self) -> bool {
         self.number.is_some()
     }
 }
 
-/// A solution is at most so many times as far as the first correction that comes near it, with room for rounding.
+/// The largest distance of a solution relative to a first correction that comes close to it, with a margin for
+/// rounding.
 const FARTHEST: f64 = 1.4;
 
-/// All looks at a way, up to a share of it: 1, or more if the solution lies beyond the end of the way.
+/// All points of a path up to a fraction of it: 1, or more if the solution lies beyond the end of the path.
 #[inline(always)]
 pub(super) fn looks(share: f64) -> impl Iterator<Item = Look> {
     let last = share.clamp(1.0, FARTHEST);
@@ -63,25 +64,25 @@ pub(super) fn looks(share: f64) -> impl Iterator<Item = Look> {
     core::iter::once(first).chain(others.take_while(move |look| look.share < last))
 }
 
-/// The noise of differences: equations of other parts bring theirs, so that all parts are as uncertain as the one that is
-/// most, in their units.
+/// The relative rounding error of differences. Equations couple the parts, so every part has the rounding error of the
+/// most uncertain part, in its own units.
 #[inline(always)]
 pub(super) fn shared_noise(noise: &[f64], units: &[f64]) -> f64 {
     let each = noise.iter().zip(units).map(|(noise, unit)| noise / unit);
     each.filter(|x| x.is_finite()).fold(0.0, larger)
 }
 
-/// A difference that is judged as what is left: times `factor`.
+/// A difference that, multiplied by `factor`, is judged like a remainder.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Judged<V> {
     pub difference: V,
     pub factor: f64,
-    /// How many times the noise of the remainder the difference has.
+    /// The rounding error of the difference, in rounding errors of a remainder.
     noise: f64,
 }
 
 impl<V> Judged<V> {
-    /// The gain between looks that are so far apart.
+    /// The change between two points at the distance `apart`.
     #[inline(always)]
     pub(super) fn slope(difference: V, apart: f64) -> Self {
         Self {
@@ -91,14 +92,14 @@ impl<V> Judged<V> {
         }
     }
 
-    /// The noise beside which the difference is judged.
+    /// The rounding error below which the difference does not count.
     #[inline(always)]
     pub(super) fn noise(&self, noise: f64) -> f64 {
         self.noise * noise * self.factor / FALLS
     }
 }
 
-/// The remainders at the looks so far.
+/// The remainders at the points so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Left<V> {
     /// The last remainder and its differences, up to the third.
@@ -106,7 +107,7 @@ pub(super) struct Left<V> {
 }
 
 impl<V: Clone> Left<V> {
-    /// Nothing at rest.
+    /// The remainder at rest, which is zero.
     #[inline(always)]
     pub(super) fn nothing(zero: V) -> Self {
         Self {
@@ -114,7 +115,8 @@ impl<V: Clone> Left<V> {
         }
     }
 
-    /// The remainder at another look: the slope from the look before, and the fourth difference where there is one.
+    /// Takes the remainder at the next point; returns the slope from the previous point, and the fourth difference if
+    /// there are enough points.
     #[inline(always)]
     pub(super) fn next(
         &mut self,

@@ -1,6 +1,5 @@
-//! The coordinates of a velocity and the parts that they belong to, each measured by its own length: angles and
-//! translations do not add up.
-//! Takes coordinates and a tangent; gives lengths, the units of parts, and the course of a stage.
+//! Groups the coordinates of a velocity into parts, each measured by its own length, because angles and translations
+//! cannot be added. Takes coordinates and a tangent; gives lengths, the units of parts, and the course of a stage.
 
 use super::looks::{Left, looks, shared_noise};
 use super::principal::FALLS;
@@ -9,38 +8,38 @@ use crate::linalg::Reals;
 use crate::scalar::{Real, larger};
 use nalgebra::SVector;
 
-/// If nothing turns, angles of this size set the scale.
+/// If nothing rotates, angles of this size set the scale.
 const LITTLE: f64 = 1e-6;
 
-/// Pure numbers count as a course of this size at most: a quarter of a turn, or three times a length.
+/// The largest length of pure numbers that counts in a course: a quarter turn, or three times a length.
 const TURN: f64 = 2.0;
 
-/// A step that turns by more, 74 degrees, is not judged by one correction: of 400,000 random problems 3 had another root
-/// so near, all of them beyond 90 degrees.
+/// A step that rotates by more than this, 74 degrees, is not judged by one correction. Among 400,000 random problems, 3
+/// had another root that close, all of them beyond 90 degrees.
 const STEP_TURN: f64 = 1.5;
 
-/// In a step judged by one correction, translations of a body count as so many of its units at most: compared with a
-/// long displacement, any error would be small.
+/// In a step judged by one correction, the largest translation of a body that counts, in its units. Relative to a
+/// longer displacement any error would be small.
 const STEP_WAY: f64 = 2.0;
 
-/// A part that moves little is measured by this share of the part that moves most.
+/// A part that moves little is measured by this fraction of the part that moves most.
 const ASIDE: f64 = 0.05;
 
-/// Like `ASIDE`, for a part without a scale of its own in a step judged by one correction: its equations may vary
-/// over any length, even a short one.
+/// Like `ASIDE`, in a step judged by one correction, for a part without a natural scale. Its equations may vary even
+/// over a short length.
 const OPEN_ASIDE: f64 = 1e-3;
 
-/// By which share of the part that moves most others are measured.
+/// The kind of test that selects the fraction by which slow parts are measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Aside {
-    /// In a step judged by one correction.
+    /// A step judged by one correction.
     OfStep,
-    /// In a stage, which looks at the tangent of all parts besides.
+    /// A stage, which also checks the tangent of all parts.
     OfStage,
 }
 
 impl Aside {
-    /// The value for a part; `open` if the part lacks a scale of its own.
+    /// The fraction for a part; `open` if the part lacks a natural scale.
     pub(super) fn of(self, open: bool) -> f64 {
         match self {
             Self::OfStep if open => OPEN_ASIDE,
@@ -49,7 +48,7 @@ impl Aside {
     }
 }
 
-/// The squares of the way of each part and of what a correction leaves of it.
+/// For each part, the square of its displacement and the square of the distance that a correction leaves.
 pub(super) type Squares = smallvec::SmallVec<[[f64; 2]; 12]>;
 
 /// The coordinates of a velocity and the parts that they belong to.
@@ -57,14 +56,14 @@ pub(super) type Squares = smallvec::SmallVec<[[f64; 2]; 12]>;
 pub struct Parts {
     /// The part of each coordinate.
     pub of: Vec<usize>,
-    /// Whether the coordinates of each part are pure numbers.
+    /// For each part, whether its coordinates are dimensionless.
     pub pure: Vec<bool>,
-    /// Whether the coordinates of each part lack a scale of their own.
+    /// For each part, whether its coordinates lack a natural scale.
     pub open: Vec<bool>,
 }
 
 impl Parts {
-    /// The parts of a group, each of at most `most` coordinates.
+    /// The parts of a group; each part has at most `most` coordinates.
     pub(super) fn of_group<T, G: Group<T>>(most: usize) -> Self {
         Self {
             of: (0..G::DIMENSION.min(most)).map(G::part_of).collect(),
@@ -79,13 +78,13 @@ impl Parts {
         self.of.len()
     }
 
-    /// How many parts.
+    /// The number of parts.
     #[must_use]
     pub fn count(&self) -> usize {
         self.pure.len()
     }
 
-    /// The part that a coordinate belongs to.
+    /// The part of a coordinate.
     #[must_use]
     pub fn part_of(&self, coordinate: usize) -> usize {
         self.of.get(coordinate).copied().unwrap_or(0)
@@ -109,7 +108,7 @@ impl Parts {
         units
     }
 
-    /// Borrows these kinds, without lists of its own.
+    /// A view of these parts that does not allocate.
     pub(super) fn kinds(&self) -> Kinds<'_> {
         Kinds {
             size: self.dimension(),
@@ -119,8 +118,8 @@ impl Parts {
         }
     }
 
-    /// The lengths that later corrections of each part are compared with: the lengths of the first correction, or a
-    /// small share of the part that moves most.
+    /// The reference lengths for later corrections of each part: the length of the first correction, or a small
+    /// fraction of the part that moves most if that is larger.
     pub(super) fn course(
         &self,
         lengths: &[f64],
@@ -133,8 +132,8 @@ impl Parts {
         course
     }
 
-    /// Whether a step is judged by its first correction, given the squares of the ways of all parts and of what the
-    /// correction leaves of them; see [`is_near`].
+    /// Whether one correction suffices to judge a step, given for each part the squares of its displacement and of the
+    /// distance left; see [`is_near`].
     pub(super) fn are_near(
         &self,
         squares: &[[f64; 2]],
@@ -149,7 +148,7 @@ impl Parts {
         are_near_beside(squares, units, &self.kinds(), noise, [ways, course])
     }
 
-    /// The coordinate that moves most.
+    /// The index of the coordinate that moves most.
     pub(super) fn fastest(&self, x: &[f64], units: &[f64]) -> usize {
         let size = |k: usize| x.get(k).copied().unwrap_or(0.0).abs();
         let share = |k: usize| size(k) / units.get(self.part_of(k)).copied().unwrap_or(1.0);
@@ -159,15 +158,15 @@ impl Parts {
     }
 }
 
-/// Coordinates and parts, in lists that somebody else keeps.
+/// Coordinates and parts, borrowed from other lists.
 pub(super) struct Kinds<'a> {
-    /// How many coordinates there are.
+    /// The number of coordinates.
     pub size: usize,
     /// The part of each coordinate.
     pub part_of: &'a [usize],
-    /// Whether the coordinates of each part are pure numbers.
+    /// For each part, whether its coordinates are dimensionless.
     pub pure: &'a [bool],
-    /// Whether they lack a scale of their own.
+    /// For each part, whether its coordinates lack a natural scale.
     pub open: &'a [bool],
 }
 
@@ -178,13 +177,13 @@ impl Kinds<'_> {
         own.filter(move |(_, p)| **p == part).map(|(k, _)| k)
     }
 
-    /// The largest entry of the tangent on the diagonal of a part.
+    /// The largest diagonal entry of the tangent in a part.
     fn block(&self, part: usize, entry: &dyn Fn(usize, usize) -> f64) -> f64 {
         self.own(part)
             .fold(0.0, |most, k| most.max(entry(k, k).abs()))
     }
 
-    /// Whether a part other than a multiplier lacks a scale of its own. `entry` is the tangent.
+    /// Whether a part that is not a multiplier lacks a natural scale. `entry` gives the entries of the tangent.
     pub(super) fn are_open(&self, entry: &dyn Fn(usize, usize) -> f64) -> bool {
         let mut open = self.open.iter().enumerate();
         open.any(|(b, open)| *open && self.block(b, entry) != 0.0)
@@ -227,7 +226,7 @@ impl Kinds<'_> {
     }
 }
 
-/// The kinds of a group with at most `D` coordinates.
+/// Calls a function with the coordinates and parts of a group of at most `D` coordinates.
 pub(super) fn with_kinds<T, G: Group<T>, R, const D: usize>(
     ask: impl FnOnce(&Kinds<'_>) -> R,
 ) -> R {
@@ -240,7 +239,7 @@ pub(super) fn with_kinds<T, G: Group<T>, R, const D: usize>(
     })
 }
 
-/// The course of [`Parts::course`], for as many parts as `course` has.
+/// Writes the course of [`Parts::course`] into `course`, which has one entry for each part.
 fn course_into(
     Kinds { pure, open, .. }: &Kinds<'_>,
     aside: Aside,
@@ -256,7 +255,7 @@ fn course_into(
             most = larger(most, share);
         }
     }
-    // A body may go many times its own size in a step, and need not turn for that.
+    // In one step a body may move many times its own size without rotating.
     let turns = pure.iter().take(course.len()).any(|pure| *pure);
     let most = if turns { most.min(1.0) } else { most };
     for (b, own) in course.iter_mut().enumerate() {
@@ -267,12 +266,12 @@ fn course_into(
             true => (lengths[b], aside * units[b]),
             false => (lengths[b], larger(aside * units[b], noise(b))),
         };
-        // NaN stays.
+        // NaN is preserved.
         *own = if length < least { least } else { length };
     }
 }
 
-/// The test of [`Parts::are_near`], with lists to work in.
+/// The test of [`Parts::are_near`], with given work lists.
 fn are_near_beside(
     squares: &[[f64; 2]],
     units: &[f64],
@@ -293,7 +292,7 @@ fn are_near_beside(
     })
 }
 
-/// The longest way of a part in a step that one correction judges; beyond it no more counts.
+/// The largest displacement of a part that counts in a step judged by one correction.
 #[inline(always)]
 fn most_of_step(part: usize, units: &[f64], pure: impl Fn(usize) -> bool) -> f64 {
     match (pure(part), part > 0 && pure(part - 1)) {
@@ -303,8 +302,8 @@ fn most_of_step(part: usize, units: &[f64], pure: impl Fn(usize) -> bool) -> f64
     }
 }
 
-/// Whether a correction leaves at most a quarter of the way of a part, both given as squares. A part that turns by more
-/// than `most` is not judged.
+/// Whether a correction leaves at most a quarter of the displacement of a part, both given as squares. If the part
+/// rotates by more than `most`, the result is false.
 #[inline(always)]
 fn is_near([way, off]: [f64; 2], most: f64, turns: bool) -> bool {
     let most = most * most;
@@ -313,7 +312,7 @@ fn is_near([way, off]: [f64; 2], most: f64, turns: bool) -> bool {
     off <= FALLS * FALLS * counted && !(turns && way > most)
 }
 
-/// Whether a correction from rest, taken back, comes within a quarter of the way to the solution.
+/// Whether the negative of `correction`, applied at rest, comes within a quarter of the displacement of the solution.
 #[inline(always)]
 pub(super) fn comes_near<T: Real, G: Group<T>, const D: usize>(
     correction: &SVector<T, D>,
@@ -326,7 +325,8 @@ pub(super) fn comes_near<T: Real, G: Group<T>, const D: usize>(
     are_near::<T, G, D>(&squares, units, noise)
 }
 
-/// How far the solution is, as a share of the way that a correction goes, in the open parts.
+/// The distance of the solution relative to the length of the correction: the maximum over the parts without a natural
+/// scale, at least 1.
 fn reach<T: Real, G: Group<T>, const D: usize>(correction: &SVector<T, D>, solution: &G) -> f64 {
     let mut lengths = [0.0; D];
     solution.extents(&mut lengths);
@@ -341,8 +341,8 @@ fn reach<T: Real, G: Group<T>, const D: usize>(correction: &SVector<T, D>, solut
     shares.filter(|x| x.is_finite()).fold(1.0, larger)
 }
 
-/// Whether equations vary little on the way from rest to the end of `correction`, taken back, and on to the solution.
-/// `left` gives their rest at a point of the way, as a correction by the tangent at hand.
+/// Whether the equations vary little on the path from rest along the negative of `correction` and on to the solution.
+/// `left` evaluates them at a point of the path and returns the remainder as a correction with the current tangent.
 #[inline(never)]
 pub(super) fn varies_little<T: Real, G: Group<T>, const D: usize>(
     correction: &SVector<T, D>,
@@ -364,7 +364,7 @@ pub(super) fn varies_little<T: Real, G: Group<T>, const D: usize>(
     };
     let shared = shared_noise(&noise[..G::PARTS.min(D)], units);
     let noises: [f64; D] = core::array::from_fn(|b| larger(noise[b], shared * units[b]));
-    // Where noise is not known, differences may be rounding.
+    // If the rounding error is unknown, differences may be only rounding.
     let known = shared > 0.0;
     let mut so_far = Left::nothing(SVector::zeros());
     looks(reach::<T, G, D>(correction, solution)).all(|look| {
@@ -383,7 +383,7 @@ pub(super) fn varies_little<T: Real, G: Group<T>, const D: usize>(
     })
 }
 
-/// Whether the second of each pair of squares is small enough beside the first, in every part and lane.
+/// Whether the second square of each pair is small enough compared with the first, in every part and lane.
 #[inline(always)]
 fn are_near<T: Real, G: Group<T>, const D: usize>(
     squares: &[[T; 2]; D],
@@ -401,7 +401,7 @@ fn are_near<T: Real, G: Group<T>, const D: usize>(
     near || near_beside::<T, G, D>(squares, units, noise)
 }
 
-/// Like `are_near`, if a part moves little compared with other parts, or only by rounding.
+/// Like `are_near`, for parts that move little compared with others, or only at rounding level.
 #[cold]
 #[inline(never)]
 fn near_beside<T: Real, G: Group<T>, const D: usize>(

@@ -1,14 +1,14 @@
-//! The principal root of the equations of a step, followed from rest.
+//! Follows the principal root of the equations of a step from rest.
 //!
-//! With the momenta `m` of the node and everything known there held fixed, the equations read `P(v) = m`. Their
-//! principal root is the end of the curve `P(v) = (1 - τ) P(0) + τ m` that begins at rest as `τ` goes from 0 to 1.
-//! Where the tangent becomes singular, at a fold, the curve turns back: the equations may have other roots beyond, to
-//! which no motion of small steps leads.
+//! With fixed node momenta `m` and fixed data at the node, the equations are `P(v) = m`. The curve
+//! `P(v) = (1 - τ) P(0) + τ m` starts at rest for `τ = 0` and ends at the principal root for `τ = 1`. At a fold the
+//! tangent becomes singular and the curve turns back. The equations may have further roots beyond the fold, but no
+//! motion with small steps leads to them.
 //!
-//! The curve is followed in stages. A stage is accepted if its first two corrections by one tangent decrease by a
-//! factor of four. This bounds the change of the tangent along the stage (Deuflhard, Newton Methods for Nonlinear
+//! The curve is followed in stages. A stage is accepted if its first two corrections with the same tangent decrease by
+//! a factor of four. This bounds the change of the tangent along the stage (Deuflhard, Newton Methods for Nonlinear
 //! Problems, 2011, sections 2.1 and 5.1). If a part lacks a natural scale, the equations and the tangent are also
-//! checked at points in between: see [`stage`](super::stage). All are tests at points, not proofs.
+//! checked at points in between: see [`stage`](super::stage). All tests sample points and prove nothing.
 //!
 //! Takes the equations of one lane; gives the root, or how far the curve could be followed.
 
@@ -18,34 +18,34 @@ use crate::groups::Group;
 use crate::linalg::{Dense, Reals};
 use nalgebra::{SMatrix, SVector};
 
-/// The largest ratio of the second correction by one tangent to the first.
+/// The largest admissible ratio of the second to the first correction with the same tangent.
 pub(crate) const FALLS: f64 = 0.25;
 
 /// The largest number of stages.
 const MOST_STAGES: usize = 1000;
 
-/// Bounds of the length of a stage, in lengths of the one before.
+/// The bounds of a stage's length, relative to the previous stage.
 const LONGER: f64 = 4.0;
 const SHORTER: f64 = 0.5;
 
-/// A rest of the way that is this part of a stage joins it.
+/// If the remaining path is shorter than this fraction of a stage, the stage extends to the end.
 const JOINS: f64 = 0.1;
 
-/// Stages that end before this share of the way are judged by two corrections alone. Where the tangent at rest is nearly
-/// singular and grows, a closer look would make them shorter than momenta are known.
+/// Stages that end before this fraction of the path are judged by two corrections alone. If the tangent at rest is
+/// nearly singular and grows, further checks would make stages too short for the precision of the momenta.
 const LOOKED_AT: f64 = 1e-6;
 
-/// The shortest stage tried, as a part of the way: a root so close to a fold is not taken. Rounding decides there.
+/// The shortest stage, as a fraction of the path. A root closer to a fold is rejected, because rounding would decide.
 const SHORTEST: f64 = 1e-9;
 
-/// The shortest stage at this share of the path. Near rest, a short stage does not indicate a fold: where the
-/// tangent is nearly singular there and grows, velocities first move as a root of the share. Rounding of
-/// momenta is what remains.
+/// The shortest stage at this fraction of the path. Near rest, a short stage does not indicate a fold: if the tangent
+/// there is nearly singular and grows, velocities first increase like a root of the fraction. The rounding of momenta
+/// is the limit.
 fn shortest(share: f64) -> f64 {
     (1e-3 * share).clamp(1e-13, SHORTEST)
 }
 
-/// A solution is the root if it lies within this part of the last stage.
+/// A solution is the principal root if their distance is below this fraction of the last stage.
 const SAME: f64 = 1e-3;
 
 /// The result for one lane.
@@ -57,7 +57,7 @@ pub(super) enum Traced<G> {
     Elsewhere {
         /// The root, to the precision of a stage.
         root: G,
-        /// The largest distance of a polished root from it, part by part.
+        /// The largest distance, part by part, of a polished root from `root`.
         reach: Reals,
     },
 }
@@ -82,19 +82,19 @@ impl Fold {
         }
     }
 
-    /// The same in a lane.
+    /// This error in lane `lane`.
     #[must_use]
     pub(super) fn in_lane(self, lane: usize) -> Self {
         Self { lane, ..self }
     }
 }
 
-/// The equations of one lane, with everything at the node held fixed.
+/// The equations of one lane, with fixed data at the node.
 pub(super) trait Curve {
     /// A velocity.
     type Velocity: Clone;
 
-    /// The coordinates.
+    /// The coordinates and their parts.
     fn parts(&self) -> &Parts;
 
     /// The rounding error of the length of a part without a natural unit.

@@ -1,5 +1,5 @@
-//! Equations of which some unknowns are solved for beforehand, in closed form: Newton's method finds the others.
-//! Takes an element with all unknowns; gives the part that is searched for.
+//! Equations in which some unknowns are eliminated in closed form; Newton's method finds the others. Takes an element
+//! with all unknowns; gives the unknowns that Newton's method finds.
 
 use super::parts::{Aside, comes_near, with_kinds};
 use super::{Newton, Progress, Solved};
@@ -10,8 +10,7 @@ use crate::scalar::Real;
 use core::marker::PhantomData;
 use nalgebra::{SMatrix, SVector};
 
-/// The inverse of the tangent of all equations at rest, where some unknowns are solved for beforehand: it is the same at
-/// every node.
+/// The inverse of the tangent of all equations at rest, if some unknowns are eliminated. It is the same at every node.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AtRest<T, W, const E: usize> {
     inverse: SMatrix<T, E, E>,
@@ -63,9 +62,9 @@ impl<W, const E: usize> Saved for AtRest<f64, W, E> {
     }
 }
 
-/// The part of an element that Newton's method finds, where the rest follows from it.
+/// The part of an element that Newton's method finds; the remaining unknowns follow from it.
 pub trait Found<W> {
-    /// That part.
+    /// Extracts this part.
     fn within(whole: &W) -> Self;
 }
 
@@ -94,14 +93,13 @@ impl<T: Real, G, const D: usize, W: Group<T>, const E: usize> Newton<'_, T, G, D
 where
     G: Group<T> + Found<W>,
 {
-    /// Whether the residual is wanted: not at the last trial, whose rest alone is.
+    /// Whether the residual is needed. At the last trial, only the remaining unknowns are.
     #[inline(always)]
     pub fn wants_residual(&self) -> bool {
         self.found.is_none()
     }
 
-    /// [`correct`](Newton::correct) where the rest of a solution follows from what is found: `whole` is
-    /// the trial with its rest.
+    /// Like [`correct`](Newton::correct), if some unknowns are eliminated; `whole` is the trial with all unknowns.
     #[inline(always)]
     pub fn correct_part(&mut self, whole: W) -> Progress<W> {
         self.completed(whole, Newton::correct)
@@ -148,7 +146,7 @@ where
         }
         match correct(self) {
             Progress::Continue => Progress::Continue,
-            // The other unknowns of this solution follow at the next trial.
+            // The eliminated unknowns of this solution are computed at the next trial.
             Progress::Solved(solved) => {
                 self.found = Some(solved.iterations);
                 Progress::Continue

@@ -18,7 +18,7 @@ impl<G: Group<f64> + Saved, const D: usize, W, const E: usize> Saved for Search<
             noise,
             open,
             measured,
-            // Later steps continue from there.
+            // Later steps continue from this state.
             tries: _,
             whole,
             factors,

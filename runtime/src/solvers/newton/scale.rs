@@ -1,17 +1,19 @@
-//! Scales of equations beyond the size of their own terms: an equation is solved if its residual is rounding compared
-//! with its scale, and rounding of the velocities may leave a larger residual than its terms show.
-//! Takes the tangent factored last, as absolute values, and scales; raises them. Gives the lengths for corrections.
+//! Raises the scales of equations above the size of their own terms if necessary. An equation counts as solved if its
+//! residual is rounding relative to its scale, but rounding of the velocities can leave a larger residual than its own
+//! terms suggest. Takes the absolute values of the last factored tangent, and scales; raises the scales. Gives the
+//! lengths for corrections.
 
 use super::parts::{Aside, Kinds};
 use crate::scalar::larger;
 
-/// The root of the rounding.
+/// The square root of the rounding unit.
 const SHARE: f64 = 1.5e-8;
 
-/// Rounding errors of a length, in roundings of the terms of its equation.
+/// The rounding error of a length, in roundings of the terms of its equation.
 const NOISE: f64 = 1e4;
 
-/// The unit of length of each part and the rounding error of its length. Takes the tangent and one over the sizes of terms.
+/// Measures the unit of length of each part and the rounding error of its length, from the tangent and the inverse
+/// sizes of the terms.
 #[cold]
 pub(super) fn measure(
     kinds: &Kinds<'_>,
@@ -20,7 +22,7 @@ pub(super) fn measure(
     [units, noise]: [&mut [f64]; 2],
 ) {
     kinds.units_into(entry, Aside::OfStep, units);
-    // Its own equation, and equations without their own unknown, such as constraints.
+    // The coordinate's own equation, and equations without a diagonal entry, such as constraints.
     let of = |k: usize| {
         let rows = (0..kinds.size).filter(|i| *i == k || entry(*i, *i) == 0.0);
         let each = rows.map(|i| {
@@ -39,7 +41,7 @@ pub(super) fn measure(
             most
         };
     }
-    // Multipliers are as uncertain as what they act on.
+    // A multiplier has the relative uncertainty of the parts on which it acts.
     for (b, (own, unit)) in noise.iter_mut().zip(units.iter()).enumerate() {
         if kinds.own(b).all(|k| entry(k, k) == 0.0) {
             let [step, stage] = [Aside::OfStep, Aside::OfStage].map(|x| x.of(kinds.open[b]));
@@ -48,9 +50,9 @@ pub(super) fn measure(
     }
 }
 
-/// The tangent of the equations, and the lengths of the velocities.
+/// The tangent of the equations, with the lengths of the parts of the velocity.
 pub(super) struct Tangent<'a> {
-    /// The absolute value of the entry of an equation and a coordinate, zero where it is not known.
+    /// The absolute value of the tangent at an equation and a coordinate; zero if it is unknown.
     pub entry: &'a dyn Fn(usize, usize) -> f64,
     /// The part that a coordinate belongs to.
     pub part_of: &'a dyn Fn(usize) -> usize,
@@ -59,7 +61,7 @@ pub(super) struct Tangent<'a> {
 }
 
 impl Tangent<'_> {
-    /// Raises scales that are rounding compared with others.
+    /// Raises scales that are at rounding level compared with others.
     pub fn raise(&self, scales: &mut [f64]) {
         self.momenta(scales);
         self.constraints(scales);
@@ -89,7 +91,7 @@ impl Tangent<'_> {
             let length = length(part).max(least);
             *inverse = match length.is_finite() {
                 true => (1.0 / length).min(f64::MAX),
-                // An element without coordinates, as a turn by half a revolution.
+                // An element without coordinates, such as a half turn.
                 false => 1.0,
             };
         }
@@ -134,7 +136,8 @@ impl Tangent<'_> {
         }
     }
 
-    /// The length of a part of the velocity, or the velocity of its momentum scales, whichever is larger.
+    /// The length of a part of the velocity, or of the velocity that corresponds to the scale of its momentum,
+    /// whichever is larger.
     fn velocity(&self, part: usize, scales: &[f64]) -> f64 {
         let length = self.lengths.get(part).copied().unwrap_or(0.0);
         let own = (0..scales.len()).filter(|j| (self.part_of)(*j) == part);

@@ -1,10 +1,10 @@
-//! A stage of the curve that leads from rest to the principal root: from a point of the curve to the next one.
+//! A stage of the curve from rest to the principal root: one step from a point of the curve to the next.
 //!
-//! Where a part lacks a scale of its own, as a field, equations may vary over any length of it. There the equations are
-//! looked at on the way, more closely where they are rough; and so is the tangent, which tells of parts that move little
-//! as well.
+//! If a part lacks a natural scale, for example a field, its equations may vary over any length. The stage then checks
+//! the equations at points in between, more densely if they are rough. It also checks the tangent, which shows changes
+//! in parts that move little.
 //!
-//! Takes the equations and a part of the way; gives the next point, or a shorter part to try.
+//! Takes the equations and a fraction of the path; gives the next point, or a shorter fraction to try.
 
 use super::changes::{CHANGE, Changes};
 use super::looks::{Judged, Left, looks, shared_noise};
@@ -13,45 +13,46 @@ use super::principal::{Curve, FALLS};
 use crate::linalg::{Dense, Reals};
 use crate::scalar::larger;
 
-/// Most corrections of a stage after the first two; they fall quadratically.
+/// The largest number of corrections after the first two. They converge quadratically.
 const MOST_CORRECTIONS: usize = 12;
 
-/// The last stage ends with a correction that is this part of its length: what is left is the square. Close to a fold
-/// rounding permits no less.
+/// The last stage ends with a correction below this fraction of its length; the error left is about its square. Close
+/// to a fold, rounding permits no smaller value.
 const SOLVED: f64 = 1e-6;
 
-/// Corrections of this part of the noise of a length are rounding.
+/// Corrections below this fraction of the rounding error of a length count as rounding.
 const ROUNDED: f64 = 0.1;
 
-/// Another stage can begin so near the end of one.
+/// A stage that is not the last ends once its corrections are below this fraction of its length.
 const NEAR: f64 = 1e-3;
 
-/// The part of a stage that is tried where corrections do not fall.
+/// If corrections do not decrease, the next stage is shorter by this factor.
 const WORSE: f64 = 0.2;
 
-/// In a stage the equations may change by so many times as much as in a step judged by one correction: by three quarters.
+/// In a stage, the equations may change by this factor more than in a step judged by one correction.
 const STEEP: f64 = 1.5;
 
-/// How often a rough piece of the way is halved at most, and the least change of the slope in a piece that is.
+/// The largest number of times that a rough piece of the path is halved, and the smallest change of slope for which it
+/// is.
 const HALVINGS: u8 = 5;
 const BEND: f64 = 1e-2;
 
-/// The part of the longest admissible length that is tried, and the least part of a refused length.
+/// The fraction of the longest admissible length that is tried next, and the smallest fraction of a rejected length.
 pub(super) const AIM: f64 = 0.8;
 const SHORTEST_TRY: f64 = 0.1;
 
-/// A point of the curve, and the tangent there.
+/// A point of the curve, with the tangent at that point.
 pub(super) struct Stage<G> {
     velocity: G,
     pub residual: Reals,
     inverse: Dense<f64>,
     pub units: Reals,
-    /// Whether a part lacks a scale of its own.
+    /// Whether some part lacks a natural scale.
     open: bool,
 }
 
 impl<G: Clone> Stage<G> {
-    /// `None` where the tangent is singular or not finite.
+    /// The stage that starts at `velocity`; `None` if the tangent is singular or not finite.
     pub(super) fn at<C: Curve<Velocity = G>>(
         curve: &C,
         velocity: G,
@@ -69,7 +70,7 @@ impl<G: Clone> Stage<G> {
         })
     }
 
-    /// The correction by this tangent where the residual is to become `goal`.
+    /// The correction, with this stage's tangent, that changes the residual to `goal`.
     pub(super) fn correction(&self, goal: &[f64], residual: &[f64]) -> Reals {
         corrected(&self.inverse, goal, residual)
     }
@@ -88,15 +89,15 @@ pub(super) fn less(x: &[f64], y: &[f64]) -> Reals {
     x.iter().zip(y).map(|(x, y)| x - y).collect()
 }
 
-/// The larger of two; NaN where one is.
+/// The larger of two numbers; NaN if either is NaN.
 fn worse(a: f64, b: f64) -> f64 {
     if b <= a { a } else { b + 0.0 * a }
 }
 
-/// The largest length over its bound; NaN where any is.
+/// The largest ratio of a length to its bound; NaN if any ratio is NaN.
 pub(super) fn ratio(lengths: &[f64], bounds: &[f64]) -> f64 {
     let each = lengths.iter().zip(bounds);
-    // A part without length and bound does not move.
+    // A part of length zero does not move, even if its bound is zero.
     let each = each.map(|(x, bound)| if *x == 0.0 { 0.0 } else { x / bound });
     crate::scalar::largest(each)
 }
@@ -104,15 +105,16 @@ pub(super) fn ratio(lengths: &[f64], bounds: &[f64]) -> f64 {
 /// The end of a stage.
 pub(super) struct Ended<G> {
     pub velocity: G,
-    /// The tangent there, where it was looked at.
+    /// The tangent at the end, if it was evaluated.
     pub tangent: Option<Dense<f64>>,
-    /// The lengths of its course.
+    /// The reference lengths of the parts.
     pub course: Reals,
-    /// The second correction over the first: it grows with the length of the stage.
+    /// The ratio of the second to the first correction, which grows with the length of the stage.
     pub fall: f64,
 }
 
-/// The end of a stage, or the part of its length to try next. `is_looked_at` says whether the equations on the way count.
+/// Completes a stage, or returns the fraction of its length to try next. If `is_looked_at`, the equations between its
+/// ends are checked.
 pub(super) fn ended<C: Curve>(
     curve: &C,
     stage: &Stage<C::Velocity>,
@@ -201,14 +203,14 @@ pub(super) fn ended<C: Curve>(
     })
 }
 
-/// The remainder at a look and the gain between two, over the course.
+/// Measures a remainder at a point, and a change between two points, relative to the reference lengths.
 struct Judges<'a> {
     value: &'a dyn Fn(&[f64]) -> f64,
     slope: &'a dyn Fn(&Judged<Reals>) -> f64,
 }
 
-/// The most that the equations leave on the way of a stage, and the most that they gain between two looks, as corrections
-/// over the course.
+/// The largest remainder of the equations between the ends of a stage, and its largest change between two checked
+/// points, as corrections relative to the reference lengths.
 fn on_the_way<C: Curve>(
     curve: &C,
     stage: &Stage<C::Velocity>,
@@ -225,7 +227,7 @@ fn on_the_way<C: Curve>(
     let of = |x: &[f64]| ratio(&curve.parts().lengths(x), course);
     let own: Reals = (0..curve.parts().count()).map(|b| curve.noise(b)).collect();
     let shared = shared_noise(&own, &stage.units);
-    // Where noise is not known, slopes may be rounding.
+    // If the rounding error is unknown, slopes may be only rounding.
     let known = shared > 0.0;
     let noise = |b: usize| {
         let unit = stage.units.get(b).copied().unwrap_or(0.0);
@@ -246,7 +248,7 @@ fn on_the_way<C: Curve>(
     let mut seen = vec![(0.0, nothing.clone())];
     let mut so_far = Left::nothing(nothing);
     let (mut left, mut steepest, mut rough) = (0.0, 0.0, vec![]);
-    // The tangent holds where the stage begins.
+    // The tangent is exact at the start of the stage, so the additional first point is skipped.
     for look in looks(1.0).filter(|look| look.is_regular()) {
         let here = off(look.share);
         let [slope, fourth] = so_far.next(look, &here, |x, y| less(x, y));
@@ -262,7 +264,7 @@ fn on_the_way<C: Curve>(
         slope: &judge,
     };
     for (k, ends) in seen.windows(2).enumerate() {
-        // A fourth difference is of four pieces.
+        // A fourth difference covers four pieces.
         let is_rough = rough.iter().skip(k).take(4).any(|x| *x);
         if let ([from, to], true) = (ends, known && is_rough && worse(left, steepest) <= FALLS) {
             steepest = worse(steepest, left_between(&off, &judges, [from, to], HALVINGS));
@@ -271,7 +273,7 @@ fn on_the_way<C: Curve>(
     [left, steepest]
 }
 
-/// Like `on_the_way`, between two looks, if the equations are rough.
+/// Like `on_the_way`, between two checked points, if the equations are rough.
 fn left_between(
     off: &dyn Fn(f64) -> Reals,
     judges: &Judges<'_>,

@@ -1,7 +1,6 @@
-//! Checks that the solution of a step is the principal root: a test in every step, and a trace of each lane if the test
-//! fails.
-//! Takes the residual at rest, then the equations lane by lane; gives the principal roots if the solution differs in
-//! some lane.
+//! Checks that the solution of a step is the principal root: a quick test in every step and, if it fails, a trace of
+//! each lane. Takes the residual at rest, then the equations lane by lane; gives the principal roots if the solution
+//! differs from them in some lane.
 
 use super::parts::{comes_near, varies_little};
 use super::principal::{Equations, Fold, OnGroup, Traced, trace};
@@ -33,8 +32,8 @@ where
             .is_some_and(|anchor| anchor.holds::<T>(*solution))
     }
 
-    /// Whether the first correction from rest, by the current tangent, leaves at most a quarter of the way to the
-    /// solution, in every part and every lane. The second correction would then be as small.
+    /// Whether the first correction from rest, with the current tangent, leaves at most a quarter of the distance to
+    /// the solution, in every part and every lane. The second correction would then be that small, too.
     #[inline(always)]
     fn follows(
         &self,
@@ -57,10 +56,10 @@ where
         !search.open || varies_little(&correction, solution, left, units, noise)
     }
 
-    /// An empty verdict on a solution, or on a missing one, before any lane is judged.
+    /// The verdict on a solution, or on a missing one, before any lane is traced.
     #[cold]
     pub fn verdict(&mut self, solution: Option<&W>) -> Verdict<W, E> {
-        // A tangent of some steps ago may be why the test failed.
+        // An old tangent may be the reason that the test failed.
         self.search.age = OLDEST_TANGENT;
         let noise = core::array::from_fn(|b| match E == D {
             true => self.search.noise.get(b).copied().unwrap_or(0.0),
@@ -69,7 +68,8 @@ where
         Verdict::about(solution.copied().unwrap_or_else(W::identity), noise)
     }
 
-    /// Starts again from the principal root. Returns false if this was already done, because the root cannot be polished.
+    /// Restarts from the principal root. Returns false if the iteration already did so, because then the root cannot be
+    /// polished.
     #[cold]
     pub fn restart(&mut self, anchor: Anchor<W, E>) -> bool {
         if self.anchor.is_some() {
@@ -82,7 +82,7 @@ where
     }
 }
 
-/// The principal root, in the only place where a solution may be polished.
+/// The principal root, and the distance within which a polished solution must stay.
 #[derive(Clone, Copy, Debug)]
 pub struct Anchor<G, const D: usize> {
     pub(super) root: G,
@@ -90,7 +90,7 @@ pub struct Anchor<G, const D: usize> {
 }
 
 impl<G: Copy, const D: usize> Anchor<G, D> {
-    /// Whether the solution is in that place.
+    /// Whether the solution is within reach of the root.
     #[cold]
     pub(super) fn holds<T>(self, solution: G) -> bool
     where
@@ -101,7 +101,7 @@ impl<G: Copy, const D: usize> Anchor<G, D> {
     }
 }
 
-/// The results of all lanes together.
+/// The combined results of all lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct Verdict<G, const D: usize> {
     anchor: Anchor<G, D>,
@@ -110,7 +110,7 @@ pub struct Verdict<G, const D: usize> {
 }
 
 impl<G: Copy, const D: usize> Verdict<G, D> {
-    /// No lane yet; `solution` is the element to judge.
+    /// The state before any lane is traced; `solution` is the element to judge.
     pub(super) fn about(solution: G, noise: [f64; D]) -> Self {
         Self {
             anchor: Anchor {
@@ -122,7 +122,7 @@ impl<G: Copy, const D: usize> Verdict<G, D> {
         }
     }
 
-    /// Looks at a lane: its root, where that is another than the solution.
+    /// Traces a lane; returns its principal root if the solution differs from it.
     ///
     /// # Errors
     /// [`Fold`] if the principal root of the lane does not exist.
@@ -145,19 +145,19 @@ impl<G: Copy, const D: usize> Verdict<G, D> {
         }
     }
 
-    /// The roots found so far, to be put right where a lane has another.
+    /// The element that collects the roots. Overwrite a lane if its root differs from the solution.
     pub fn root_mut(&mut self) -> &mut G {
         &mut self.anchor.root
     }
 
-    /// The roots where the solution is none in some lane.
+    /// The roots, if the solution differs in some lane.
     #[must_use]
     pub fn elsewhere(self) -> Option<Anchor<G, D>> {
         self.elsewhere.then_some(self.anchor)
     }
 }
 
-/// The numbers of an element in one lane, to be set in an element over all lanes.
+/// The numbers of an element in one lane, to be copied into an element with all lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct Numbers {
     list: [f64; 64],
@@ -165,7 +165,7 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// The numbers of an element, at most the 64 of an 8 x 8 matrix.
+    /// Reads the numbers of an element, at most the 64 of an 8 x 8 matrix.
     pub fn of<X: OfScalars<Scalar = f64>>(element: &X) -> Self {
         let mut numbers = Self {
             list: [0.0; 64],
@@ -181,7 +181,7 @@ impl Numbers {
         numbers
     }
 
-    /// A function that sets one lane of an element over all lanes, number by number.
+    /// A function that overwrites one lane of an element with all lanes, number by number.
     pub fn put<T: Real>(&self, lane: usize) -> impl FnMut(T) -> T {
         let mut place = 0;
         move |mut x: T| {

@@ -1,5 +1,5 @@
-//! The constants of the equation in unit quaternions.
-//! Takes `A` and `β`; gives them validated, with the invariants of the inertia `I = A + β`.
+//! The constants of the step equation in unit quaternions. Takes `A` and `β`; gives them validated, with the invariants
+//! of the inertia `I = A + β`.
 
 use super::shift::{EASY, EXACT, MODERATE, QUICK};
 use crate::Real;
@@ -14,25 +14,25 @@ use nalgebra::Matrix3;
 /// `I = A + β`, the inertia of small steps, is positive definite; `A` itself need not be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuaternionBody<T = f64> {
-    /// A power of two near the largest moment. All constants below are of `I / unit`.
+    /// A power of two near the largest moment. All constants below belong to `I / unit`.
     pub(super) unit: f64,
-    /// `1 / (2 unit)`, what turns `h N` into `u`.
+    /// `1 / (2 unit)`, the factor from `h N` to `u`.
     pub(super) half_over_unit: T,
     /// `β / unit`.
     pub(super) real: T,
-    /// `I`, diagonal entries.
+    /// The diagonal entries of `I`.
     pub(super) moments: [T; 3],
-    /// `I`, entries (2,3), (3,1), (1,2).
+    /// The entries (2,3), (3,1), (1,2) of `I`.
     pub(super) products: [T; 3],
-    /// `I2 - I3`, `I3 - I1`, `I1 - I2` of the diagonal entries, over `det I`.
+    /// The differences `I2 - I3`, `I3 - I1`, `I1 - I2` of the diagonal entries, divided by `det I`.
     pub(super) differences: [T; 3],
-    /// The inverse of `I`, as above.
+    /// The inverse of `I`, diagonal entries first.
     pub(super) inverse_moments: [T; 3],
     pub(super) inverse_products: [T; 3],
-    /// `(I - tr I) / det I`, as above.
+    /// `(I - tr I) / det I`, diagonal entries first.
     pub(super) linear_moments: [T; 3],
     pub(super) linear_products: [T; 3],
-    /// `1`, `tr I` and the sum of the principal minors of `I`, over `det I`.
+    /// `1`, `tr I` and the sum of the principal minors of `I`, each divided by `det I`.
     pub(super) zeroth: T,
     pub(super) first: T,
     pub(super) second: T,
@@ -42,7 +42,7 @@ pub struct QuaternionBody<T = f64> {
     pub(super) exact: T,
     /// The largest `|u|^2` for which one iteration from the series is exact to rounding.
     pub(super) easy: T,
-    /// The largest for which a few are.
+    /// The largest `|u|^2` for which a few iterations are exact to rounding.
     pub(super) moderate: T,
     /// Whether the off-diagonal entries are exactly zero.
     pub(super) diagonal: bool,
@@ -60,17 +60,16 @@ crate::scalar::of_scalars!(QuaternionBody {
 });
 
 impl<T: Real> QuaternionBody<T> {
-    /// Whether the off-diagonal entries are exactly zero, which steps make use of.
+    /// Whether the off-diagonal entries are exactly zero; steps are then cheaper.
     #[doc(hidden)]
     pub fn is_diagonal(&self) -> bool {
         self.diagonal
     }
 
-    /// Validates `A` (symmetric up to a few roundings) and `β`, in every lane; `field` is what `A`
-    /// is called.
+    /// Validates `A` (symmetric up to a few roundings) and `β`, in every lane. `field` is the name of `A` in errors.
     ///
     /// # Errors
-    /// Where an entry is not finite, `A` not symmetric, or `A + β` not positive definite.
+    /// If an entry is not finite, `A` is not symmetric, or `A + β` is not positive definite.
     pub fn new(field: &'static str, a: Matrix3<T>, real: T) -> Result<Self, ParameterError> {
         let refused = |problem, remedy| ParameterError {
             field,
@@ -88,7 +87,7 @@ impl<T: Real> QuaternionBody<T> {
                 }
             }
         }
-        // `A = I - β` may be a small difference with the rounding of `I` and `β`.
+        // `A = I - β` may be a small difference that has the rounding error of `I` and `β`.
         let both = Matrix3::from_diagonal_element(T::from_f64(2.0 * real.magnitude()));
         mirrored_difference(&(a + both)).map_err(|(row, column, upper, lower)| {
             let problem = Problem::NotSymmetric {
@@ -105,7 +104,7 @@ impl<T: Real> QuaternionBody<T> {
         let mut largest: f64 = 0.0;
         for lane in 0..T::LANES {
             let [small, _, large] = eigenvalues(lane);
-            // Written so that NaN is refused.
+            // This form of the comparison also rejects NaN.
             let positive = small > ROUNDINGS * f64::EPSILON * large.abs();
             if !positive {
                 let remedy =
@@ -134,7 +133,7 @@ impl<T: Real> QuaternionBody<T> {
         ))
     }
 
-    /// From `I / unit` and `β / unit`.
+    /// Prepares the constants from `I / unit` and `β / unit`.
     fn prepared(inertia: Matrix3<T>, real: T, unit: f64, [bound, smallest]: [T; 2]) -> Self {
         let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = inertia.data.0;
         let adjugate = [yy * zz - yz * yz, zz * xx - xz * xz, xx * yy - xy * xy];
@@ -193,7 +192,7 @@ impl<T: Real> QuaternionBody<T> {
     }
 }
 
-/// The number with these real parts, lane by lane, without derivatives.
+/// The number that has these real parts in its lanes, without derivatives.
 pub(super) fn by_lane<T: Real>(value: impl Fn(usize) -> f64) -> T {
     let mut all = T::zero();
     for lane in 0..T::LANES {

@@ -1,5 +1,5 @@
-//! Long steps: more iterations for `s`, or the principal branch followed from small momenta.
-//! Takes the body and `u`; gives the quaternion lane by lane, or how much of `u` can be solved for.
+//! Solves long steps: iterates further for `s`, or follows the principal branch from small momenta. Takes the body and
+//! `u`; gives the quaternion lane by lane, or the fraction of `u` for which a solution was found.
 
 use super::body::QuaternionBody;
 use super::shift::{Equation, Turn, quick};
@@ -9,14 +9,15 @@ use crate::solvers::moser_veselov::choose;
 use crate::{Group, Real, UnitQuaternion};
 use nalgebra::{Matrix3, Vector3};
 
-/// Newton's method on the branch starts close to it: it converges at once or not at all.
+/// The largest number of Newton iterations on the branch. They start close to it, so they converge quickly or not at
+/// all.
 const MOST_ITERATIONS: usize = 10;
 
-/// Trials along the branch; to its very end about fifty halvings of the last advance are needed, each followed by a
-/// few advances.
+/// The largest number of trials along the branch. Reaching its very end takes about fifty halvings of the last advance,
+/// each followed by a few advances.
 const MOST_TRIALS: usize = 2000;
 
-/// The branch is followed to within this part of `u`.
+/// The resolution of the end of the branch, as a fraction of `u`.
 const RESOLUTION: f64 = 1e-14;
 
 /// The largest share of `u` in one advance along the branch, because other branches may be close.
@@ -34,8 +35,8 @@ fn turns<T: Real>(mask: T, then: Turn<T>, otherwise: Turn<T>) -> Turn<T> {
     }
 }
 
-/// The turn, if one step of Newton's method does not suffice; `None` if some lane lacks a solution. The result of a
-/// lane does not depend on the other lanes.
+/// The rotation, if one Newton step does not suffice; `None` if some lane is unsolvable. Each lane's result is
+/// independent of the other lanes.
 #[inline(never)]
 pub(super) fn turn<T: Real>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<Turn<T>> {
     let one = T::one();
@@ -46,7 +47,7 @@ pub(super) fn turn<T: Real>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<Turn<
     }
     let easy = one - (a - body.easy).where_positive(one);
     let long = (a - body.moderate).where_positive(one);
-    // Computed again, because storing it would slow down short steps.
+    // Recomputed, because storing it would slow down short steps.
     let equation = Equation::new::<false>(body, u);
     let start = equation.start();
     let mut s = equation.improved(start);
@@ -108,8 +109,8 @@ fn balance<T: Real>(
     (along - Vector3::from(u), tangent)
 }
 
-/// Newton's method from a root of `f64`, for further digits and for derivatives. A tangent that is
-/// itself rounding leaves the root as it is.
+/// Refines a root in `f64` by Newton's method, for more digits and for derivatives. If the tangent is at rounding
+/// level, the root is unchanged.
 fn polished<T: Real>(
     body: &QuaternionBody<T>,
     u: [T; 3],
@@ -122,8 +123,8 @@ fn polished<T: Real>(
     q.components().iter().all(|x| x.is_finite()).then_some(q)
 }
 
-/// The root for `u`, along the branch that begins at zero; or the part of `u` at which that ends,
-/// where its tangent becomes singular.
+/// The root for `u` on the branch that starts at zero. If the branch ends before, where its tangent is singular, the
+/// error is the fraction of `u` at its end.
 pub(super) fn followed(
     body: &QuaternionBody<f64>,
     u: [f64; 3],
@@ -148,8 +149,8 @@ pub(super) fn followed(
         let found = solve(&tangent, &Vector3::from(scaled(taken)))
             .and_then(|change| corrected(body, scaled(next), &q, &change));
         match found {
-            // At its end the branch turns back, and its tangent changes sign. Another branch may
-            // continue beyond it, and must not be taken.
+            // At its end the branch turns back, and the determinant of its tangent changes sign. A root beyond may
+            // belong to another branch and must be rejected.
             Some((root, there))
                 if (0.7..1.4).contains(&(determinant(&there) / determinant(&tangent))) =>
             {
@@ -165,8 +166,8 @@ pub(super) fn followed(
     Err(part)
 }
 
-/// The root near what the tangent foresees, and the tangent there; nothing unless the corrections
-/// are much smaller than the change foreseen, and each than the one before.
+/// The root near the tangent's prediction, and the tangent there. `None` unless the corrections are much smaller than
+/// the predicted change, and each is much smaller than the previous one.
 fn corrected(
     body: &QuaternionBody<f64>,
     u: [f64; 3],

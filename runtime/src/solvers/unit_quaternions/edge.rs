@@ -14,12 +14,12 @@ fn turned<T: Real>(attitude: &UnitQuaternion<T>, turn: &Turn<T>) -> TurnedRotati
 }
 
 impl<T: Real> QuaternionBody<T> {
-    /// The velocity of a step, in the body: the principal solution `w + v` of
-    /// `w A v + v x A v + β v = h N / 2`, a quaternion of unit length. `h_n` is `h N`, the step times the
-    /// momentum at the beginning of the edge, in the body.
+    /// The velocity of a step, in the body frame: the principal solution `w + v`, a unit quaternion, of
+    /// `w A v + v x A v + β v = h N / 2`. `h_n` is the step size times the momentum `N` at the start of the edge, in
+    /// the body frame.
     ///
     /// # Errors
-    /// [`QuaternionError`] when there is none, in any lane, or the momentum is not finite.
+    /// [`QuaternionError`] if the equation is unsolvable in some lane or the momentum is not finite.
     #[inline(always)]
     pub fn velocity(&self, h_n: &Vector3<T>) -> Result<UnitQuaternion<T>, QuaternionError> {
         let [[x, y, z]] = h_n.data.0;
@@ -32,11 +32,11 @@ impl<T: Real> QuaternionBody<T> {
 }
 
 impl<T: Real> Edge<T> {
-    /// The attitude at the end of the edge, given the attitude at its start, in unit quaternions:
-    /// the principal solution, body side.
+    /// The attitude at the end of the edge, given the attitude at its start, by the principal solution on the body
+    /// side.
     ///
     /// # Errors
-    /// [`QuaternionError`] when there is none, in any lane, or the momentum is not finite.
+    /// [`QuaternionError`] if the equation is unsolvable in some lane or the momentum is not finite.
     #[inline(always)]
     pub fn turn_in_quaternions(
         &self,
@@ -55,13 +55,14 @@ impl<T: Real> Edge<T> {
         }
     }
 
-    /// A step on which nothing else acts: the attitude where the edge ends, and the edge that begins there.
+    /// A step without other forces. Returns the attitude at the end of the edge, and the edge that starts there.
     ///
-    /// In the body the momentum changes by `-(4/h) v x A v`. This is added to what the attitude where the edge begins
-    /// makes of the momentum in space: rounding does not accumulate, and the next step waits only for `v`.
+    /// In the body frame the momentum changes by `-(4/h) v x A v`. The change is added to the spatial momentum as seen
+    /// from the attitude at the start of the edge. Rounding therefore does not accumulate, and the next step waits only
+    /// for `v`.
     ///
     /// # Errors
-    /// As [`Edge::turn_in_quaternions`].
+    /// The errors of [`Edge::turn_in_quaternions`].
     #[inline(always)]
     pub fn free_in_quaternions(
         &self,

@@ -1,5 +1,5 @@
-//! The error of a step that is too long for the equation in unit quaternions.
-//! Takes the refused momentum; gives how far beyond the bound it is and what step would do.
+//! The error of a step that is too long for the equation in unit quaternions. Takes the failed momentum; gives its
+//! ratio to the bound, and the step size that would succeed.
 
 use super::QuaternionBody;
 use super::branch::followed;
@@ -9,7 +9,7 @@ use crate::solvers::moser_veselov::{fastest, index, largest_step};
 use core::fmt;
 use nalgebra::Vector3;
 
-/// The step is too long for the equation to have a principal solution: the body would turn too far.
+/// The step is too long for the equation to have a principal solution: the body would rotate too far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuaternionError {
     /// The scaled momentum over its bound, along its direction, in the worst lane. Above 1 the
@@ -25,11 +25,11 @@ pub struct QuaternionError {
     pub lane: u32,
 }
 
-/// The suggested step size is inside the bound by this relative margin, where the root is double.
+/// The relative margin between the suggested step size and the bound, at which the root is double.
 const INSIDE: f64 = 1.0 - 1e-10;
 
 impl QuaternionError {
-    /// Diagnoses the refused `h N`; every lane is looked at.
+    /// Diagnoses the failed `h N`, over all lanes.
     #[cold]
     #[inline(never)]
     pub(super) fn diagnose<T: Real>(body: &QuaternionBody<T>, h_n: &Vector3<T>) -> Self {

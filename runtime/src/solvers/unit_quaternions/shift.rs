@@ -1,7 +1,7 @@
-//! The scalar unknown `s` of the equation in unit quaternions, and the velocity that follows.
-//! Takes the body and `u = h N / 2`; gives the quaternion, or nothing where there is none.
+//! The scalar unknown `s` of the equation in unit quaternions, and the resulting velocity. Takes the body and
+//! `u = h N / 2`; gives the quaternion, or `None` if the equation is unsolvable.
 //!
-//! All over `det I`: `Q(s) = β (|(det, n)| - det)` with the quartic `Q = u . n - s det` of the
+//! Divided by `det I`, the equation is `Q(s) = β (|(det, n)| - det)` with the quartic `Q = u . n - s det` of the
 //! Moser-Veselov equation. `det` and `|n|^2` are polynomials of third and fourth degree in `s`.
 
 use super::body::QuaternionBody;
@@ -25,12 +25,12 @@ pub(super) const EXACT: f64 = 1e-9;
 /// Two leave less than 1e-30 of `I` below this, and the principal branch is far from its end.
 pub(super) const MODERATE: f64 = 0.1;
 
-/// A rotation from one node to the next, as it is found.
+/// A rotation from one node to the next, not yet normalised.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn<T> {
-    /// The quaternion, of any length.
+    /// The quaternion, with any length.
     pub(super) omega: [T; 4],
-    /// The inverse of the square of its length.
+    /// The inverse of its squared length.
     pub(super) per_square: T,
 }
 
@@ -71,8 +71,8 @@ pub(super) struct Equation<T> {
     u: [T; 3],
 }
 
-/// `(I u) x u` over `det I`, with `I u` for bodies not given in principal axes: by differences it does not cancel when
-/// moments are nearly equal.
+/// `(I u) x u` over `det I`, with `I u` for bodies not given in principal axes. Using differences of moments avoids
+/// cancellation if the moments are nearly equal.
 #[inline(always)]
 fn gyroscopic<T: Real, const DIAGONAL: bool>(
     body: &QuaternionBody<T>,
@@ -151,7 +151,7 @@ impl<T: Real> Equation<T> {
         }
     }
 
-    /// The first terms of the series of `s`: what it leaves is of sixth degree in `u`.
+    /// The first terms of the series of `s`; the error is of sixth degree in `u`.
     #[inline(always)]
     pub(super) fn start(&self) -> T {
         let half = T::from_f64(0.5) * self.real;
@@ -159,15 +159,14 @@ impl<T: Real> Equation<T> {
         let s = self.energy - half * f;
         let bend = s * self.second - (self.twice + T::from_f64(0.25) * f);
         let fourth = s * (s * self.second - self.pull) - half * (f * bend + s * self.leaning);
-        // The leading terms are exact, and the last to be known.
+        // The leading terms are exact, and they become available last.
         (start - half * length) + fourth
     }
 
-    /// One step of Newton's method from `s`: its change, and the turn there.
+    /// One Newton step from `s`: its change, and the resulting rotation.
     ///
-    /// The slope comes from the series of `|(det, n)|`, with a relative error of `9 y^3`. The quaternion is
-    /// computed to first degree in the change, so that neither it nor the division by its length waits for
-    /// the change.
+    /// The slope comes from the series of `|(det, n)|`, with a relative error of `9 y^3`. The quaternion is computed to
+    /// first degree in the change, so neither the quaternion nor the division by its length waits for the change.
     #[inline(always)]
     pub(super) fn quick(&self, s: T) -> (T, Turn<T>) {
         let (two, three, four) = (T::from_f64(2.0), T::from_f64(3.0), T::from_f64(4.0));
@@ -254,7 +253,7 @@ impl<T: Real> Equation<T> {
         ]
     }
 
-    /// One step of fourth order: Newton's, and the next two terms of the inverse series.
+    /// One step of fourth order: the Newton step and the next two terms of the inverse series.
     #[inline(always)]
     pub(super) fn improved(&self, s: T) -> T {
         let [value, slope, second, third] = self.taylor(s);
@@ -266,7 +265,7 @@ impl<T: Real> Equation<T> {
         (s + newton) + square * (bend + newton * twist)
     }
 
-    /// The quaternion `(det, n)`, over `det I`; of any length.
+    /// The quaternion `(det, n)` over `det I`, not normalised.
     #[inline(always)]
     pub(super) fn quaternion(&self, s: T) -> [T; 4] {
         let square = s * s;
@@ -280,7 +279,7 @@ impl<T: Real> Equation<T> {
 /// The principal solution for `u = h N / (2 unit)`.
 #[inline(always)]
 pub(super) fn turn<T: Real>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<Turn<T>> {
-    // One branch here, straight-line code on either side.
+    // One branch, with straight-line code on both sides.
     if body.diagonal {
         principal::<T, true>(body, u)
     } else {
@@ -296,7 +295,7 @@ fn principal<T: Real, const DIAGONAL: bool>(
     if quick::<T>() {
         let equation = Equation::new::<DIAGONAL>(body, u);
         let (change, turn) = equation.quick(equation.start());
-        // Written so that NaN is neither small nor exact.
+        // This form treats NaN as neither small nor exact.
         let small = (dot(u, u) - body.quick).nowhere_positive();
         if small & (change * change - body.exact).nowhere_positive() {
             return Some(turn);

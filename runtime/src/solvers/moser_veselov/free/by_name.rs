@@ -1,5 +1,5 @@
-//! Steps of a free body by another solver than the one that knows its constants.
-//! Takes the trajectory and the solver's name; advances attitude and body momentum.
+//! Steps of a free body by a solver that does not use the trajectory's constants. Takes the trajectory and the solver's
+//! name; advances attitude and body momentum.
 
 use super::{Free, Order};
 use crate::solvers::Method;
@@ -59,7 +59,7 @@ impl<T: Real> Free<T> {
     }
 }
 
-/// A NaN attitude, which equals no attitude.
+/// An attitude of NaN, which differs from every attitude.
 fn nowhere<T: Real>() -> Rotation<T> {
     Rotation::from_unit([T::from_f64(f64::NAN); 4])
 }

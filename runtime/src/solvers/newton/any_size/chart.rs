@@ -1,5 +1,5 @@
-//! Groups described by a value, for models whose groups and sizes are known at run time.
-//! Takes elements and coordinates; gives elements, and the equations of one lane on it.
+//! Groups that are described by a value, for models whose groups and sizes are known only at run time. Takes elements
+//! and coordinates; gives elements, and the equations of one lane on the group.
 
 use crate::groups::Coordinate;
 use crate::linalg::{Dense, Reals};
@@ -9,13 +9,13 @@ use core::fmt::Debug;
 
 /// A group described by a value, as [`Group`](crate::groups::Group) describes it by a type.
 pub trait Chart {
-    /// Its elements.
+    /// The type of the group's elements.
     type Element: Clone + Debug + Default;
 
-    /// Its coordinates.
+    /// The coordinates and their parts.
     fn parts(&self) -> &Parts;
 
-    /// The part of an element of another chart that is searched for, if the rest follows from it.
+    /// The unknowns that Newton's method finds, extracted from an element `whole` of the group `of` of all unknowns.
     fn part(&self, of: &Self, whole: &Self::Element) -> Self::Element;
 
     /// The meaning of a coordinate.
@@ -46,7 +46,7 @@ pub trait Chart {
     fn is_within(&self, of: &Self::Element, reach: &[f64]) -> bool;
 }
 
-/// The equations of one lane on a group that a value describes.
+/// The equations of one lane on a group described by a value.
 pub struct Lane<'a, C: Chart> {
     /// The group.
     pub chart: &'a C,
@@ -56,7 +56,7 @@ pub struct Lane<'a, C: Chart> {
     pub tangent: &'a dyn Fn(&C::Element) -> Dense<f64>,
 }
 
-/// A lane with the rounding errors of lengths.
+/// A lane together with the rounding errors of lengths.
 pub(super) struct WithNoise<'a, 'b, C: Chart> {
     lane: &'b Lane<'a, C>,
     noise: &'b [f64],

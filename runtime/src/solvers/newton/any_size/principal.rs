@@ -1,5 +1,5 @@
-//! The test of a solution: whether it is the principal root, as far as one correction from rest tells.
-//! Takes the solution and the residual at rest.
+//! Tests by one correction from rest whether a solution is the principal root. Takes the solution and the residual at
+//! rest.
 
 use super::{AnyNewton, Chart};
 use crate::linalg::{Dense, DenseFactors, Reals};
@@ -9,7 +9,7 @@ use crate::solvers::newton::parts::{Aside, Squares};
 use crate::solvers::newton::stage::{less, times};
 
 impl<C: Chart> AnyNewton<'_, C> {
-    /// Whether the solution found is the principal root: see [`Newton::is_principal`](super::Newton::is_principal).
+    /// Whether the solution is the principal root: see [`Newton::is_principal`](super::Newton::is_principal).
     #[must_use]
     pub fn is_principal(
         &self,
@@ -71,7 +71,7 @@ impl<C: Chart> AnyNewton<'_, C> {
             let squares = ways.iter().zip(&off).map(|(x, y)| [x * x, y * y]);
             parts.are_near(&squares.collect::<Squares>(), units, noise)
         };
-        // Where noise is not known, differences may be rounding.
+        // If the rounding error is unknown, differences may be only rounding.
         let shared = shared_noise(&search.noise, units);
         let known = shared > 0.0;
         let noises = |b: usize| larger(noise(b), shared * units.get(b).copied().unwrap_or(0.0));
@@ -105,7 +105,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         looks(reach).all(varies_little)
     }
 
-    /// Whether the test of a solution evaluates the equations.
+    /// Whether the test evaluates the equations.
     #[must_use]
     pub fn asks_equations(&self) -> bool {
         let reduced = self.chart.parts() != self.whole.parts();
@@ -113,7 +113,7 @@ impl<C: Chart> AnyNewton<'_, C> {
     }
 }
 
-/// Whether a correction from rest, taken back, comes within a quarter of the way to the solution.
+/// Whether the negative of `correction`, applied at rest, comes within a quarter of the displacement of the solution.
 fn comes_near<C: Chart>(
     chart: &C,
     correction: &[f64],

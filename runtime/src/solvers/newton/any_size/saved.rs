@@ -6,7 +6,7 @@ use crate::saved::{Saved, Words, optional};
 use crate::solvers::newton::REMEMBERED;
 
 impl<C: Chart> AnySearch<C> {
-    /// As [`Saved::words`], the elements of the group by the function given.
+    /// Saves like [`Saved::words`], with a function that saves group elements.
     pub fn words(
         &mut self,
         words: &mut Words,
@@ -23,13 +23,13 @@ impl<C: Chart> AnySearch<C> {
             noise,
             open,
             measured,
-            // Later steps continue from there.
+            // Later steps continue from this state.
             tries: _,
             whole,
             factors,
             unit,
             age,
-            // Overwritten in every step.
+            // Every step overwrites this buffer.
             work: _,
         } = self;
         let known = words.count(past.len(), REMEMBERED);
