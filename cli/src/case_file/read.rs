@@ -76,11 +76,11 @@ pub(crate) fn read_of(
     if matches!(&model, Some(Ok(model)) if super::functions::are_given(model)) {
         known.push(functions);
     }
-    let step_size = |key: &str| {
+    let means_h = |key: &str| {
         let is_step = ["dt", "step", "step_size", "timestep", "time_step"].contains(&key);
         is_step.then(|| "; the step size is `h`".to_owned())
     };
-    file.known_keys(top, &known, "at the top level", &step_size)?;
+    file.known_keys(top, &known, "at the top level", &means_h)?;
     let model = required(
         file,
         top,
