@@ -372,7 +372,7 @@ mod tests {
         let why = Checkpoint::of_bytes(&bytes, &identity("0.2"));
         assert_eq!(
             why,
-            Err("it belongs to another run: h = 0.1 there, h = 0.2 here".to_owned())
+            Err("it belongs to another run: it has h = 0.1, but this run has h = 0.2".to_owned())
         );
         let [one, other] = [0.0, 1.0].map(|last| {
             let mut list = vec![0.5; 1000];

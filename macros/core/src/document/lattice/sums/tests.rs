@@ -13,7 +13,7 @@ fn items(model: &str) -> Vec<String> {
     let end = text.find("Certificate\n").unwrap();
     let lines = text[begin..end].lines();
     lines
-        .filter(|l| l.starts_with("- ") || l.starts_with("What else"))
+        .filter(|l| l.starts_with("- ") || l.starts_with("Other invariants"))
         .map(str::to_owned)
         .collect()
 }
@@ -61,7 +61,10 @@ fn parts_over_some_of_the_sites_are_told_together() {
         .iter()
         .filter(|l| l.contains("∑_{i=0}^N p_{i,k} (exact"));
     assert_eq!(sums.count(), 1, "{list:#?}");
-    assert!(list.iter().any(|l| l.starts_with("What else")), "{list:#?}");
+    assert!(
+        list.iter().any(|l| l.starts_with("Other invariants")),
+        "{list:#?}"
+    );
     assert!(!list.iter().any(|l| l.contains("p_{0,k}")), "{list:#?}");
 }
 
