@@ -230,7 +230,11 @@ fn the_card_of_a_long_held_line_tells_multipliers_and_constraints() {
         let held = names.iter().filter(|n| n.starts_with("constraint"));
         assert_eq!(held.count(), 2, "{names:?}");
         assert!(!card.summary.contains("_2, constraint"), "{}", card.summary);
-        assert!(card.summary.contains("loops over them"), "{}", card.summary);
+        assert!(
+            card.summary.contains("loops over the sites"),
+            "{}",
+            card.summary
+        );
     }
 }
 

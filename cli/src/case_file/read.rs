@@ -77,7 +77,7 @@ pub(crate) fn read_of(
         known.push(functions);
     }
     let means_h = |key: &str| {
-        let is_step = ["dt", "step", "step_size", "timestep", "time_step"].contains(&key);
+        let is_step = ["dt", "step_size", "timestep", "time_step"].contains(&key);
         is_step.then(|| "; the step size is `h`".to_owned())
     };
     file.known_keys(top, &known, "at the top level", &means_h)?;

@@ -149,7 +149,7 @@ fn a_model_without_other_methods_is_compared_with_itself() {
     done.ended(0).says_nothing();
     done.prints([
         "reference extrapolated: this model has no hand-written equations",
-        "this tests the accuracy of the step, not the equations",
+        "It tests the accuracy of the step, not the equations",
         "\ngenerated ",
         "\nextrapolated ",
     ]);

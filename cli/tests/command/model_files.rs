@@ -190,7 +190,7 @@ fn a_comparison_of_a_file_says_what_it_measures_against() {
         ],
     )
     .succeeds();
-    let said = "this model has no hand-written equations; the interpreted stepper with steps";
+    let said = "this model has no hand-written equations; the reference is the interpreted stepper with steps";
     done.prints(said);
     done.prints("\ninterpreted ");
     let read = |name: &str| std::fs::read_to_string(format!("{out}/{name}")).expect(name);

@@ -185,7 +185,7 @@ fn a_checkpoint_that_is_damaged_or_of_another_run_is_refused() {
     let out = folder.path("out");
     ended_by("-TERM", long(&out, "samples.bin", ""));
     let before = contents(&out);
-    run(LONG, &out, "--resume --h 0.01").refuses("h = 0.1 there, h = 0.01 here");
+    run(LONG, &out, "--resume --h 0.01").refuses("it has h = 0.1, but this run has h = 0.01");
     assert!(before == contents(&out), "nothing was changed");
     for (file, says) in [
         ("checkpoint", "its checksum"),
