@@ -54,7 +54,7 @@ fn every_solver_gives_the_same_motion() {
                     Err(OpenError::Start(StartError::Refused(StepCause::MoserVeselov(e))))
                         if e.ratio < 1.0 =>
                     {
-                        assert!(e.to_string().ends_with("take kappa"), "{e}");
+                        assert!(e.to_string().ends_with("use kappa"), "{e}");
                         assert!(matches!(method, Method::Sign | Method::Schur), "{e}");
                         println!("{} {} {name}: {e}", card.kebab, case.name);
                         refused += 1;
