@@ -66,9 +66,9 @@ def test_a_step_size_keeps_the_time():
     ("vary", "text"),
     [
         ({}, "at least one name"),
-        ({"chi.w": [1]}, "no component"),
-        ({"chi.4": [1]}, "no component"),
-        ({"R.12": [1]}, "no rotation"),
+        ({"chi.w": [1]}, "does not name a component"),
+        ({"chi.4": [1]}, "does not name a component"),
+        ({"R.12": [1]}, "would not be a rotation"),
         ({"nothing.x": [1]}, "nothing"),
         ({"nothing": [1]}, "nothing"),
         ({"chi": 3}, "sequence"),
