@@ -9,7 +9,7 @@ use crate::solvers::newton::parts::{Aside, Squares};
 use crate::solvers::newton::stage::{less, times};
 
 impl<C: Chart> AnyNewton<'_, C> {
-    /// Whether the solution is the principal root: see [`Newton::is_principal`](super::Newton::is_principal).
+    /// Whether the solution is the principal root: see [`Newton::is_principal`](super::super::Newton::is_principal).
     #[must_use]
     pub fn is_principal(
         &self,
@@ -20,7 +20,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         self.follows(solution, at_rest, residual) || self.holds(solution)
     }
 
-    /// Like `is_principal`, for all unknowns: see [`Newton::is_part_of_principal`](super::Newton::is_part_of_principal).
+    /// Like `is_principal`, for all unknowns: see [`Newton::is_part_of_principal`](super::super::Newton::is_part_of_principal).
     pub fn is_part_of_principal(
         &mut self,
         solution: &C::Element,
