@@ -2,7 +2,7 @@
 //! Takes any value that changes from step to step. Each type lists its parts once, in one order for both directions,
 //! so that every saved part is also restored.
 
-use crate::linalg::{Dense, Reals};
+use crate::linalg::Dense;
 use nalgebra::SMatrix;
 
 /// No list of numbers is longer: the square of the largest number of coordinates is far smaller.
@@ -170,14 +170,6 @@ impl<X: Saved, const R: usize, const C: usize> Saved for SMatrix<X, R, C> {
 
 /// Numbers of which there may be more or fewer than before.
 impl Saved for Vec<f64> {
-    fn words(&mut self, words: &mut Words) {
-        let count = words.count(self.len(), LONGEST);
-        self.resize(count, 0.0);
-        self.iter_mut().for_each(|x| x.words(words));
-    }
-}
-
-impl Saved for Reals {
     fn words(&mut self, words: &mut Words) {
         let count = words.count(self.len(), LONGEST);
         self.resize(count, 0.0);

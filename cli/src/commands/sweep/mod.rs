@@ -56,12 +56,10 @@ pub(crate) fn sweep(
     let entry = &resolved.entry;
     let plan = Plan::new(&resolved, matches)?;
     let card = &entry.card_of(&plan.case);
+    let text = resolved.case.text().map(|case| case.text.as_str());
     let axes = matches.get_many::<String>("vary").into_iter().flatten();
     let axes: Vec<Axis> = axes
-        .map(|axis| {
-            let text = resolved.case.text().map(|case| case.text.as_str());
-            Axis::read(axis, card, &plan.motion, text)
-        })
+        .map(|axis| Axis::read(axis, card, &plan.motion, text))
         .collect::<Result<_, _>>()?;
     let mut pairs = axes
         .iter()
@@ -81,7 +79,6 @@ pub(crate) fn sweep(
     }
     for set in matches.get_many::<String>("set").into_iter().flatten() {
         // A list or a table is not an axis: an axis may vary one of its components.
-        let text = resolved.case.text().map(|case| case.text.as_str());
         let Ok(fixed) = Axis::read(set, card, &plan.motion, text) else {
             continue;
         };

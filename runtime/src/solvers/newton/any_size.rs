@@ -46,7 +46,7 @@ pub struct AnySearch<C: Chart> {
     /// Whether this is a trial step.
     tries: bool,
     /// The tangent of all equations at rest and the units of its parts, if some unknowns are eliminated.
-    whole: Option<(DenseFactors, Reals)>,
+    whole: Option<(DenseFactors, Vec<f64>)>,
     factors: DenseFactors,
     unit: f64,
     age: u32,

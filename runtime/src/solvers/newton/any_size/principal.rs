@@ -33,7 +33,7 @@ impl<C: Chart> AnyNewton<'_, C> {
             let units = chart.parts().units(&|i, j| tangent.at(i, j), Aside::OfStep);
             let mut factors = DenseFactors::none(size, true);
             factors.set(&tangent);
-            (factors, units)
+            (factors, units.into_vec())
         });
         let correction = factors.solve(at_rest);
         correction.is_some_and(|x| comes_near(chart, &x, solution, units, &|_| 0.0))

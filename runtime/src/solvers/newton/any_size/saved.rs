@@ -1,7 +1,7 @@
 //! Saves and restores the memory of a search of any size.
 
 use super::{AnySearch, Chart};
-use crate::linalg::{DenseFactors, Reals};
+use crate::linalg::DenseFactors;
 use crate::saved::{Saved, Words, optional};
 use crate::solvers::newton::REMEMBERED;
 
@@ -40,7 +40,7 @@ impl<C: Chart> AnySearch<C> {
         lengths.words(words);
         weighed.words(words);
         optional(whole, words, || {
-            Some((DenseFactors::none(0, true), Reals::new()))
+            Some((DenseFactors::none(0, true), Vec::new()))
         });
         units.words(words);
         noise.words(words);
