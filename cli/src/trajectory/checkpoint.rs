@@ -25,7 +25,7 @@ pub(crate) const UNFINISHED: &str = "checkpoint.new";
 const MAGIC: &str = "clebsch checkpoint ";
 
 /// The version that is written, and the only one that is read.
-const VERSION: &str = "3";
+const VERSION: &str = "4";
 
 /// Bytes written at once.
 const BUFFER: usize = 1 << 18;

@@ -190,17 +190,6 @@ impl Kind {
         );
     }
 
-    /// The length of each part: see [`Group::extents`].
-    pub fn extents(self, of: &[f64], out: &mut [f64]) {
-        of_type!(
-            self,
-            G => Group::extents(&read::<G>(of), out),
-            matrix => if let Some(first) = out.first_mut() {
-                *first = matrix.extent(of);
-            }
-        );
-    }
-
     /// The squares of lengths of an element and of its distance from coordinates: see [`Group::compared`].
     pub fn compared(self, of: &[f64], xi: &[f64], out: &mut [[f64; 2]]) {
         of_type!(
@@ -313,21 +302,6 @@ impl Matrix {
                         .times(&inverse.plus(&inverse).minus(&one))
                         .orthonormalised(),
                     None => Dense::unknown(a.rows, a.cols),
-                }
-            }
-        }
-    }
-
-    fn extent(self, a: &[f64]) -> f64 {
-        match self.0 {
-            Kept::Linear | Kept::Field => self.squares(a).sqrt(),
-            Kept::Orthogonal => {
-                let eighth = self.squares(a) * 0.125;
-                let square = eighth * 4.0 / (1.0 - eighth);
-                if eighth < 1.0 {
-                    square.sqrt()
-                } else {
-                    f64::INFINITY
                 }
             }
         }

@@ -195,10 +195,6 @@ impl Chart for Shape {
         out
     }
 
-    fn extents(&self, of: &Reals, out: &mut [f64]) {
-        self.with_each(of, out, |kind, own, results| kind.extents(own, results));
-    }
-
     fn compared(&self, of: &Reals, xi: &[f64], out: &mut [[f64; 2]]) {
         let mut coordinates = self.coordinates(xi);
         self.with_each(of, out, |kind, own, results| {

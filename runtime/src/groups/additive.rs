@@ -120,13 +120,6 @@ impl<const R: usize, const C: usize, T: Real> Group<T> for Additive<R, C, T> {
         true
     }
 
-    #[inline]
-    fn extents(&self, out: &mut [f64]) {
-        if let Some(first) = out.first_mut() {
-            *first = self.square().greatest().sqrt();
-        }
-    }
-
     #[inline(always)]
     fn compared(&self, xi: &[T], out: &mut [[T; 2]]) {
         if let Some(first) = out.first_mut() {

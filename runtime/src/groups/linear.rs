@@ -163,13 +163,6 @@ impl<const N: usize, T: Real> Group<T> for Linear<N, T> {
         true
     }
 
-    #[inline]
-    fn extents(&self, out: &mut [f64]) {
-        if let Some(first) = out.first_mut() {
-            *first = self.off_identity().greatest().sqrt();
-        }
-    }
-
     #[inline(always)]
     fn compared(&self, xi: &[T], out: &mut [[T; 2]]) {
         if let Some(first) = out.first_mut() {

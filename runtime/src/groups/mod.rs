@@ -131,17 +131,12 @@ pub trait Group<T>: Copy {
         false
     }
 
-    /// Bounds of the lengths of the coordinates `xi` of the element seen from the neutral one,
-    /// `identity().retract(xi)`, part by part, the largest of all lanes; infinite or NaN where
-    /// there are none.
-    fn extents(&self, out: &mut [f64]);
-
     /// The squares of the lengths of the coordinates `x` of the element seen from the neutral one,
     /// `identity().retract(x)`, and of their distances from `xi`, part by part, in every lane. They are infinite or NaN
     /// if such coordinates do not exist. Missing coordinates of `xi` count as zero.
     fn compared(&self, xi: &[T], out: &mut [[T; 2]]);
 
-    /// Whether these bounds do not exceed `reach`.
+    /// Whether the length of each part is at most its entry of `reach`, in every lane.
     fn is_within(&self, reach: &[f64]) -> bool;
 }
 

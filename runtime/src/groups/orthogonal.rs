@@ -152,18 +152,6 @@ impl<const N: usize, T: Real> Group<T> for Orthogonal<N, T> {
         largest(gram.iter().map(|x| x.magnitude()))
     }
 
-    /// With the angles `a` of its planes, `|xi|^2 = 4 sum tan^2(a/2)` is bounded by the entries of
-    /// `R - 1`, of which the squares add up to `8 sum sin^2(a/2)`.
-    #[inline]
-    fn extents(&self, out: &mut [f64]) {
-        let eighth = self.off_identity();
-        let square = (eighth * T::from_f64(4.0) / (T::one() - eighth)).greatest();
-        if let Some(first) = out.first_mut() {
-            let inside = eighth.greatest() < 1.0;
-            *first = if inside { square.sqrt() } else { f64::INFINITY };
-        }
-    }
-
     /// With the planes' angles `a`, `R (1 - Y/2) - (1 + Y/2)` is `(R + 1)(X - Y)/2`, where `X` and `Y` have the coordinates
     /// compared: `cos(a/2)` times as large as the difference at least.
     #[inline]

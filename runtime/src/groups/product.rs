@@ -79,13 +79,6 @@ impl<T, G: Group<T>, const COUNT: usize> Group<T> for [G; COUNT] {
         G::is_open(part % G::PARTS.max(1))
     }
 
-    #[inline]
-    fn extents(&self, out: &mut [f64]) {
-        for (factor, own) in self.iter().zip(out.chunks_mut(G::PARTS.max(1))) {
-            factor.extents(own);
-        }
-    }
-
     #[inline(always)]
     fn compared(&self, xi: &[T], out: &mut [[T; 2]]) {
         for (i, (factor, own)) in (self.iter().zip(out.chunks_mut(G::PARTS.max(1)))).enumerate() {
@@ -206,17 +199,6 @@ macro_rules! product_of {
                 )+
                 let _ = rest;
                 false
-            }
-
-            #[inline]
-            fn extents(&self, out: &mut [f64]) {
-                let mut rest = out;
-                $(
-                    let (own, others) = rest.split_at_mut($group::PARTS.min(rest.len()));
-                    self.$index.extents(own);
-                    rest = others;
-                )+
-                let _ = rest;
             }
 
             #[inline(always)]

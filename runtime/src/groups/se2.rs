@@ -167,15 +167,6 @@ impl<T: Real> Group<T> for PlaneMotion<T> {
         part == 0
     }
 
-    #[inline]
-    fn extents(&self, out: &mut [f64]) {
-        self.rotation.extents(out);
-        let x = &self.translation;
-        if let Some(second) = out.get_mut(1) {
-            *second = x.dot(x).greatest().sqrt();
-        }
-    }
-
     #[inline(always)]
     fn compared(&self, xi: &[T], out: &mut [[T; 2]]) {
         let (angular, linear) = xi.split_at(1.min(xi.len()));

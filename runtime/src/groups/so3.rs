@@ -420,17 +420,6 @@ impl<T: Real> Group<T> for Rotation<T> {
         (norm_squared(self.q) - T::one()).magnitude()
     }
 
-    /// Twice the tangent of half the angle.
-    #[inline]
-    fn extents(&self, out: &mut [f64]) {
-        let [w, x, y, z] = self.q;
-        let four = T::from_f64(4.0);
-        let length = (four * (x * x + y * y + z * z) / (w * w)).greatest();
-        if let Some(first) = out.first_mut() {
-            *first = length.sqrt();
-        }
-    }
-
     #[inline(always)]
     fn compared(&self, xi: &[T], out: &mut [[T; 2]]) {
         let [w, x, y, z] = self.q;

@@ -125,16 +125,6 @@ impl<T: Real> Group<T> for UnitQuaternion<T> {
         Group::<T>::distance_from_group(&self.0)
     }
 
-    /// As for the rotation; infinite in the half of the group around -1.
-    #[inline]
-    fn extents(&self, out: &mut [f64]) {
-        self.0.extents(out);
-        let near = self.real().exceeds(T::zero());
-        if let (Some(first), false) = (out.first_mut(), near) {
-            *first = f64::INFINITY;
-        }
-    }
-
     #[inline(always)]
     fn compared(&self, xi: &[T], out: &mut [[T; 2]]) {
         self.0.compared(xi, out);

@@ -20,7 +20,7 @@ pub use alone::solve;
 pub use any_size::{AnyNewton, AnySearch, Chart, Lane, Settled};
 pub use failure::{NewtonError, NewtonFailure};
 pub use parts::Parts;
-use parts::with_kinds;
+use parts::{squares, with_kinds};
 pub use principal::{Equations, Fold};
 pub use reduced::Found;
 pub use verdict::{Anchor, Numbers, Verdict};
@@ -104,6 +104,8 @@ pub struct Search<T, G, const D: usize, W = G, const E: usize = D> {
     weights: SVector<T, D>,
     /// For each coordinate, the inverse length of its part of the velocity.
     lengths: SVector<T, D>,
+    /// For each part, the square of the length below which `weights` and `lengths` are too old.
+    shortest: [T; D],
     /// The number of steps since `weights` and `lengths` were computed.
     weighed: u32,
     /// The unit of length of each part, and the rounding error of its length.
@@ -149,6 +151,7 @@ where
             next: 0,
             weights: SVector::zeros(),
             lengths: SVector::zeros(),
+            shortest: [T::zero(); D],
             weighed: OLDEST_SCALE,
             units: [1.0; D],
             noise: [0.0; D],
@@ -235,6 +238,14 @@ where
             iteration: 0,
             found: None,
         }
+    }
+
+    /// Whether some part of the velocity is much shorter than when the sizes of the terms were computed.
+    #[inline(always)]
+    fn is_shorter(&self, velocity: &G) -> bool {
+        let squares = squares::<T, G, D>(velocity);
+        let mut parts = 0..G::PARTS.min(D);
+        parts.any(|b| !(self.shortest[b] - squares[b]).nowhere_positive())
     }
 
     /// The starting element of the later attempts.
@@ -394,8 +405,8 @@ where
             }
             let search = &*self.search;
             let unit = search.unit.lane(lane).abs();
-            let mut lengths = [0.0; D];
-            self.trial.extents(&mut lengths);
+            let squares = squares::<T, G, D>(&self.trial);
+            let lengths = squares.map(|x| x.lane(lane).sqrt());
             let tangent = scale::Tangent {
                 entry: &|i, j| search.factors.entry(i, j, lane) / unit,
                 part_of: &G::part_of,
@@ -404,12 +415,17 @@ where
             tangent.raise(&mut scales.as_mut_slice()[..G::DIMENSION.min(D)]);
             let mut inverses = [0.0; D];
             tangent.inverse_lengths(&mut inverses[..G::DIMENSION.min(D)]);
+            let mut shortest = [0.0; D];
+            tangent.shortest(&inverses[..G::DIMENSION.min(D)], &mut shortest);
             let search = &mut *self.search;
             for (weight, scale) in search.weights.iter_mut().zip(&scales) {
                 weight.set_lane(lane, T::One::from_f64((1.0 / scale).min(f64::MAX)));
             }
             for (own, inverse) in search.lengths.iter_mut().zip(inverses) {
                 own.set_lane(lane, T::One::from_f64(inverse));
+            }
+            for (own, length) in search.shortest.iter_mut().zip(shortest) {
+                own.set_lane(lane, T::One::from_f64(length * length));
             }
         }
         self.search.measured = false;
@@ -491,7 +507,7 @@ where
     #[inline(always)]
     fn correct_by<const FROM_LEFT: bool>(&mut self) -> Progress<G> {
         if self.polished() {
-            return self.solved(self.iteration);
+            return self.solved_unless_outdated();
         }
         let size = self.size;
         let right = self.residual * self.search.unit;
@@ -507,13 +523,13 @@ where
         };
         let next = self.corrections.next::<T>(self.seen(), moved, decrement);
         if next == Next::End {
-            return self.solved(self.iteration);
+            return self.solved_unless_outdated();
         }
         self.trial = match FROM_LEFT {
             true => self.trial.retract_from_left(step.as_slice()),
             false => self.trial.retract(step.as_slice()),
         };
-        if next == Next::CorrectAndEnd {
+        if next == Next::CorrectAndEnd && !self.is_outdated() {
             return self.solved(self.iteration + 1);
         }
         self.previous = size;
@@ -525,6 +541,25 @@ where
             return self.failed();
         }
         Progress::Continue
+    }
+
+    /// Whether the scales are too large for this trial: they were computed for a longer velocity. They must be computed
+    /// anew before the iteration ends.
+    #[inline(always)]
+    fn is_outdated(&mut self) -> bool {
+        let outdated = self.search.is_shorter(&self.trial);
+        if outdated {
+            self.search.weighed = OLDEST_SCALE;
+        }
+        outdated
+    }
+
+    #[inline(always)]
+    fn solved_unless_outdated(&mut self) -> Progress<G> {
+        match self.is_outdated() {
+            true => Progress::Continue,
+            false => self.solved(self.iteration),
+        }
     }
 
     #[inline(always)]

@@ -38,6 +38,7 @@ pub struct AnySearch<C: Chart> {
     next: u64,
     weights: Vec<f64>,
     lengths: Vec<f64>,
+    shortest: Vec<f64>,
     weighed: u32,
     units: Vec<f64>,
     noise: Vec<f64>,
@@ -71,6 +72,7 @@ impl<C: Chart> AnySearch<C> {
             next: 0,
             weights: vec![0.0; dimension],
             lengths: vec![0.0; dimension],
+            shortest: Vec::new(),
             weighed: OLDEST_SCALE,
             units: Vec::new(),
             noise: Vec::new(),
@@ -94,6 +96,7 @@ impl<C: Chart> AnySearch<C> {
         self.next = other.next;
         self.weights.clone_from(&other.weights);
         self.lengths.clone_from(&other.lengths);
+        self.shortest.clone_from(&other.shortest);
         self.weighed = other.weighed;
         self.units.clone_from(&other.units);
         self.noise.clone_from(&other.noise);
@@ -236,8 +239,7 @@ impl<C: Chart> AnyNewton<'_, C> {
             scales[i] = scales[i].max(LEAST_SHARE * most);
         }
         let (factors, unit) = (&self.search.factors, self.search.unit.abs());
-        let mut lengths = vec![0.0; parts.count()];
-        self.chart.extents(self.trial(), &mut lengths);
+        let lengths = self.chart.lengths(self.trial());
         let tangent = Tangent {
             entry: &|i, j| factors.entry(i, j) / unit,
             part_of: &|i| parts.part_of(i),
@@ -246,10 +248,13 @@ impl<C: Chart> AnyNewton<'_, C> {
         tangent.raise(&mut scales);
         let mut inverses = vec![0.0; scales.len()];
         tangent.inverse_lengths(&mut inverses);
+        let mut shortest = vec![0.0; parts.count()];
+        tangent.shortest(&inverses, &mut shortest);
         for (weight, scale) in self.search.weights.iter_mut().zip(&scales) {
             *weight = (1.0 / scale).min(f64::MAX);
         }
         self.search.lengths = inverses;
+        self.search.shortest = shortest.iter().map(|x| x * x).collect();
         self.search.measured = false;
         self.search.weighed = 0;
     }
@@ -350,6 +355,7 @@ impl<C: Chart> AnyNewton<'_, C> {
     pub fn correct_part(&mut self, element: C::Element, from_left: bool) -> Progress<C::Element> {
         self.has_moved = false;
         let found = match self.polished() {
+            true if self.is_outdated() => return Progress::Continue,
             true => Some(self.iteration),
             false => self.found,
         };
@@ -373,7 +379,7 @@ impl<C: Chart> AnyNewton<'_, C> {
     pub fn correct(&mut self, from_left: bool) -> Progress<C::Element> {
         self.has_moved = false;
         if self.polished() {
-            return self.solved(self.iteration);
+            return self.solved_unless_outdated();
         }
         let size = self.size;
         let residual = &self.search.work.residual;
@@ -389,7 +395,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         };
         let next = self.corrections.next::<f64>(self.seen(), moved, decrement);
         if next == Next::End {
-            return self.solved(self.iteration);
+            return self.solved_unless_outdated();
         }
         let Work { trial, moved, .. } = &mut self.search.work;
         match from_left {
@@ -398,7 +404,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         }
         core::mem::swap(trial, moved);
         self.has_moved = true;
-        if next == Next::CorrectAndEnd {
+        if next == Next::CorrectAndEnd && !self.is_outdated() {
             return self.solved(self.iteration + 1);
         }
         self.previous = size;
@@ -410,6 +416,24 @@ impl<C: Chart> AnyNewton<'_, C> {
             return self.failed();
         }
         Progress::Continue
+    }
+
+    /// Whether the scales were computed for a longer velocity and must be computed anew before the iteration ends.
+    fn is_outdated(&mut self) -> bool {
+        let squares = self.chart.squares(self.trial());
+        let mut parts = self.search.shortest.iter().zip(&squares);
+        let outdated = parts.any(|(shortest, [square, _])| !(shortest - square <= 0.0));
+        if outdated {
+            self.search.weighed = OLDEST_SCALE;
+        }
+        outdated
+    }
+
+    fn solved_unless_outdated(&mut self) -> Progress<C::Element> {
+        match self.is_outdated() {
+            true => Progress::Continue,
+            false => self.solved(self.iteration),
+        }
     }
 
     fn solved(&self, iterations: usize) -> Progress<C::Element> {

@@ -48,6 +48,14 @@ impl Aside {
     }
 }
 
+/// The square of the length of each part of a velocity, in every lane: see [`Group::compared`].
+#[inline(always)]
+pub(super) fn squares<T: Real, G: Group<T>, const D: usize>(velocity: &G) -> [T; D] {
+    let mut both = [[T::zero(); 2]; D];
+    velocity.compared(&[], &mut both);
+    both.map(|[square, _]| square)
+}
+
 /// For each part, the square of its displacement and the square of the distance that a correction leaves.
 pub(super) type Squares = smallvec::SmallVec<[[f64; 2]; 12]>;
 
@@ -328,16 +336,15 @@ pub(super) fn comes_near<T: Real, G: Group<T>, const D: usize>(
 /// The distance of the solution relative to the length of the correction: the maximum over the parts without a natural
 /// scale, at least 1.
 fn reach<T: Real, G: Group<T>, const D: usize>(correction: &SVector<T, D>, solution: &G) -> f64 {
-    let mut lengths = [0.0; D];
-    solution.extents(&mut lengths);
-    let mut squares = [0.0; D];
+    let ways = squares::<T, G, D>(solution);
+    let mut corrected = [0.0; D];
     for k in 0..G::DIMENSION.min(D) {
-        if let Some(square) = squares.get_mut(G::part_of(k)) {
+        if let Some(square) = corrected.get_mut(G::part_of(k)) {
             *square += (correction[k] * correction[k]).greatest();
         }
     }
     let open = (0..G::PARTS.min(D)).filter(|b| G::is_open(*b));
-    let shares = open.map(|b| lengths[b] / squares[b].sqrt());
+    let shares = open.map(|b| ways[b].greatest().sqrt() / corrected[b].sqrt());
     shares.filter(|x| x.is_finite()).fold(1.0, larger)
 }
 

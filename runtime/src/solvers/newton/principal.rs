@@ -12,7 +12,7 @@
 //!
 //! Takes the equations of one lane; gives the root, or how far the curve could be followed.
 
-use super::parts::Parts;
+use super::parts::{Parts, squares};
 use super::stage::{AIM, Ended, Stage, ended, ratio, times};
 use crate::groups::Group;
 use crate::linalg::{Dense, Reals};
@@ -225,9 +225,9 @@ impl<G: Group<f64>, const D: usize> Curve for OnGroup<'_, G, D> {
     }
 
     fn lengths(&self, from: &G, to: &G) -> Reals {
-        let mut lengths = Reals::from_elem(0.0, self.parts.count());
-        from.inverse().compose(to).extents(&mut lengths);
-        lengths
+        let squares = squares::<f64, G, D>(&from.inverse().compose(to));
+        let count = self.parts.count();
+        squares.iter().take(count).map(|x| x.sqrt()).collect()
     }
 
     fn residual(&self, at: &G) -> Reals {

@@ -134,6 +134,7 @@ where
         correct: impl FnOnce(&mut Self) -> Progress<G>,
     ) -> Progress<W> {
         let found = match self.polished() {
+            true if self.is_outdated() => return Progress::Continue,
             true => Some(self.iteration),
             false => self.found,
         };

@@ -13,6 +13,7 @@ impl<G: Group<f64> + Saved, const D: usize, W, const E: usize> Saved for Search<
             next,
             weights,
             lengths,
+            shortest,
             weighed,
             units,
             noise,
@@ -32,6 +33,7 @@ impl<G: Group<f64> + Saved, const D: usize, W, const E: usize> Saved for Search<
         next.words(words);
         weights.words(words);
         lengths.words(words);
+        shortest.words(words);
         weighed.words(words);
         whole.words(words);
         units.words(words);

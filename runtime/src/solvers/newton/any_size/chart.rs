@@ -4,6 +4,7 @@
 use crate::groups::Coordinate;
 use crate::linalg::{Dense, Reals};
 use crate::solvers::newton::Parts;
+use crate::solvers::newton::parts::Squares;
 use crate::solvers::newton::principal::Curve;
 use core::fmt::Debug;
 
@@ -36,11 +37,21 @@ pub trait Chart {
     /// `from^-1 . to`.
     fn between(&self, from: &Self::Element, to: &Self::Element) -> Self::Element;
 
-    /// See [`Group::extents`](crate::groups::Group::extents).
-    fn extents(&self, of: &Self::Element, out: &mut [f64]);
-
     /// See [`Group::compared`](crate::groups::Group::compared).
     fn compared(&self, of: &Self::Element, xi: &[f64], out: &mut [[f64; 2]]);
+
+    /// The square of the length of each part of a velocity, twice.
+    fn squares(&self, of: &Self::Element) -> Squares {
+        let mut squares = Squares::from_elem([0.0; 2], self.parts().count());
+        self.compared(of, &[], &mut squares);
+        squares
+    }
+
+    /// The length of each part of a velocity.
+    fn lengths(&self, of: &Self::Element) -> Reals {
+        let squares = self.squares(of);
+        squares.iter().map(|[square, _]| square.sqrt()).collect()
+    }
 
     /// See [`Group::is_within`](crate::groups::Group::is_within).
     fn is_within(&self, of: &Self::Element, reach: &[f64]) -> bool;
@@ -91,9 +102,7 @@ impl<C: Chart> Curve for WithNoise<'_, '_, C> {
 
     fn lengths(&self, from: &C::Element, to: &C::Element) -> Reals {
         let chart = self.lane.chart;
-        let mut lengths = Reals::from_elem(0.0, chart.parts().count());
-        chart.extents(&chart.between(from, to), &mut lengths);
-        lengths
+        chart.lengths(&chart.between(from, to))
     }
 
     fn residual(&self, at: &C::Element) -> Reals {

@@ -95,8 +95,7 @@ impl<C: Chart> AnyNewton<'_, C> {
                         }))
             })
         };
-        let mut lengths = Reals::from_elem(0.0, parts.count());
-        chart.extents(solution, &mut lengths);
+        let lengths = chart.lengths(solution);
         let shares = lengths.iter().zip(&ways).zip(&parts.open);
         let shares = shares
             .filter(|(_, open)| **open)

@@ -18,6 +18,7 @@ impl<C: Chart> AnySearch<C> {
             next,
             weights,
             lengths,
+            shortest,
             weighed,
             units,
             noise,
@@ -38,6 +39,7 @@ impl<C: Chart> AnySearch<C> {
         next.words(words);
         weights.words(words);
         lengths.words(words);
+        shortest.words(words);
         weighed.words(words);
         optional(whole, words, || {
             Some((DenseFactors::none(0, true), Vec::new()))
