@@ -153,7 +153,7 @@ impl<T: Real> BodyInQuadraticField<T> {
     BodyInQuadraticFieldState { Λ, momentum, Γ } at node,
     BodyInQuadraticFieldWorkspace { h, method, edge, here },
     forced { Λ, momentum, Γ } solver symmetric judged { 3 }
-    ("C is constant and symmetric: explicit up to the root of one quartic per step")
+    ("explicit up to the root of one quartic per step, because the left factor is symmetric and constant")
     observables { state.Λ, state.body_momentum, state.spatial_momentum, Γ }
     invariants { energy, momentum_Gamma, Gamma_squared }
 }
@@ -264,7 +264,7 @@ impl BodyInQuadraticField<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J Ω_k)/h - ¼ h Γ_k·(K Γ_k) - ¼ h Γ_{k+1}·(K Γ_{k+1})\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
-        solver: "Moser-Veselov: C is constant and symmetric: explicit up to the root of one quartic per step",
+        solver: "Moser-Veselov: explicit up to the root of one quartic per step, because the left factor is symmetric and constant",
         parameters: &[
             Kind::SecondMoments.field("J", [3, 3], "Poinsot (second-moment) matrix"),
             Kind::Symmetric

@@ -146,7 +146,7 @@ impl<T: Real> BodyInTwoFields<T> {
     BodyInTwoFieldsState { Λ, momentum } at node,
     BodyInTwoFieldsWorkspace { h, method, edge, here },
     forced { Λ, momentum } solver symmetric judged { 3 }
-    ("C is constant and symmetric: explicit up to the root of one quartic per step")
+    ("explicit up to the root of one quartic per step, because the left factor is symmetric and constant")
     start { Λ, momentum = body_momentum.to_space }
     observables { state.Λ, state.body_momentum, state.spatial_momentum, Γ, B }
     invariants { energy, Gamma_squared, Gamma_B, B_squared }
@@ -263,7 +263,7 @@ impl BodyInTwoFields<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J Ω_k)/h - ½ h gU·Γ_k + ½ h p·B_k - ½ h gU·Γ_{k+1} + ½ h p·B_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, Gamma_squared, Gamma_B, B_squared\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
-        solver: "Moser-Veselov: C is constant and symmetric: explicit up to the root of one quartic per step",
+        solver: "Moser-Veselov: explicit up to the root of one quartic per step, because the left factor is symmetric and constant",
         parameters: &[
             Kind::SecondMoments.field("J", [3, 3], "Poinsot (second-moment) matrix"),
             Kind::Vector

@@ -103,7 +103,7 @@ impl<const N: usize, T: Real> BodyN<N, T> {
         let method = choice.unwrap_or(self.method);
         Ok(BodyNWorkspace { h, method })
     }
-    /// One step, in place. Method: C is constant: Newton's method on the Lie algebra.
+    /// One step, in place. Method: Newton's method on the Lie algebra, because the left factor is constant.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -286,7 +286,7 @@ impl<const N: usize> BodyN<N, f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(Cᵀ Ω_k)/h\nmomentum of Λ        -C Ω_kᵀ/h + Ω_k Cᵀ/h\nRiccati form         exact, C = C\ninvariants           spatial_momentum, momentum_squared, trace_momentum4, trace_momentum6, trace_momentum8\ntime reversal        not symmetric: first order\ncertificate          10 identities proved by normal form",
-        solver: "Moser-Veselov: C is constant: Newton's method on the Lie algebra",
+        solver: "Moser-Veselov: Newton's method on the Lie algebra, because the left factor is constant",
         order: 1,
         reversible: false,
         orders: &[1],

@@ -117,7 +117,7 @@ impl<T: Real> CayleyKleinSpatial<T> {
         let I = state.I;
         QuaternionBody::new("I_k - c Id", I - SMatrix::<T, 3, 3>::identity() * c, c)
     }
-    /// One step, in place. Method: A is carried by the motion, constant in the body, and symmetric, β constant: one equation for one number a step.
+    /// One step, in place. Method: one scalar equation per step, because its coefficients are constant in the body frame.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -296,7 +296,7 @@ impl CayleyKleinSpatial<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -4 c re(w_k)/h + 2 im(w_k)·((I_k - c Id) im(w_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I_k - c Id) im(w_k)/h)) w_kᵀ)\nRiccati form         none; in unit quaternions, A = I_k - c Id, β = c\ninvariants           energy, spatial_momentum, trace_I1, trace_I2, trace_I3\ntime reversal        symmetric: second order\ncertificate          10 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
-        solver: "Unit quaternions: A is carried by the motion, constant in the body, and symmetric, β constant: one equation for one number a step",
+        solver: "Unit quaternions: one scalar equation per step, because its coefficients are constant in the body frame",
         parameters: &[
             Kind::Scalar
                 .field(

@@ -92,7 +92,7 @@ impl<T: Real> CayleyKlein<T> {
             here: *state,
         })
     }
-    /// One step, in place. Method: A is constant and symmetric, β constant: one equation for one number a step.
+    /// One step, in place. Method: one scalar equation per step, because its coefficients are constant.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -238,7 +238,7 @@ impl CayleyKlein<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -4 c re(W_k)/h + 2 im(W_k)·((I - c Id) im(W_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I - c Id) im(W_k)/h)) W_kᵀ)\nRiccati form         none; in unit quaternions, A = I - c Id, β = c\ninvariants           energy, spatial_momentum, momentum_squared\ntime reversal        symmetric: second order\ncertificate          4 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
-        solver: "Unit quaternions: A is constant and symmetric, β constant: one equation for one number a step",
+        solver: "Unit quaternions: one scalar equation per step, because its coefficients are constant",
         parameters: &[
             Kind::Diagonal.field("I", [3, 3], "principal moments of inertia"),
             Kind::Scalar

@@ -83,7 +83,7 @@ impl<T: Real> ChargedParticle<T> {
     ) -> Result<ChargedParticleWorkspace<T>, StartError> {
         Ok(ChargedParticleWorkspace { h })
     }
-    /// One step, in place. Method: the balance is linear: one small linear system.
+    /// One step, in place. Method: one small linear system, because the balance is linear.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -249,7 +249,7 @@ impl ChargedParticle<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  m ΔX_k·ΔX_k/(2 h) + ½ q B·(X_k × ΔX_k) + ½ h q E·X_k + ½ h q E·X_{k+1}\nmomentum of X        m ΔX_k/h + ½ q (B × X_k)\nRiccati form         none; linear, L = m Id/h + ½ q hat(B), R = 1\ninvariants           energy, momentum_across_E\ntime reversal        symmetric: second order\ncertificate          13 identities proved by normal form",
-        solver: "Explicit: the balance is linear: one small linear system",
+        solver: "Explicit: one small linear system, because the balance is linear",
         parameters: &[
             Kind::Scalar.field("m", [1, 1], "mass"),
             Kind::Scalar.field("q", [1, 1], "charge"),

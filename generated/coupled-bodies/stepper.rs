@@ -116,7 +116,7 @@ impl<T: Real> CoupledBodies<T> {
             search: newton::Search::from_rest(),
         })
     }
-    /// One step, in place. Method: several velocities are solved together: Newton on the derived residuals.
+    /// One step, in place. Method: Newton's method on the derived residuals, because the equations of several velocities are coupled.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -654,7 +654,7 @@ impl CoupledBodies<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J₁ Ω_{1,k})/h - tr(J₂ Ω_{2,k})/h - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h\nmomentum of Λ1       -(J₁/h + eps R_k (Ω_{2,k} - Id) d₂ d₁ᵀ/h) Ω_{1,k}ᵀ + Ω_{1,k} (J₁/h + eps d₁ d₂ᵀ (Ω_{2,k}ᵀ - Id) R_kᵀ/h)\nmomentum of Λ2       -(J₂/h + eps R_kᵀ (Ω_{1,k} - Id) d₁ d₂ᵀ/h) Ω_{2,k}ᵀ + Ω_{2,k} (J₂/h + eps d₂ d₁ᵀ (Ω_{1,k}ᵀ - Id) R_k/h)\nRiccati form         coupled, C = J₁; coupled, C = J₂\ninvariants           energy, total_momentum, total_momentum_squared\ntime reversal        symmetric: second order\ncertificate          32 identities proved by normal form",
-        solver: "Newton: several velocities are solved together: Newton on the derived residuals",
+        solver: "Newton's method on the derived residuals, because the equations of several velocities are coupled",
         parameters: &[
             Kind::SecondMoments
                 .field(

@@ -118,7 +118,7 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         }
         Ok(EllipsoidConvectiveWorkspace { h })
     }
-    /// One step, in place. Method: the balance is linear: two small linear systems.
+    /// One step, in place. Method: two small linear systems, because the balance is linear.
     ///
     /// # Errors
     /// If the step cannot be solved, or leaves the domain of the model, with numbers and
@@ -201,7 +201,7 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         let _ = (state, h);
         [determinant(&C)]
     }
-    /// One step, in place. Method: the balance is linear: two small linear systems.
+    /// One step, in place. Method: two small linear systems, because the balance is linear.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -473,7 +473,7 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  tr(C_k (G_k - Id) I₀ (G_kᵀ - Id))/(2 h) - ½ h a tr(C_k) - ¼ h b tr(C_k)² + ¼ h b tr(C_k²) - ½ h c det(C_k) + ¼ h d log(det(C_k)) - ½ h a tr(C_{k+1}) - ¼ h b tr(C_{k+1})² + ¼ h b tr(C_{k+1}²) - ½ h c det(C_{k+1}) + ¼ h d log(det(C_{k+1}))\nmomentum of Q        C_k (G_k - Id) I₀ G_kᵀ/h\nRiccati form         none; linear, L = C_k/h, R = I₀\ninvariants           energy, angular_momentum_C_2, angular_momentum_C_4, spatial_momentum_skew_C0_inverse\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
-        solver: "Explicit: the balance is linear: two small linear systems",
+        solver: "Explicit: two small linear systems, because the balance is linear",
         parameters: &[
             Kind::Symmetric.field("C0", [N, N], "metric of space"),
             Kind::Symmetric

@@ -118,7 +118,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         }
         Ok(EllipsoidSpatialWorkspace { h })
     }
-    /// One step, in place. Method: the balance is linear: two small linear systems.
+    /// One step, in place. Method: two small linear systems, because the balance is linear.
     ///
     /// # Errors
     /// If the step cannot be solved, or leaves the domain of the model, with numbers and
@@ -200,7 +200,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         let _ = (state, h);
         [determinant(&S)]
     }
-    /// One step, in place. Method: the balance is linear: two small linear systems.
+    /// One step, in place. Method: two small linear systems, because the balance is linear.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -471,7 +471,7 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  tr(C₀ (g_k - Id) S_k (g_kᵀ - Id))/(2 h) - ½ h a tr(S_k) - ¼ h b tr(S_k)² + ¼ h b tr(S_k²) - ½ h c det(S_k) + ¼ h d log(det(S_k)) - ½ h a tr(S_{k+1}) - ¼ h b tr(S_{k+1})² + ¼ h b tr(S_{k+1}²) - ½ h c det(S_{k+1}) + ¼ h d log(det(S_{k+1}))\nmomentum of Q        C₀ (g_k - Id) S_k g_kᵀ/h\nRiccati form         none; linear, L = C₀/h, R = S_k\ninvariants           energy, circulation_S_2, circulation_S_4, body_momentum_skew_I0_inverse_right\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
-        solver: "Explicit: the balance is linear: two small linear systems",
+        solver: "Explicit: two small linear systems, because the balance is linear",
         parameters: &[
             Kind::Symmetric.field("C0", [N, N], "metric of space"),
             Kind::Symmetric

@@ -124,7 +124,7 @@ impl<T: Real> FreeBodySpatial<T> {
         let J = state.J;
         Poinsot::new(J).map_err(|e| e.in_field("J_k"))
     }
-    /// One step, in place. Method: C is carried by the motion, constant in the body, and no node term acts, so κ is conserved: solved once, every step explicit.
+    /// One step, in place. Method: explicit up to the root of one quartic at the start, because the left factor is symmetric and constant in the body frame, and no force acts.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -238,7 +238,7 @@ impl<T: Real> FreeBodySpatial<T> {
         let m = state.spatial_momentum().0;
         m.dot(&(J * (J * m)))
     }
-    /// The discrete energy of the edge between two consecutive states, `-tr(ω_k J_k)/h² + tr(J_k)/h²`: constant, since it contains the trace of the left factor times the velocity, whose eigenvalues are half of the eigenvalues of the Lax matrix, selected by the principal solution.
+    /// The discrete energy of the edge between two consecutive states, `-tr(ω_k J_k)/h² + tr(J_k)/h²`: constant, since apart from constants, it is the trace of the left factor times the velocity, which the eigenvalues of the Lax matrix determine.
     pub fn discrete_energy(
         &self,
         h: T,
@@ -271,7 +271,7 @@ impl FreeBodySpatial<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(ω_k J_k)/h\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, spatial_momentum, trace_J1, trace_J2, trace_J3, momentum_quadratic\ntime reversal        symmetric: second order\ncertificate          16 identities proved by normal form",
-        solver: "Moser-Veselov: C is carried by the motion, constant in the body, and no node term acts, so κ is conserved: solved once, every step explicit",
+        solver: "Moser-Veselov: explicit up to the root of one quartic at the start, because the left factor is symmetric and constant in the body frame, and no force acts",
         orders: &[2, 4, 6, 8, 10],
         preprocessed: true,
         parameters: &[],

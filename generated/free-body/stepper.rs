@@ -94,7 +94,7 @@ impl<T: Real> FreeBody<T> {
                 .solved_by(self.method),
         })
     }
-    /// One step, in place. Method: C is constant and no node term acts, so κ is conserved: solved once, every step explicit.
+    /// One step, in place. Method: explicit up to the root of one quartic at the start, because the left factor is symmetric and constant, and no force acts.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -178,7 +178,7 @@ impl<T: Real> FreeBody<T> {
         let μ = state.body_momentum().0;
         μ.dot(&(J * (J * μ)))
     }
-    /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h²`: constant, since it contains the trace of the left factor times the velocity, whose eigenvalues are half of the eigenvalues of the Lax matrix, selected by the principal solution.
+    /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h²`: constant, since apart from constants, it is the trace of the left factor times the velocity, which the eigenvalues of the Lax matrix determine.
     pub fn discrete_energy(
         &self,
         h: T,
@@ -210,7 +210,7 @@ impl FreeBody<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J Ω_k)/h\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, spatial_momentum, momentum_squared, momentum_quadratic\ntime reversal        symmetric: second order\ncertificate          10 identities proved by normal form",
-        solver: "Moser-Veselov: C is constant and no node term acts, so κ is conserved: solved once, every step explicit",
+        solver: "Moser-Veselov: explicit up to the root of one quartic at the start, because the left factor is symmetric and constant, and no force acts",
         orders: &[2, 4, 6, 8, 10],
         preprocessed: true,
         parameters: &[

@@ -175,7 +175,7 @@ impl<T: Real> HeavyTopSpatial<T> {
     HeavyTopSpatialState { Λ, momentum, J, χ } at node,
     HeavyTopSpatialWorkspace { h, method, factor, edge, here },
     forced { Λ, momentum, J, χ } solver symmetric judged { 3 }
-    ("C is carried by the motion, constant in the body, and symmetric: explicit up to the root of one quartic per step",
+    ("explicit up to the root of one quartic per step, because the left factor is symmetric and constant in the body frame",
         of J)
     observables { state.Λ, state.body_momentum, state.spatial_momentum, J, χ }
     invariants { energy, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi,
@@ -332,7 +332,7 @@ impl HeavyTopSpatial<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(ω_k J_k)/h - ½ h w χ_k·z - ½ h w χ_{k+1}·z\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi, chi_J2_chi, momentum_z\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
-        solver: "Moser-Veselov: C is carried by the motion, constant in the body, and symmetric: explicit up to the root of one quartic per step",
+        solver: "Moser-Veselov: explicit up to the root of one quartic per step, because the left factor is symmetric and constant in the body frame",
         parameters: &[
             Kind::Scalar.field("w", [1, 1], "weight"),
             Kind::Vector.field("z", [3, 1], "vertical (up), space frame"),

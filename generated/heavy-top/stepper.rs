@@ -128,7 +128,7 @@ impl<T: Real> HeavyTop<T> {
     HeavyTopState { Λ, momentum } at node,
     HeavyTopWorkspace { h, method, edge, here },
     forced { Λ, momentum } solver symmetric judged { 3 }
-    ("C is constant and symmetric: explicit up to the root of one quartic per step")
+    ("explicit up to the root of one quartic per step, because the left factor is symmetric and constant")
     start { Λ, momentum = body_momentum.to_space }
     observables { state.Λ, state.body_momentum, state.spatial_momentum, Γ }
     invariants { energy, momentum_Gamma, Gamma_squared }
@@ -232,7 +232,7 @@ impl HeavyTop<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J Ω_k)/h - ½ h gU·Γ_k - ½ h gU·Γ_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
-        solver: "Moser-Veselov: C is constant and symmetric: explicit up to the root of one quartic per step",
+        solver: "Moser-Veselov: explicit up to the root of one quartic per step, because the left factor is symmetric and constant",
         parameters: &[
             Kind::SecondMoments.field("J", [3, 3], "Poinsot (second-moment) matrix"),
             Kind::Vector

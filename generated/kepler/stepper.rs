@@ -84,7 +84,7 @@ impl<T: Real> Kepler<T> {
         }
         Ok(KeplerWorkspace { h })
     }
-    /// One step, in place. Method: the balance is linear: one division.
+    /// One step, in place. Method: one division, because the balance is linear.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -246,7 +246,7 @@ impl Kepler<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  m ΔX_k·ΔX_k/(2 h) + h m k/(2 |X_k|) + h m k/(2 |X_{k+1}|)\nmomentum of X        m ΔX_k/h\nRiccati form         none; linear, L = m/h, R = 1\ninvariants           energy, momentum_angular\ntime reversal        symmetric: second order\ncertificate          13 identities proved by normal form",
-        solver: "Explicit: the balance is linear: one division",
+        solver: "Explicit: one division, because the balance is linear",
         parameters: &[
             Kind::Scalar.field("m", [1, 1], "mass of the planet"),
             Kind::Scalar

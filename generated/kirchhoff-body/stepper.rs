@@ -103,7 +103,7 @@ impl<T: Real> KirchhoffBody<T> {
             search: newton::Search::from_rest(),
         })
     }
-    /// One step, in place. Method: the group is not SO(n): Newton on the derived residual.
+    /// One step, in place. Method: Newton's method on the derived residual, because the group is not SO(n).
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -800,7 +800,7 @@ impl KirchhoffBody<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J rot(V_k))/h + ((½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/(2 h) + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h - ½ h b·P_k - ½ h b·P_{k+1}\nmomentum of G        ((pos(V_k) × (M rot(V_k)ᵀ pos(V_k)))/(4 h) + (pos(V_k) × (M pos(V_k)))/(4 h) + (pos(V_k) × (Dᵀ vee(rot(V_k))))/(2 h) - 2 vee(J rot(V_k)ᵀ)/h + vee(rot(V_k) hat(D rot(V_k)ᵀ pos(V_k)))/(2 h) + vee(rot(V_k) hat(D pos(V_k)))/(2 h), M rot(V_k)ᵀ pos(V_k)/(4 h) + M pos(V_k)/(4 h) + Dᵀ vee(rot(V_k))/(2 h) + rot(V_k) M rot(V_k)ᵀ pos(V_k)/(4 h) + rot(V_k) M pos(V_k)/(4 h) + rot(V_k) Dᵀ vee(rot(V_k))/(2 h))\nRiccati form         none: the group is not SO(n)\ninvariants           energy, P_part_squared, momentum_linear_across_P_part_squared, spatial_momentum_linear_across_Z, spatial_momentum_angular_Z\ntime reversal        symmetric: second order\ncertificate          12 identities proved by normal form, 5 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
-        solver: "Newton: the group is not SO(n): Newton on the derived residual",
+        solver: "Newton's method on the derived residual, because the group is not SO(n)",
         parameters: &[
             Kind::SecondMoments
                 .field(

@@ -190,7 +190,7 @@ impl<T: Real> MixedFour<T> {
             search_4: newton::Search::from_rest(),
         })
     }
-    /// One step, in place. Method: block by block: V, C is constant: Moser-Veselov; W, the group is not SO(n): Newton; Y, A is constant and symmetric, β constant: one equation for one number; ΔX, the balance is not linear in ΔX: Newton.
+    /// One step, in place. Method: V by a Moser-Veselov solver, because its left factor is constant; W by Newton's method, because the group is not SO(n); Y by one scalar equation, because its coefficients are constant; ΔX by Newton's method, because the balance is not linear in ΔX.
     ///
     /// # Errors
     /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -1386,7 +1386,7 @@ impl MixedFour<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J V_k)/h - tr(A rot(W_k))/h + M pos(W_k)·pos(W_k)/(2 h) + 2 im(Y_k)·(I im(Y_k))/h + m ΔX_k·ΔX_k/(2 h) + b (ΔX_k·ΔX_k)²/h³ + ½ h m g·X_k - ¼ h k (X_k - R_k p)·(X_k - R_k p) - ¼ h k (pos(G_k) + rot(G_k) s - X_k)·(pos(G_k) + rot(G_k) s - X_k) - ½ h k e·(relative_{R,q,k}ᵀ p) + ½ h m g·X_{k+1} - ¼ h k (X_{k+1} - R_{k+1} p)·(X_{k+1} - R_{k+1} p) - ¼ h k (pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1})·(pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1}) - ½ h k e·(relative_{R,q,k+1}ᵀ p)\nmomentum of R        -J V_kᵀ/h + V_k J/h\nmomentum of G        (-2 vee(A rot(W_k)ᵀ)/h, M pos(W_k)/h)\nmomentum of q        2 im(Y_k quat(I im(Y_k)))/h\nmomentum of X        4 b (ΔX_k·ΔX_k) ΔX_k/h³ + m ΔX_k/h\nRiccati form         exact, C = J; none: the group is not SO(n); none; in unit quaternions, A = I, β = 0; none: the balance is not linear in ΔX\ninvariants           total_momentum_angular_g\ntime reversal        symmetric: second order\ncertificate          51 identities proved by normal form, 10 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
-        solver: "Blocks: block by block: V, C is constant: Moser-Veselov; W, the group is not SO(n): Newton; Y, A is constant and symmetric, β constant: one equation for one number; ΔX, the balance is not linear in ΔX: Newton",
+        solver: "Blocks: V by a Moser-Veselov solver, because its left factor is constant; W by Newton's method, because the group is not SO(n); Y by one scalar equation, because its coefficients are constant; ΔX by Newton's method, because the balance is not linear in ΔX",
         parameters: &[
             Kind::SecondMoments
                 .field(
