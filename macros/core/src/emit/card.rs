@@ -235,7 +235,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
     let state = item(d, "State");
     quote! {
         impl #bound #name #plain {
-            /// The sizes of all invariants at a state, in steps of `h`.
+            /// The scales of all invariants at a state, for steps of `h`.
             fn scales(&self, state: &#state #plain, h: f64, out: &mut [f64]) {
                 #scales
             }
