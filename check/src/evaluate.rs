@@ -75,7 +75,7 @@ pub type Evaluated = Result<Value, String>;
 
 /// A sentence about sizes.
 fn misfit(what: &str) -> String {
-    format!("the sizes in a {what} do not fit here")
+    format!("the sizes in this {what} do not match")
 }
 
 impl Scene<'_> {

@@ -67,7 +67,7 @@ pub fn onto_constraints(
     let mut rates_here = start.clone();
     for _ in 0..CORRECTIONS {
         let change = correction(&rates_here, count);
-        let next = changed(&stated, setup, &moving, &at, &change).ok_or("sizes do not fit")?;
+        let next = changed(&stated, setup, &moving, &at, &change).ok_or("sizes do not match")?;
         let rates_next = rates(&stated, setup, &next, &moving)?;
         let left_next = most(&rates_next);
         // Stop when only rounding is left.

@@ -201,16 +201,16 @@ impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "action as stated: ")?;
         if let Some(why) = self.not_judged.as_ref().filter(|_| !self.is_broken()) {
-            return write!(f, "not judged: {why}");
+            return write!(f, "not checked: {why}");
         }
         let Some((node, part)) = &self.worst else {
-            return write!(f, "no step judged");
+            return write!(f, "no step checked");
         };
         let steps = if self.judged == 1 { "step" } else { "steps" };
         let ratio = self.ratio();
         write!(
             f,
-            "{} {steps} judged, largest residual {} of its rounding bound, at node {node}",
+            "{} {steps} checked, largest residual {} of its rounding bound, at node {node}",
             self.judged,
             short(ratio)
         )?;
@@ -221,16 +221,16 @@ impl fmt::Display for Verdict {
             let end = if part.node == 0 { "start" } else { "end" };
             return write!(
                 f,
-                ". It does NOT hold: {}{site}, component {}, at the {end} of that step is off by {:.3e}, and rounding explains \
-                 {:.3e}",
+                ". It does NOT hold: {}{site}, component {}, at the {end} of that step has an error of {:.3e}; its rounding \
+                 bound is {:.3e}",
                 part.what, part.component, part.residual, part.bound
             );
         }
         if self.is_empty() {
             return write!(
                 f,
-                ". FAILURE OF THE CHECK: {} equations with rounded terms have residuals of at most {} of one rounding, far \
-                 below rounding: this check measures nothing",
+                ". FAILURE OF THE CHECK: the residuals of {} equations are at most {} of one rounding error, which is too \
+                 small for rounded terms",
                 self.tested,
                 short(self.roundings)
             );

@@ -159,7 +159,7 @@ impl<'a> Scene<'a> {
             .map(|x| x.times(&turns));
         value
             .plus(&step)
-            .ok_or_else(|| format!("`{offset}` does not fit"))
+            .ok_or_else(|| format!("the size of `{offset}` does not match"))
     }
 
     fn quantity(&self, q: &'a Quantity, site: Option<usize>, here: Here) -> Evaluated {
@@ -295,7 +295,7 @@ impl<'a> Scene<'a> {
 }
 
 fn misread(name: &str) -> String {
-    format!("the numbers of `{name}` do not fit its shape")
+    format!("the number of entries of `{name}` does not match its shape")
 }
 
 /// The number of variables before the variables of a node.

@@ -1,10 +1,10 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-//! The model [`BodyInQuadraticField`](struct@BodyInQuadraticField) and what belongs to it.
+//! The model [`BodyInQuadraticField`](struct@BodyInQuadraticField) with its parameters, states and steps.
 #![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
 #![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
-/// Parameters of [`BodyInQuadraticField`](struct@BodyInQuadraticField), as given.
+/// The parameters of [`BodyInQuadraticField`](struct@BodyInQuadraticField).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyInQuadraticFieldParameters<T = f64> {
     /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
@@ -20,15 +20,15 @@ pub struct BodyInQuadraticField<T = f64> {
     method: Method,
 }
 impl<T: Real> BodyInQuadraticField<T> {
-    /// The model as it was stated.
+    /// The text of the model.
     pub const SOURCE: &'static str = "/// Rigid body about a fixed point in a quadratic field.\npub model BodyInQuadraticField {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// matrix of the field, body frame: potential energy ½ Γ·KΓ\n    param K: Sym<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// axis of the field, body frame\n    advected Γ: Vec<3>;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// the axis is fixed in space\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - (1/2)*h*dot(Γ, K*Γ);\n}";
-    /// A number that changes when the model or its derivation does.
+    /// A hash of the model and the version of clebsch.
     pub const FINGERPRINT: u64 = 15875467048490531730u64;
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is not an admissible factor of the equation to solve.
+    /// If a parameter is not finite, lacks its declared symmetry, violates an assumption or
+    /// is not an admissible factor of the equation of a step. The error names the parameter.
     pub fn new(
         parameters: BodyInQuadraticFieldParameters<T>,
     ) -> Result<Self, ParameterError> {
@@ -77,7 +77,7 @@ impl<T: Real> BodyInQuadraticFieldState<T> {
         self.momentum.to_body(&self.Λ)
     }
 }
-/// The step, the solver's name, and the momentum of the edge that begins at the state `here`. Any other state needs a new one.
+/// The step size, the solver, and the momentum of the edge that begins at the state `here`. A step from any other state computes the momentum again.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyInQuadraticFieldWorkspace<T = f64> {
     h: T,
@@ -153,11 +153,11 @@ impl<T: Real> BodyInQuadraticField<T> {
     BodyInQuadraticFieldState { Λ, momentum, Γ } at node,
     BodyInQuadraticFieldWorkspace { h, method, edge, here },
     forced { Λ, momentum, Γ } solver symmetric judged { 3 }
-    ("C is constant and symmetric: explicit up to the root of one quartic per step")
+    ("explicit up to the root of one quartic per step, because the left factor is symmetric and constant")
     observables { state.Λ, state.body_momentum, state.spatial_momentum, Γ }
     invariants { energy, momentum_Gamma, Gamma_squared }
 }
-/// A configuration at one node, solution or not.
+/// A configuration at one node; it need not lie on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyInQuadraticFieldConfiguration<T = f64> {
     /// `Λ` at the node: body -> space.
@@ -240,7 +240,7 @@ impl<T: Real> BodyInQuadraticField<T> {
     }
 }
 impl BodyInQuadraticField<f64> {
-    /// The sizes of all invariants at a state, in steps of `h`.
+    /// The scales of all invariants at a state, for steps of `h`.
     fn scales(&self, state: &BodyInQuadraticFieldState<f64>, h: f64, out: &mut [f64]) {
         let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
         let Γ = self.Γ(state);
@@ -264,7 +264,7 @@ impl BodyInQuadraticField<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J Ω_k)/h - ¼ h Γ_k·(K Γ_k) - ¼ h Γ_{k+1}·(K Γ_{k+1})\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
-        solver: "Moser-Veselov: C is constant and symmetric: explicit up to the root of one quartic per step",
+        solver: "Moser-Veselov: explicit up to the root of one quartic per step, because the left factor is symmetric and constant",
         parameters: &[
             Kind::SecondMoments.field("J", [3, 3], "Poinsot (second-moment) matrix"),
             Kind::Symmetric

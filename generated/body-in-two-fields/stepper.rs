@@ -1,10 +1,10 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-//! The model [`BodyInTwoFields`](struct@BodyInTwoFields) and what belongs to it.
+//! The model [`BodyInTwoFields`](struct@BodyInTwoFields) with its parameters, states and steps.
 #![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
 #![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
-/// Parameters of [`BodyInTwoFields`](struct@BodyInTwoFields), as given.
+/// The parameters of [`BodyInTwoFields`](struct@BodyInTwoFields).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyInTwoFieldsParameters<T = f64> {
     /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
@@ -26,15 +26,15 @@ pub struct BodyInTwoFields<T = f64> {
     method: Method,
 }
 impl<T: Real> BodyInTwoFields<T> {
-    /// The model as it was stated.
+    /// The text of the model.
     pub const SOURCE: &'static str = "/// Rigid body about a fixed point in two uniform fields.\npub model BodyInTwoFields {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// weight times the vector from support to centre of mass, body frame\n    param gU: Vec<3> as \"m g \\chi\";\n    /// dipole moment, body frame\n    param p: Vec<3>;\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// field that acts on the dipole, space frame\n    param b: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// vertical, body frame\n    advected Γ: Vec<3> = Λ^T*z;\n    /// field that acts on the dipole, body frame\n    advected B: Vec<3> = Λ^T*b;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// Γ and B are fixed in space\n    constraint next(Γ) = Ω^T*Γ;\n    constraint next(B) = Ω^T*B;\n    lagrangian = -tr(J*Ω)/h - h*(dot(gU, Γ) - dot(p, B));\n}";
-    /// A number that changes when the model or its derivation does.
+    /// A hash of the model and the version of clebsch.
     pub const FINGERPRINT: u64 = 4245126510531692259u64;
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is not an admissible factor of the equation to solve.
+    /// If a parameter is not finite, lacks its declared symmetry, violates an assumption or
+    /// is not an admissible factor of the equation of a step. The error names the parameter.
     pub fn new(
         parameters: BodyInTwoFieldsParameters<T>,
     ) -> Result<Self, ParameterError> {
@@ -82,7 +82,7 @@ impl<T: Real> BodyInTwoFieldsState<T> {
         self.momentum.to_body(&self.Λ)
     }
 }
-/// The step, the solver's name, and the momentum of the edge that begins at the state `here`. Any other state needs a new one.
+/// The step size, the solver, and the momentum of the edge that begins at the state `here`. A step from any other state computes the momentum again.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyInTwoFieldsWorkspace<T = f64> {
     h: T,
@@ -146,12 +146,12 @@ impl<T: Real> BodyInTwoFields<T> {
     BodyInTwoFieldsState { Λ, momentum } at node,
     BodyInTwoFieldsWorkspace { h, method, edge, here },
     forced { Λ, momentum } solver symmetric judged { 3 }
-    ("C is constant and symmetric: explicit up to the root of one quartic per step")
+    ("explicit up to the root of one quartic per step, because the left factor is symmetric and constant")
     start { Λ, momentum = body_momentum.to_space }
     observables { state.Λ, state.body_momentum, state.spatial_momentum, Γ, B }
     invariants { energy, Gamma_squared, Gamma_B, B_squared }
 }
-/// A configuration at one node, solution or not.
+/// A configuration at one node; it need not lie on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyInTwoFieldsConfiguration<T = f64> {
     /// `Λ` at the node: body -> space.
@@ -237,7 +237,7 @@ impl<T: Real> BodyInTwoFields<T> {
     }
 }
 impl BodyInTwoFields<f64> {
-    /// The sizes of all invariants at a state, in steps of `h`.
+    /// The scales of all invariants at a state, for steps of `h`.
     fn scales(&self, state: &BodyInTwoFieldsState<f64>, h: f64, out: &mut [f64]) {
         let BodyInTwoFieldsParameters { gU, p, .. } = self.parameters;
         let Γ = self.Γ(state);
@@ -263,7 +263,7 @@ impl BodyInTwoFields<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J Ω_k)/h - ½ h gU·Γ_k + ½ h p·B_k - ½ h gU·Γ_{k+1} + ½ h p·B_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, Gamma_squared, Gamma_B, B_squared\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
-        solver: "Moser-Veselov: C is constant and symmetric: explicit up to the root of one quartic per step",
+        solver: "Moser-Veselov: explicit up to the root of one quartic per step, because the left factor is symmetric and constant",
         parameters: &[
             Kind::SecondMoments.field("J", [3, 3], "Poinsot (second-moment) matrix"),
             Kind::Vector

@@ -1,10 +1,10 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-//! The model [`BodyN`](struct@BodyN) and what belongs to it.
+//! The model [`BodyN`](struct@BodyN) with its parameters, states and steps.
 #![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
 #![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
-/// Parameters of [`BodyN`](struct@BodyN), as given.
+/// The parameters of [`BodyN`](struct@BodyN).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyNParameters<const N: usize, T = f64> {
     /// `C`: second moments of mass; any matrix with positive determinant; a n x n matrix.
@@ -22,15 +22,15 @@ impl<const N: usize, T: Real> BodyN<N, T> {
     const ADMITTED: () = {
         ::core::assert!(3 <= N && N <= 8, "`n` ranges from 3 to 8 in this model");
     };
-    /// The model as it was stated.
+    /// The text of the model.
     pub const SOURCE: &'static str = "/// Free rigid body in n dimensions.\npub model BodyN {\n    dim n in 3..=8;\n    /// second moments of mass; any matrix with positive determinant\n    param C: Mat<n>;\n    /// attitude, body to space\n    group Λ: SO<n> velocity Ω;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    lagrangian = -tr(C^T*Ω)/h;\n}";
-    /// A number that changes when the model or its derivation does.
+    /// A hash of the model and the version of clebsch.
     pub const FINGERPRINT: u64 = 4749394489071051681u64;
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is not an admissible factor of the equation to solve.
+    /// If a parameter is not finite, lacks its declared symmetry, violates an assumption or
+    /// is not an admissible factor of the equation of a step. The error names the parameter.
     pub fn new(parameters: BodyNParameters<N, T>) -> Result<Self, ParameterError> {
         let () = Self::ADMITTED;
         validate::finite_entries("C", &parameters.C)?;
@@ -72,7 +72,7 @@ impl<const N: usize, T: Real> BodyNState<N, T> {
         self.momentum.to_body(&self.Λ)
     }
 }
-/// The step and the solver's name.
+/// The step size and the solver.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyNWorkspace<const N: usize, T = f64> {
     h: T,
@@ -103,10 +103,10 @@ impl<const N: usize, T: Real> BodyN<N, T> {
         let method = choice.unwrap_or(self.method);
         Ok(BodyNWorkspace { h, method })
     }
-    /// One step, in place. Method: C is constant: Newton's method on the Lie algebra.
+    /// One step, in place. Method: Newton's method on the Lie algebra, because the left factor is constant.
     ///
     /// # Errors
-    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    /// If the step cannot be solved. The error gives numbers and a remedy; the state is unchanged.
     #[inline]
     pub fn step(
         &self,
@@ -161,7 +161,7 @@ impl<const N: usize, T: Real> BodyN<N, T> {
     invariants { state.spatial_momentum as skew, momentum_squared, trace_momentum4,
         trace_momentum6, trace_momentum8 }
 }
-/// A configuration at one node, solution or not.
+/// A configuration at one node; it need not lie on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyNConfiguration<const N: usize, T = f64> {
     /// `Λ` at the node: body -> space.
@@ -256,7 +256,7 @@ impl<const N: usize, T: Real> BodyN<N, T> {
     }
 }
 impl<const N: usize> BodyN<N, f64> {
-    /// The sizes of all invariants at a state, in steps of `h`.
+    /// The scales of all invariants at a state, for steps of `h`.
     fn scales(&self, state: &BodyNState<N, f64>, h: f64, out: &mut [f64]) {
         type T = f64;
         let Λ = state.Λ.matrix();
@@ -286,7 +286,7 @@ impl<const N: usize> BodyN<N, f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(Cᵀ Ω_k)/h\nmomentum of Λ        -C Ω_kᵀ/h + Ω_k Cᵀ/h\nRiccati form         exact, C = C\ninvariants           spatial_momentum, momentum_squared, trace_momentum4, trace_momentum6, trace_momentum8\ntime reversal        not symmetric: first order\ncertificate          10 identities proved by normal form",
-        solver: "Moser-Veselov: C is constant: Newton's method on the Lie algebra",
+        solver: "Moser-Veselov: Newton's method on the Lie algebra, because the left factor is constant",
         order: 1,
         reversible: false,
         orders: &[1],

@@ -1,10 +1,10 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-//! The model [`CayleyKleinSpatial`](struct@CayleyKleinSpatial) and what belongs to it.
+//! The model [`CayleyKleinSpatial`](struct@CayleyKleinSpatial) with its parameters, states and steps.
 #![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
 #![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
-/// Parameters of [`CayleyKleinSpatial`](struct@CayleyKleinSpatial), as given.
+/// The parameters of [`CayleyKleinSpatial`](struct@CayleyKleinSpatial).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CayleyKleinSpatialParameters<T = f64> {
     /// `c`: choice of discretisation: 0 for Moser-Veselov, 1 for the thesis; a number.
@@ -16,15 +16,15 @@ pub struct CayleyKleinSpatial<T = f64> {
     parameters: CayleyKleinSpatialParameters<T>,
 }
 impl<T: Real> CayleyKleinSpatial<T> {
-    /// The model as it was stated.
+    /// The text of the model.
     pub const SOURCE: &'static str = "/// Free rigid body in unit quaternions, spatial representation.\npub model CayleyKleinSpatial {\n    /// choice of discretisation: 0 for Moser-Veselov, 1 for the thesis\n    param c: Real;\n    /// attitude, body to space\n    group q: SU<2> velocity w;\n    /// inertia tensor, space frame\n    advected I: Sym<3>;\n    constraint next(q) = w*q;\n    constraint next(I) = rot(w)*I*rot(w)^T;\n    lagrangian = -4*c*re(w)/h + 2*dot(im(w), (I - c*Id)*im(w))/h;\n}";
-    /// A number that changes when the model or its derivation does.
+    /// A hash of the model and the version of clebsch.
     pub const FINGERPRINT: u64 = 4331359141793115439u64;
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is not an admissible factor of the equation to solve.
+    /// If a parameter is not finite, lacks its declared symmetry, violates an assumption or
+    /// is not an admissible factor of the equation of a step. The error names the parameter.
     pub fn new(
         parameters: CayleyKleinSpatialParameters<T>,
     ) -> Result<Self, ParameterError> {
@@ -64,7 +64,7 @@ impl<T: Real> CayleyKleinSpatialState<T> {
         self.momentum.to_body(&self.q)
     }
 }
-/// The step and the momentum of the edge that begins at the state `here`. Any other state needs a new one.
+/// The step size, and the momentum of the edge that begins at the state `here`. A step from any other state computes the momentum again.
 #[derive(Clone, Copy, Debug)]
 pub struct CayleyKleinSpatialWorkspace<T = f64> {
     h: T,
@@ -107,7 +107,7 @@ impl<T: Real> CayleyKleinSpatial<T> {
             here: *state,
         })
     }
-    /// The body behind the quantities of a state.
+    /// The factor of the equation at a state, prepared for the solver.
     #[inline(never)]
     fn factor(
         &self,
@@ -117,10 +117,10 @@ impl<T: Real> CayleyKleinSpatial<T> {
         let I = state.I;
         QuaternionBody::new("I_k - c Id", I - SMatrix::<T, 3, 3>::identity() * c, c)
     }
-    /// One step, in place. Method: A is carried by the motion, constant in the body, and symmetric, β constant: one equation for one number a step.
+    /// One step, in place. Method: one scalar equation per step, because its coefficients are constant in the body frame.
     ///
     /// # Errors
-    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    /// If the step cannot be solved. The error gives numbers and a remedy; the state is unchanged.
     #[inline]
     pub fn step(
         &self,
@@ -188,7 +188,7 @@ impl<T: Real> CayleyKleinSpatial<T> {
     observables { state.q, state.body_momentum, state.spatial_momentum, I }
     invariants { energy, state.spatial_momentum, trace_I1, trace_I2, trace_I3 }
 }
-/// A configuration at one node, solution or not.
+/// A configuration at one node; it need not lie on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CayleyKleinSpatialConfiguration<T = f64> {
     /// `q` at the node: body -> space.
@@ -278,7 +278,7 @@ impl<T: Real> CayleyKleinSpatial<T> {
     }
 }
 impl CayleyKleinSpatial<f64> {
-    /// The sizes of all invariants at a state, in steps of `h`.
+    /// The scales of all invariants at a state, for steps of `h`.
     fn scales(&self, state: &CayleyKleinSpatialState<f64>, h: f64, out: &mut [f64]) {
         type T = f64;
         let I = self.I(state);
@@ -296,7 +296,7 @@ impl CayleyKleinSpatial<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -4 c re(w_k)/h + 2 im(w_k)·((I_k - c Id) im(w_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I_k - c Id) im(w_k)/h)) w_kᵀ)\nRiccati form         none; in unit quaternions, A = I_k - c Id, β = c\ninvariants           energy, spatial_momentum, trace_I1, trace_I2, trace_I3\ntime reversal        symmetric: second order\ncertificate          10 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
-        solver: "Unit quaternions: A is carried by the motion, constant in the body, and symmetric, β constant: one equation for one number a step",
+        solver: "Unit quaternions: one scalar equation per step, because its coefficients are constant in the body frame",
         parameters: &[
             Kind::Scalar
                 .field(

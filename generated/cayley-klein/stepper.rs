@@ -1,10 +1,10 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-//! The model [`CayleyKlein`](struct@CayleyKlein) and what belongs to it.
+//! The model [`CayleyKlein`](struct@CayleyKlein) with its parameters, states and steps.
 #![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
 #![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
-/// Parameters of [`CayleyKlein`](struct@CayleyKlein), as given.
+/// The parameters of [`CayleyKlein`](struct@CayleyKlein).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CayleyKleinParameters<T = f64> {
     /// `I`: principal moments of inertia; a 3 x 3 matrix, diagonal.
@@ -20,15 +20,15 @@ pub struct CayleyKlein<T = f64> {
     factor: QuaternionBody<T>,
 }
 impl<T: Real> CayleyKlein<T> {
-    /// The model as it was stated.
+    /// The text of the model.
     pub const SOURCE: &'static str = "/// Free rigid body in unit quaternions.\n/// The body momentum is q* m q, a Hopf map of q: its fibres over the sphere of body momenta are circles.\npub model CayleyKlein {\n    /// principal moments of inertia\n    param I: Diag<3>;\n    /// choice of discretisation: 0 for Moser-Veselov, 1 for the thesis\n    param c: Real;\n    /// attitude, body to space\n    group q: SU<2> velocity W;\n    constraint next(q) = q*W;\n    lagrangian = -4*c*re(W)/h + 2*dot(im(W), (I - c*Id)*im(W))/h;\n}";
-    /// A number that changes when the model or its derivation does.
+    /// A hash of the model and the version of clebsch.
     pub const FINGERPRINT: u64 = 17749404698490029629u64;
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is not an admissible factor of the equation to solve.
+    /// If a parameter is not finite, lacks its declared symmetry, violates an assumption or
+    /// is not an admissible factor of the equation of a step. The error names the parameter.
     pub fn new(parameters: CayleyKleinParameters<T>) -> Result<Self, ParameterError> {
         validate::finite_entries("I", &parameters.I)?;
         validate::diagonal("I", &parameters.I)?;
@@ -71,7 +71,7 @@ impl<T: Real> CayleyKleinState<T> {
         self.momentum.to_body(&self.q)
     }
 }
-/// The step and the momentum of the edge that begins at the state `here`. Any other state needs a new one.
+/// The step size, and the momentum of the edge that begins at the state `here`. A step from any other state computes the momentum again.
 #[derive(Clone, Copy, Debug)]
 pub struct CayleyKleinWorkspace<T = f64> {
     h: T,
@@ -92,10 +92,10 @@ impl<T: Real> CayleyKlein<T> {
             here: *state,
         })
     }
-    /// One step, in place. Method: A is constant and symmetric, β constant: one equation for one number a step.
+    /// One step, in place. Method: one scalar equation per step, because its coefficients are constant.
     ///
     /// # Errors
-    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    /// If the step cannot be solved. The error gives numbers and a remedy; the state is unchanged.
     #[inline]
     pub fn step(
         &self,
@@ -147,7 +147,7 @@ impl<T: Real> CayleyKlein<T> {
     observables { state.q, state.body_momentum, state.spatial_momentum }
     invariants { energy, state.spatial_momentum, momentum_squared }
 }
-/// A configuration at one node, solution or not.
+/// A configuration at one node; it need not lie on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CayleyKleinConfiguration<T = f64> {
     /// `q` at the node: body -> space.
@@ -220,7 +220,7 @@ impl<T: Real> CayleyKlein<T> {
     }
 }
 impl CayleyKlein<f64> {
-    /// The sizes of all invariants at a state, in steps of `h`.
+    /// The scales of all invariants at a state, for steps of `h`.
     fn scales(&self, state: &CayleyKleinState<f64>, h: f64, out: &mut [f64]) {
         let q = state.q.matrix();
         let μ = state.body_momentum().0;
@@ -238,7 +238,7 @@ impl CayleyKlein<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -4 c re(W_k)/h + 2 im(W_k)·((I - c Id) im(W_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I - c Id) im(W_k)/h)) W_kᵀ)\nRiccati form         none; in unit quaternions, A = I - c Id, β = c\ninvariants           energy, spatial_momentum, momentum_squared\ntime reversal        symmetric: second order\ncertificate          4 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
-        solver: "Unit quaternions: A is constant and symmetric, β constant: one equation for one number a step",
+        solver: "Unit quaternions: one scalar equation per step, because its coefficients are constant",
         parameters: &[
             Kind::Diagonal.field("I", [3, 3], "principal moments of inertia"),
             Kind::Scalar

@@ -1,10 +1,10 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-//! The model [`ChargedParticle`](struct@ChargedParticle) and what belongs to it.
+//! The model [`ChargedParticle`](struct@ChargedParticle) with its parameters, states and steps.
 #![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
 #![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
-/// Parameters of [`ChargedParticle`](struct@ChargedParticle), as given.
+/// The parameters of [`ChargedParticle`](struct@ChargedParticle).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChargedParticleParameters<T = f64> {
     /// `m`: mass; a number.
@@ -22,15 +22,15 @@ pub struct ChargedParticle<T = f64> {
     parameters: ChargedParticleParameters<T>,
 }
 impl<T: Real> ChargedParticle<T> {
-    /// The model as it was stated.
+    /// The text of the model.
     pub const SOURCE: &'static str = "/// Charged particle in uniform magnetic and electric fields.\npub model ChargedParticle {\n    /// mass\n    param m: Real;\n    /// charge\n    param q: Real;\n    /// magnetic field\n    param B: Vec<3>;\n    /// electric field\n    param E: Vec<3>;\n    /// position of the particle\n    field X: Vec<3>;\n    lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + (1/2)*q*dot(cross(B, X), next(X) - X) + h*q*dot(E, X);\n}";
-    /// A number that changes when the model or its derivation does.
+    /// A hash of the model and the version of clebsch.
     pub const FINGERPRINT: u64 = 13364345416425682192u64;
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is not an admissible factor of the equation to solve.
+    /// If a parameter is not finite, lacks its declared symmetry, violates an assumption or
+    /// is not an admissible factor of the equation of a step. The error names the parameter.
     pub fn new(
         parameters: ChargedParticleParameters<T>,
     ) -> Result<Self, ParameterError> {
@@ -68,7 +68,7 @@ impl<T: Real> ChargedParticleState<T> {
         self.momentum
     }
 }
-/// The step and the last velocities, from which the next solves start.
+/// The step size, and the last velocities as initial guesses for the next step.
 #[derive(Clone, Copy, Debug)]
 pub struct ChargedParticleWorkspace<T = f64> {
     h: T,
@@ -83,10 +83,10 @@ impl<T: Real> ChargedParticle<T> {
     ) -> Result<ChargedParticleWorkspace<T>, StartError> {
         Ok(ChargedParticleWorkspace { h })
     }
-    /// One step, in place. Method: the balance is linear: one small linear system.
+    /// One step, in place. Method: one small linear system, because the balance is linear.
     ///
     /// # Errors
-    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    /// If the step cannot be solved. The error gives numbers and a remedy; the state is unchanged.
     #[inline]
     pub fn step(
         &self,
@@ -136,7 +136,7 @@ impl<T: Real> ChargedParticle<T> {
     observables { state.X, state.momentum }
     invariants { energy, momentum_across_E }
 }
-/// A configuration at one node, solution or not.
+/// A configuration at one node; it need not lie on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChargedParticleConfiguration<T = f64> {
     /// `X` at the node.
@@ -223,7 +223,7 @@ impl<T: Real> ChargedParticle<T> {
     }
 }
 impl ChargedParticle<f64> {
-    /// The sizes of all invariants at a state, in steps of `h`.
+    /// The scales of all invariants at a state, for steps of `h`.
     fn scales(&self, state: &ChargedParticleState<f64>, h: f64, out: &mut [f64]) {
         type T = f64;
         let ChargedParticleParameters { q, B, E, .. } = self.parameters;
@@ -249,7 +249,7 @@ impl ChargedParticle<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  m ΔX_k·ΔX_k/(2 h) + ½ q B·(X_k × ΔX_k) + ½ h q E·X_k + ½ h q E·X_{k+1}\nmomentum of X        m ΔX_k/h + ½ q (B × X_k)\nRiccati form         none; linear, L = m Id/h + ½ q hat(B), R = 1\ninvariants           energy, momentum_across_E\ntime reversal        symmetric: second order\ncertificate          13 identities proved by normal form",
-        solver: "Explicit: the balance is linear: one small linear system",
+        solver: "Explicit: one small linear system, because the balance is linear",
         parameters: &[
             Kind::Scalar.field("m", [1, 1], "mass"),
             Kind::Scalar.field("q", [1, 1], "charge"),

@@ -1,10 +1,10 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-//! The model [`CoupledBodies`](struct@CoupledBodies) and what belongs to it.
+//! The model [`CoupledBodies`](struct@CoupledBodies) with its parameters, states and steps.
 #![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
 #![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
-/// Parameters of [`CoupledBodies`](struct@CoupledBodies), as given.
+/// The parameters of [`CoupledBodies`](struct@CoupledBodies).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoupledBodiesParameters<T = f64> {
     /// `J1`: Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames; a 3 x 3 matrix, symmetric.
@@ -24,15 +24,15 @@ pub struct CoupledBodies<T = f64> {
     parameters: CoupledBodiesParameters<T>,
 }
 impl<T: Real> CoupledBodies<T> {
-    /// The model as it was stated.
+    /// The text of the model.
     pub const SOURCE: &'static str = "/// Two rigid bodies connected by a spherical joint.\npub model CoupledBodies {\n    /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames\n    param J1: Sym<3>;\n    /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames\n    param J2: Sym<3>;\n    /// vectors from the joint to the centres of mass, body frames\n    param d1: Vec<3>;\n    /// vectors from the joint to the centres of mass, body frames\n    param d2: Vec<3>;\n    /// reduced mass m₁ m₂/(m₁ + m₂)\n    param eps: Real as \"\\varepsilon\";\n    /// attitude of body 1, body to space\n    group Λ1: SO<3> velocity Ω1;\n    /// attitude of body 2, body to space\n    group Λ2: SO<3> velocity Ω2;\n    /// attitude of body 2 relative to body 1\n    advected R: SO<3> = Λ1^T*Λ2;\n    constraint next(Λ1) = Λ1*Ω1;\n    constraint next(Λ2) = Λ2*Ω2;\n    constraint next(R) = Ω1^T*R*Ω2;\n    lagrangian = (-tr(J1*Ω1) - tr(J2*Ω2) - eps*dot((Ω1 - Id)*d1, R*(Ω2 - Id)*d2))/h;\n}";
-    /// A number that changes when the model or its derivation does.
+    /// A hash of the model and the version of clebsch.
     pub const FINGERPRINT: u64 = 17740339557977192018u64;
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is not an admissible factor of the equation to solve.
+    /// If a parameter is not finite, lacks its declared symmetry, violates an assumption or
+    /// is not an admissible factor of the equation of a step. The error names the parameter.
     pub fn new(parameters: CoupledBodiesParameters<T>) -> Result<Self, ParameterError> {
         validate::finite_entries("J1", &parameters.J1)?;
         validate::symmetric("J1", &parameters.J1)?;
@@ -91,14 +91,14 @@ impl<T: Real> CoupledBodiesState<T> {
         self.momentum_Λ2.to_body(&self.Λ2)
     }
 }
-/// The step and the last velocities, from which the next solve starts.
+/// The step size, and the last velocities as initial guesses for the next step.
 #[derive(Clone, Copy, Debug)]
 pub struct CoupledBodiesWorkspace<T = f64> {
     h: T,
     search: newton::Search<T, [Rotation<T>; 2], 6>,
 }
 impl<T: Real> CoupledBodiesWorkspace<T> {
-    /// How the last step was solved: tangents, corrections, and the residual before the last.
+    /// The tangents and corrections of the last step, and the residual before its last correction.
     pub fn solved(&self) -> newton::Summary {
         self.search.last()
     }
@@ -116,10 +116,10 @@ impl<T: Real> CoupledBodies<T> {
             search: newton::Search::from_rest(),
         })
     }
-    /// One step, in place. Method: several velocities are solved together: Newton on the derived residuals.
+    /// One step, in place. Method: Newton's method on the derived residuals, because the equations of several velocities are coupled.
     ///
     /// # Errors
-    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    /// If the step cannot be solved. The error gives numbers and a remedy; the state is unchanged.
     #[inline]
     pub fn step(
         &self,
@@ -251,8 +251,8 @@ impl<T: Real> CoupledBodies<T> {
         work.search.remember(state.node - 1, &found);
         Ok(())
     }
-    /// The solution to use if the iteration has found none, or one that is not known to be principal.
-    /// `None` if the iteration starts again, at the principal root.
+    /// The solution to use if the iteration fails or its solution may not be principal.
+    /// `None` if the iteration restarts at the principal root.
     #[cold]
     #[inline(never)]
     fn settled(
@@ -338,7 +338,7 @@ impl<T: Real> CoupledBodies<T> {
             ],
         )
     }
-    /// Their tangent.
+    /// The tangent of the residual.
     #[cold]
     #[inline(never)]
     #[allow(unused_variables)]
@@ -372,7 +372,7 @@ impl<T: Real> CoupledBodies<T> {
             ],
         )
     }
-    /// Bounds of the rounding of the residual, in one lane.
+    /// Bounds of the rounding errors of the residual, in one lane.
     #[cold]
     #[inline(never)]
     fn rounding(
@@ -397,7 +397,7 @@ impl<T: Real> CoupledBodies<T> {
         >::residual_at(&parameters, step, &given, &momenta, &trial)
             .map(|x| x.error())
     }
-    /// Finds the principal root, or shows that the solution is.
+    /// Finds the principal root, or proves that the given solution is the principal root.
     #[cold]
     #[inline(never)]
     fn principal(
@@ -456,7 +456,7 @@ impl<T: Real> CoupledBodies<T> {
         state.body_momentum_Λ2, state.spatial_momentum_Λ2, R }
     invariants { energy, total_momentum, total_momentum_squared }
 }
-/// A configuration at one node, solution or not.
+/// A configuration at one node; it need not lie on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoupledBodiesConfiguration<T = f64> {
     /// `Λ1` at the node: body -> space.
@@ -623,7 +623,7 @@ impl<T: Real> CoupledBodies<T> {
     }
 }
 impl CoupledBodies<f64> {
-    /// The sizes of all invariants at a state, in steps of `h`.
+    /// The scales of all invariants at a state, for steps of `h`.
     fn scales(&self, state: &CoupledBodiesState<f64>, h: f64, out: &mut [f64]) {
         type T = f64;
         let R = self.R(state);
@@ -654,7 +654,7 @@ impl CoupledBodies<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J₁ Ω_{1,k})/h - tr(J₂ Ω_{2,k})/h - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h\nmomentum of Λ1       -(J₁/h + eps R_k (Ω_{2,k} - Id) d₂ d₁ᵀ/h) Ω_{1,k}ᵀ + Ω_{1,k} (J₁/h + eps d₁ d₂ᵀ (Ω_{2,k}ᵀ - Id) R_kᵀ/h)\nmomentum of Λ2       -(J₂/h + eps R_kᵀ (Ω_{1,k} - Id) d₁ d₂ᵀ/h) Ω_{2,k}ᵀ + Ω_{2,k} (J₂/h + eps d₂ d₁ᵀ (Ω_{1,k}ᵀ - Id) R_k/h)\nRiccati form         coupled, C = J₁; coupled, C = J₂\ninvariants           energy, total_momentum, total_momentum_squared\ntime reversal        symmetric: second order\ncertificate          32 identities proved by normal form",
-        solver: "Newton: several velocities are solved together: Newton on the derived residuals",
+        solver: "Newton's method on the derived residuals, because the equations of several velocities are coupled",
         parameters: &[
             Kind::SecondMoments
                 .field(

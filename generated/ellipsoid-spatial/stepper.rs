@@ -1,10 +1,10 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-//! The model [`EllipsoidSpatial`](struct@EllipsoidSpatial) and what belongs to it.
+//! The model [`EllipsoidSpatial`](struct@EllipsoidSpatial) with its parameters, states and steps.
 #![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
 #![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
-/// Parameters of [`EllipsoidSpatial`](struct@EllipsoidSpatial), as given.
+/// The parameters of [`EllipsoidSpatial`](struct@EllipsoidSpatial).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EllipsoidSpatialParameters<const N: usize, T = f64> {
     /// `C0`: metric of space; a n x n matrix, symmetric.
@@ -32,15 +32,15 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
     const ADMITTED: () = {
         ::core::assert!(2 <= N && N <= 4, "`n` ranges from 2 to 4 in this model");
     };
-    /// The model as it was stated.
+    /// The text of the model.
     pub const SOURCE: &'static str = "/// Elastic ellipsoid, spatial representation.\npub model EllipsoidSpatial {\n    dim n in 2..=4;\n    /// metric of space\n    param C0: Sym<n> as \"C_0\";\n    /// second moments of mass, reference configuration\n    param I0: Sym<n> as \"I_0\";\n    /// stiffness against changes of length, area and volume\n    param a: Real;\n    /// stiffness against changes of length, area and volume\n    param b: Real;\n    /// stiffness against changes of length, area and volume\n    param c: Real;\n    /// resistance to collapse; the identity is stress-free if d = 2 a + 2 (n - 1) b + 2 c\n    param d: Real;\n    /// placement, reference to space\n    group Q: GL<n> velocity g;\n    /// second moments of mass, space frame\n    advected S: Sym<n> = Q*I0*Q^T;\n    constraint next(Q) = g*Q;\n    constraint next(S) = g*S*g^T;\n    lagrangian = tr(C0*(g - Id)*S*(g^T - Id))/(2*h) - h*(a*tr(S) + (1/2)*b*(tr(S)^2 - tr(S*S)) + c*det(S) - (1/2)*d*log(det(S)));\n}";
-    /// A number that changes when the model or its derivation does.
+    /// A hash of the model and the version of clebsch.
     pub const FINGERPRINT: u64 = 4559964667135079899u64;
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is not an admissible factor of the equation to solve.
+    /// If a parameter is not finite, lacks its declared symmetry, violates an assumption or
+    /// is not an admissible factor of the equation of a step. The error names the parameter.
     pub fn new(
         parameters: EllipsoidSpatialParameters<N, T>,
     ) -> Result<Self, ParameterError> {
@@ -92,7 +92,7 @@ impl<const N: usize, T: Real> EllipsoidSpatialState<N, T> {
         self.momentum.to_body(&self.Q)
     }
 }
-/// The step and the last velocities, from which the next solves start.
+/// The step size, and the last velocities as initial guesses for the next step.
 #[derive(Clone, Copy, Debug)]
 pub struct EllipsoidSpatialWorkspace<const N: usize, T = f64> {
     h: T,
@@ -118,11 +118,11 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         }
         Ok(EllipsoidSpatialWorkspace { h })
     }
-    /// One step, in place. Method: the balance is linear: two small linear systems.
+    /// One step, in place. Method: two small linear systems, because the balance is linear.
     ///
     /// # Errors
-    /// If the step cannot be solved, or leaves the domain of the model, with numbers and
-    /// a remedy; the state is then unchanged.
+    /// If the step cannot be solved or leaves the domain of the model. The error gives numbers
+    /// and a remedy; the state is unchanged.
     #[inline]
     pub fn step(
         &self,
@@ -200,10 +200,10 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         let _ = (state, h);
         [determinant(&S)]
     }
-    /// One step, in place. Method: the balance is linear: two small linear systems.
+    /// One step, in place. Method: two small linear systems, because the balance is linear.
     ///
     /// # Errors
-    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    /// If the step cannot be solved. The error gives numbers and a remedy; the state is unchanged.
     #[inline]
     fn step_untested(
         &self,
@@ -261,7 +261,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
     invariants { energy, circulation_S_2, circulation_S_4,
         body_momentum_skew_I0_inverse_right }
 }
-/// A configuration at one node, solution or not.
+/// A configuration at one node; it need not lie on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EllipsoidSpatialConfiguration<const N: usize, T = f64> {
     /// `Q` at the node: body -> space.
@@ -418,7 +418,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
     }
 }
 impl<const N: usize> EllipsoidSpatial<N, f64> {
-    /// The sizes of all invariants at a state, in steps of `h`.
+    /// The scales of all invariants at a state, for steps of `h`.
     fn scales(&self, state: &EllipsoidSpatialState<N, f64>, h: f64, out: &mut [f64]) {
         type T = f64;
         let EllipsoidSpatialParameters { I0, a, b, c, d, .. } = self.parameters;
@@ -471,7 +471,7 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  tr(C₀ (g_k - Id) S_k (g_kᵀ - Id))/(2 h) - ½ h a tr(S_k) - ¼ h b tr(S_k)² + ¼ h b tr(S_k²) - ½ h c det(S_k) + ¼ h d log(det(S_k)) - ½ h a tr(S_{k+1}) - ¼ h b tr(S_{k+1})² + ¼ h b tr(S_{k+1}²) - ½ h c det(S_{k+1}) + ¼ h d log(det(S_{k+1}))\nmomentum of Q        C₀ (g_k - Id) S_k g_kᵀ/h\nRiccati form         none; linear, L = C₀/h, R = S_k\ninvariants           energy, circulation_S_2, circulation_S_4, body_momentum_skew_I0_inverse_right\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
-        solver: "Explicit: the balance is linear: two small linear systems",
+        solver: "Explicit: two small linear systems, because the balance is linear",
         parameters: &[
             Kind::Symmetric.field("C0", [N, N], "metric of space"),
             Kind::Symmetric

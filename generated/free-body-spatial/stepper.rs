@@ -1,13 +1,13 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-//! The model [`FreeBodySpatial`](struct@FreeBodySpatial) and what belongs to it.
+//! The model [`FreeBodySpatial`](struct@FreeBodySpatial) with its parameters, states and steps.
 #![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
 #![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
-/// Parameters of [`FreeBodySpatial`](struct@FreeBodySpatial), as given.
+/// The parameters of [`FreeBodySpatial`](struct@FreeBodySpatial).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeBodySpatialParameters<T = f64> {
-    /// No parameters: the scalar type alone.
+    /// The model has no parameters; this field fixes the scalar type.
     pub scalar: ::core::marker::PhantomData<T>,
 }
 /// Free rigid body, spatial representation.
@@ -17,15 +17,15 @@ pub struct FreeBodySpatial<T = f64> {
     method: Method,
 }
 impl<T: Real> FreeBodySpatial<T> {
-    /// The model as it was stated.
+    /// The text of the model.
     pub const SOURCE: &'static str = "/// Free rigid body, spatial representation.\npub model FreeBodySpatial {\n    /// attitude, body to space\n    group Λ: SO<3> velocity ω;\n    /// Poinsot (second-moment) matrix, space frame\n    advected J: Sym<3>;\n    /// reconstruction\n    constraint next(Λ) = ω*Λ;\n    /// advection of the second moments\n    constraint next(J) = ω*J*ω^T;\n    lagrangian = -tr(ω*J)/h;\n}";
-    /// A number that changes when the model or its derivation does.
+    /// A hash of the model and the version of clebsch.
     pub const FINGERPRINT: u64 = 9490886532172270337u64;
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is not an admissible factor of the equation to solve.
+    /// If a parameter is not finite, lacks its declared symmetry, violates an assumption or
+    /// is not an admissible factor of the equation of a step. The error names the parameter.
     pub fn new(
         parameters: FreeBodySpatialParameters<T>,
     ) -> Result<Self, ParameterError> {
@@ -67,7 +67,7 @@ impl<T: Real> FreeBodySpatialState<T> {
         self.momentum.to_body(&self.Λ)
     }
 }
-/// The step and the constants of the trajectory. A state of another body needs a new one.
+/// The step size and the constants of the trajectory. A step from any other state computes the constants again.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeBodySpatialWorkspace<T = f64> {
     h: T,
@@ -115,7 +115,7 @@ impl<T: Real> FreeBodySpatial<T> {
             J: state.J,
         })
     }
-    /// The body behind the quantities of a state.
+    /// The factor of the equation at a state, prepared for the solver.
     #[inline(never)]
     fn factor(
         &self,
@@ -124,10 +124,10 @@ impl<T: Real> FreeBodySpatial<T> {
         let J = state.J;
         Poinsot::new(J).map_err(|e| e.in_field("J_k"))
     }
-    /// One step, in place. Method: C is carried by the motion, constant in the body, and no node term acts, so κ is conserved: solved once, every step explicit.
+    /// One step, in place. Method: explicit up to the root of one quartic at the start, because the left factor is symmetric and constant in the body frame, and no force acts.
     ///
     /// # Errors
-    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    /// If the step cannot be solved. The error gives numbers and a remedy; the state is unchanged.
     #[inline]
     pub fn step(
         &self,
@@ -168,7 +168,7 @@ impl<T: Real> FreeBodySpatial<T> {
     invariants { energy, work.Λ.spatial_momentum, trace_J1, trace_J2, trace_J3,
         momentum_quadratic }
 }
-/// A configuration at one node, solution or not.
+/// A configuration at one node; it need not lie on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeBodySpatialConfiguration<T = f64> {
     /// `Λ` at the node: body -> space.
@@ -238,7 +238,7 @@ impl<T: Real> FreeBodySpatial<T> {
         let m = state.spatial_momentum().0;
         m.dot(&(J * (J * m)))
     }
-    /// The discrete energy of the edge between two consecutive states, `-tr(ω_k J_k)/h² + tr(J_k)/h²`: constant, since it contains the trace of the left factor times the velocity, whose eigenvalues are half of the eigenvalues of the Lax matrix, selected by the principal solution.
+    /// The discrete energy of the edge between two consecutive states, `-tr(ω_k J_k)/h² + tr(J_k)/h²`: constant, since apart from constants, it is the trace of the left factor times the velocity, which the eigenvalues of the Lax matrix determine.
     pub fn discrete_energy(
         &self,
         h: T,
@@ -251,7 +251,7 @@ impl<T: Real> FreeBodySpatial<T> {
     }
 }
 impl FreeBodySpatial<f64> {
-    /// The sizes of all invariants at a state, in steps of `h`.
+    /// The scales of all invariants at a state, for steps of `h`.
     fn scales(&self, state: &FreeBodySpatialState<f64>, h: f64, out: &mut [f64]) {
         type T = f64;
         let J = self.J(state);
@@ -271,7 +271,7 @@ impl FreeBodySpatial<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(ω_k J_k)/h\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, spatial_momentum, trace_J1, trace_J2, trace_J3, momentum_quadratic\ntime reversal        symmetric: second order\ncertificate          16 identities proved by normal form",
-        solver: "Moser-Veselov: C is carried by the motion, constant in the body, and no node term acts, so κ is conserved: solved once, every step explicit",
+        solver: "Moser-Veselov: explicit up to the root of one quartic at the start, because the left factor is symmetric and constant in the body frame, and no force acts",
         orders: &[2, 4, 6, 8, 10],
         preprocessed: true,
         parameters: &[],

@@ -1,10 +1,10 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-//! The model [`FreeBody`](struct@FreeBody) and what belongs to it.
+//! The model [`FreeBody`](struct@FreeBody) with its parameters, states and steps.
 #![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
 #![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
-/// Parameters of [`FreeBody`](struct@FreeBody), as given.
+/// The parameters of [`FreeBody`](struct@FreeBody).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeBodyParameters<T = f64> {
     /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
@@ -18,15 +18,15 @@ pub struct FreeBody<T = f64> {
     method: Method,
 }
 impl<T: Real> FreeBody<T> {
-    /// The model as it was stated.
+    /// The text of the model.
     pub const SOURCE: &'static str = "/// Free rigid body, body representation.\npub model FreeBody {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    constraint next(Λ) = Λ*Ω;\n    lagrangian = -tr(J*Ω)/h;\n}";
-    /// A number that changes when the model or its derivation does.
+    /// A hash of the model and the version of clebsch.
     pub const FINGERPRINT: u64 = 4354950754132218899u64;
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is not an admissible factor of the equation to solve.
+    /// If a parameter is not finite, lacks its declared symmetry, violates an assumption or
+    /// is not an admissible factor of the equation of a step. The error names the parameter.
     pub fn new(parameters: FreeBodyParameters<T>) -> Result<Self, ParameterError> {
         validate::finite_entries("J", &parameters.J)?;
         validate::symmetric("J", &parameters.J)?;
@@ -68,7 +68,7 @@ impl<T: Real> FreeBodyState<T> {
         self.momentum.to_body(&self.Λ)
     }
 }
-/// The step and the constants of the trajectory. Belongs to the state it was started with.
+/// The step size and the constants of the trajectory. A step from any other state computes the constants again.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeBodyWorkspace<T = f64> {
     h: T,
@@ -94,10 +94,10 @@ impl<T: Real> FreeBody<T> {
                 .solved_by(self.method),
         })
     }
-    /// One step, in place. Method: C is constant and no node term acts, so κ is conserved: solved once, every step explicit.
+    /// One step, in place. Method: explicit up to the root of one quartic at the start, because the left factor is symmetric and constant, and no force acts.
     ///
     /// # Errors
-    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    /// If the step cannot be solved. The error gives numbers and a remedy; the state is unchanged.
     #[inline]
     pub fn step(
         &self,
@@ -122,7 +122,7 @@ impl<T: Real> FreeBody<T> {
     observables { state.Λ, state.body_momentum, state.spatial_momentum }
     invariants { energy, work.Λ.spatial_momentum, momentum_squared, momentum_quadratic }
 }
-/// A configuration at one node, solution or not.
+/// A configuration at one node; it need not lie on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeBodyConfiguration<T = f64> {
     /// `Λ` at the node: body -> space.
@@ -178,7 +178,7 @@ impl<T: Real> FreeBody<T> {
         let μ = state.body_momentum().0;
         μ.dot(&(J * (J * μ)))
     }
-    /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h²`: constant, since it contains the trace of the left factor times the velocity, whose eigenvalues are half of the eigenvalues of the Lax matrix, selected by the principal solution.
+    /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h²`: constant, since apart from constants, it is the trace of the left factor times the velocity, which the eigenvalues of the Lax matrix determine.
     pub fn discrete_energy(
         &self,
         h: T,
@@ -191,7 +191,7 @@ impl<T: Real> FreeBody<T> {
     }
 }
 impl FreeBody<f64> {
-    /// The sizes of all invariants at a state, in steps of `h`.
+    /// The scales of all invariants at a state, for steps of `h`.
     fn scales(&self, state: &FreeBodyState<f64>, h: f64, out: &mut [f64]) {
         let FreeBodyParameters { J, .. } = self.parameters;
         let Λ = state.Λ.matrix();
@@ -210,7 +210,7 @@ impl FreeBody<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J Ω_k)/h\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, spatial_momentum, momentum_squared, momentum_quadratic\ntime reversal        symmetric: second order\ncertificate          10 identities proved by normal form",
-        solver: "Moser-Veselov: C is constant and no node term acts, so κ is conserved: solved once, every step explicit",
+        solver: "Moser-Veselov: explicit up to the root of one quartic at the start, because the left factor is symmetric and constant, and no force acts",
         orders: &[2, 4, 6, 8, 10],
         preprocessed: true,
         parameters: &[

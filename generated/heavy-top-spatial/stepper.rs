@@ -1,10 +1,10 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-//! The model [`HeavyTopSpatial`](struct@HeavyTopSpatial) and what belongs to it.
+//! The model [`HeavyTopSpatial`](struct@HeavyTopSpatial) with its parameters, states and steps.
 #![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
 #![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
-/// Parameters of [`HeavyTopSpatial`](struct@HeavyTopSpatial), as given.
+/// The parameters of [`HeavyTopSpatial`](struct@HeavyTopSpatial).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeavyTopSpatialParameters<T = f64> {
     /// `w`: weight; a number.
@@ -19,15 +19,15 @@ pub struct HeavyTopSpatial<T = f64> {
     method: Method,
 }
 impl<T: Real> HeavyTopSpatial<T> {
-    /// The model as it was stated.
+    /// The text of the model.
     pub const SOURCE: &'static str = "/// Heavy top, spatial representation.\npub model HeavyTopSpatial {\n    /// weight\n    param w: Real;\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity ω;\n    /// Poinsot (second-moment) matrix, space frame\n    advected J: Sym<3>;\n    /// vector from support to centre of mass, space frame\n    advected χ: Vec<3>;\n    /// reconstruction\n    constraint next(Λ) = ω*Λ;\n    /// advection of the second moments\n    constraint next(J) = ω*J*ω^T;\n    /// advection of the centre of mass\n    constraint next(χ) = ω*χ;\n    lagrangian = -tr(ω*J)/h - h*w*dot(χ, z);\n}";
-    /// A number that changes when the model or its derivation does.
+    /// A hash of the model and the version of clebsch.
     pub const FINGERPRINT: u64 = 12931622307764238321u64;
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is not an admissible factor of the equation to solve.
+    /// If a parameter is not finite, lacks its declared symmetry, violates an assumption or
+    /// is not an admissible factor of the equation of a step. The error names the parameter.
     pub fn new(
         parameters: HeavyTopSpatialParameters<T>,
     ) -> Result<Self, ParameterError> {
@@ -74,7 +74,7 @@ impl<T: Real> HeavyTopSpatialState<T> {
         self.momentum.to_body(&self.Λ)
     }
 }
-/// The step, the solver's name, the body, and the momentum of the edge that begins at the state `here`. Any other state needs a new one.
+/// The step size, the solver, the left factor, and the momentum of the edge that begins at the state `here`. A step from any other state computes them again.
 #[derive(Clone, Copy, Debug)]
 pub struct HeavyTopSpatialWorkspace<T = f64> {
     h: T,
@@ -111,7 +111,7 @@ impl<T: Real> HeavyTopSpatial<T> {
             node: 0,
         })
     }
-    /// The body behind the quantities of a state.
+    /// The factor of the equation at a state, prepared for the solver.
     #[inline(never)]
     fn factor(
         &self,
@@ -175,13 +175,13 @@ impl<T: Real> HeavyTopSpatial<T> {
     HeavyTopSpatialState { Λ, momentum, J, χ } at node,
     HeavyTopSpatialWorkspace { h, method, factor, edge, here },
     forced { Λ, momentum, J, χ } solver symmetric judged { 3 }
-    ("C is carried by the motion, constant in the body, and symmetric: explicit up to the root of one quartic per step",
+    ("explicit up to the root of one quartic per step, because the left factor is symmetric and constant in the body frame",
         of J)
     observables { state.Λ, state.body_momentum, state.spatial_momentum, J, χ }
     invariants { energy, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi,
         chi_J2_chi, momentum_z }
 }
-/// A configuration at one node, solution or not.
+/// A configuration at one node; it need not lie on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeavyTopSpatialConfiguration<T = f64> {
     /// `Λ` at the node: body -> space.
@@ -293,7 +293,7 @@ impl<T: Real> HeavyTopSpatial<T> {
     }
 }
 impl HeavyTopSpatial<f64> {
-    /// The sizes of all invariants at a state, in steps of `h`.
+    /// The scales of all invariants at a state, for steps of `h`.
     fn scales(&self, state: &HeavyTopSpatialState<f64>, h: f64, out: &mut [f64]) {
         type T = f64;
         let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
@@ -332,7 +332,7 @@ impl HeavyTopSpatial<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(ω_k J_k)/h - ½ h w χ_k·z - ½ h w χ_{k+1}·z\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi, chi_J2_chi, momentum_z\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
-        solver: "Moser-Veselov: C is carried by the motion, constant in the body, and symmetric: explicit up to the root of one quartic per step",
+        solver: "Moser-Veselov: explicit up to the root of one quartic per step, because the left factor is symmetric and constant in the body frame",
         parameters: &[
             Kind::Scalar.field("w", [1, 1], "weight"),
             Kind::Vector.field("z", [3, 1], "vertical (up), space frame"),

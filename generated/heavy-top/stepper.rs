@@ -1,10 +1,10 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-//! The model [`HeavyTop`](struct@HeavyTop) and what belongs to it.
+//! The model [`HeavyTop`](struct@HeavyTop) with its parameters, states and steps.
 #![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
 #![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
-/// Parameters of [`HeavyTop`](struct@HeavyTop), as given.
+/// The parameters of [`HeavyTop`](struct@HeavyTop).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeavyTopParameters<T = f64> {
     /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
@@ -22,15 +22,15 @@ pub struct HeavyTop<T = f64> {
     method: Method,
 }
 impl<T: Real> HeavyTop<T> {
-    /// The model as it was stated.
+    /// The text of the model.
     pub const SOURCE: &'static str = "/// Heavy top, body representation.\npub model HeavyTop {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// weight times the vector from support to centre of mass, body frame\n    param gU: Vec<3> as \"m g \\chi\";\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// vertical, body frame\n    advected Γ: Vec<3> = Λ^T*z;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// advection of Γ\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);\n}";
-    /// A number that changes when the model or its derivation does.
+    /// A hash of the model and the version of clebsch.
     pub const FINGERPRINT: u64 = 13950948476138768826u64;
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is not an admissible factor of the equation to solve.
+    /// If a parameter is not finite, lacks its declared symmetry, violates an assumption or
+    /// is not an admissible factor of the equation of a step. The error names the parameter.
     pub fn new(parameters: HeavyTopParameters<T>) -> Result<Self, ParameterError> {
         validate::finite_entries("J", &parameters.J)?;
         validate::symmetric("J", &parameters.J)?;
@@ -74,7 +74,7 @@ impl<T: Real> HeavyTopState<T> {
         self.momentum.to_body(&self.Λ)
     }
 }
-/// The step, the solver's name, and the momentum of the edge that begins at the state `here`. Any other state needs a new one.
+/// The step size, the solver, and the momentum of the edge that begins at the state `here`. A step from any other state computes the momentum again.
 #[derive(Clone, Copy, Debug)]
 pub struct HeavyTopWorkspace<T = f64> {
     h: T,
@@ -128,12 +128,12 @@ impl<T: Real> HeavyTop<T> {
     HeavyTopState { Λ, momentum } at node,
     HeavyTopWorkspace { h, method, edge, here },
     forced { Λ, momentum } solver symmetric judged { 3 }
-    ("C is constant and symmetric: explicit up to the root of one quartic per step")
+    ("explicit up to the root of one quartic per step, because the left factor is symmetric and constant")
     start { Λ, momentum = body_momentum.to_space }
     observables { state.Λ, state.body_momentum, state.spatial_momentum, Γ }
     invariants { energy, momentum_Gamma, Gamma_squared }
 }
-/// A configuration at one node, solution or not.
+/// A configuration at one node; it need not lie on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeavyTopConfiguration<T = f64> {
     /// `Λ` at the node: body -> space.
@@ -209,7 +209,7 @@ impl<T: Real> HeavyTop<T> {
     }
 }
 impl HeavyTop<f64> {
-    /// The sizes of all invariants at a state, in steps of `h`.
+    /// The scales of all invariants at a state, for steps of `h`.
     fn scales(&self, state: &HeavyTopState<f64>, h: f64, out: &mut [f64]) {
         let HeavyTopParameters { gU, .. } = self.parameters;
         let Γ = self.Γ(state);
@@ -232,7 +232,7 @@ impl HeavyTop<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J Ω_k)/h - ½ h gU·Γ_k - ½ h gU·Γ_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
-        solver: "Moser-Veselov: C is constant and symmetric: explicit up to the root of one quartic per step",
+        solver: "Moser-Veselov: explicit up to the root of one quartic per step, because the left factor is symmetric and constant",
         parameters: &[
             Kind::SecondMoments.field("J", [3, 3], "Poinsot (second-moment) matrix"),
             Kind::Vector

@@ -1,10 +1,10 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-//! The model [`Kepler`](struct@Kepler) and what belongs to it.
+//! The model [`Kepler`](struct@Kepler) with its parameters, states and steps.
 #![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
 #![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
-/// Parameters of [`Kepler`](struct@Kepler), as given.
+/// The parameters of [`Kepler`](struct@Kepler).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeplerParameters<T = f64> {
     /// `m`: mass of the planet; a number.
@@ -18,15 +18,15 @@ pub struct Kepler<T = f64> {
     parameters: KeplerParameters<T>,
 }
 impl<T: Real> Kepler<T> {
-    /// The model as it was stated.
+    /// The text of the model.
     pub const SOURCE: &'static str = "/// Kepler problem: a planet orbits a fixed sun.\npub model Kepler {\n    /// mass of the planet\n    param m: Real;\n    /// gravitational parameter of the sun: the gravitational constant times its mass\n    param k: Real;\n    /// position of the planet relative to the sun\n    field X: Vec<3>;\n    lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + h*m*k/sqrt(dot(X, X));\n}";
-    /// A number that changes when the model or its derivation does.
+    /// A hash of the model and the version of clebsch.
     pub const FINGERPRINT: u64 = 10275978829428782379u64;
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is not an admissible factor of the equation to solve.
+    /// If a parameter is not finite, lacks its declared symmetry, violates an assumption or
+    /// is not an admissible factor of the equation of a step. The error names the parameter.
     pub fn new(parameters: KeplerParameters<T>) -> Result<Self, ParameterError> {
         validate::finite("m", &[parameters.m])?;
         validate::finite("k", &[parameters.k])?;
@@ -60,7 +60,7 @@ impl<T: Real> KeplerState<T> {
         self.momentum
     }
 }
-/// The step and the last velocities, from which the next solves start.
+/// The step size, and the last velocities as initial guesses for the next step.
 #[derive(Clone, Copy, Debug)]
 pub struct KeplerWorkspace<T = f64> {
     h: T,
@@ -84,10 +84,10 @@ impl<T: Real> Kepler<T> {
         }
         Ok(KeplerWorkspace { h })
     }
-    /// One step, in place. Method: the balance is linear: one division.
+    /// One step, in place. Method: one division, because the balance is linear.
     ///
     /// # Errors
-    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    /// If the step cannot be solved. The error gives numbers and a remedy; the state is unchanged.
     #[inline]
     pub fn step(
         &self,
@@ -138,7 +138,7 @@ impl<T: Real> Kepler<T> {
     observables { state.X, state.momentum }
     invariants { energy, momentum_angular }
 }
-/// A configuration at one node, solution or not.
+/// A configuration at one node; it need not lie on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeplerConfiguration<T = f64> {
     /// `X` at the node.
@@ -219,7 +219,7 @@ impl<T: Real> Kepler<T> {
     }
 }
 impl Kepler<f64> {
-    /// The sizes of all invariants at a state, in steps of `h`.
+    /// The scales of all invariants at a state, for steps of `h`.
     fn scales(&self, state: &KeplerState<f64>, h: f64, out: &mut [f64]) {
         let KeplerParameters { m, k, .. } = self.parameters;
         let X = state.X.matrix();
@@ -246,7 +246,7 @@ impl Kepler<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  m ΔX_k·ΔX_k/(2 h) + h m k/(2 |X_k|) + h m k/(2 |X_{k+1}|)\nmomentum of X        m ΔX_k/h\nRiccati form         none; linear, L = m/h, R = 1\ninvariants           energy, momentum_angular\ntime reversal        symmetric: second order\ncertificate          13 identities proved by normal form",
-        solver: "Explicit: the balance is linear: one division",
+        solver: "Explicit: one division, because the balance is linear",
         parameters: &[
             Kind::Scalar.field("m", [1, 1], "mass of the planet"),
             Kind::Scalar

@@ -1,10 +1,10 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-//! The model [`KirchhoffBody`](struct@KirchhoffBody) and what belongs to it.
+//! The model [`KirchhoffBody`](struct@KirchhoffBody) with its parameters, states and steps.
 #![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
 #![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
-/// Parameters of [`KirchhoffBody`](struct@KirchhoffBody), as given.
+/// The parameters of [`KirchhoffBody`](struct@KirchhoffBody).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KirchhoffBodyParameters<T = f64> {
     /// `J`: Poinsot matrix of the rotational inertia plus the added inertia of the fluid, body frame; a 3 x 3 matrix, symmetric.
@@ -25,15 +25,15 @@ pub struct KirchhoffBody<T = f64> {
     inverse_1: SMatrix<T, 3, 3>,
 }
 impl<T: Real> KirchhoffBody<T> {
-    /// The model as it was stated.
+    /// The text of the model.
     pub const SOURCE: &'static str = "/// Rigid body in an ideal fluid, with added mass, rotation-translation coupling and net weight.\npub model KirchhoffBody {\n    /// Poinsot matrix of the rotational inertia plus the added inertia of the fluid, body frame\n    param J: Sym<3>;\n    /// mass plus added mass, body frame\n    param M: Sym<3>;\n    /// coupling of angular and linear velocity, body frame\n    param D: Mat<3>;\n    /// (moment of weight minus buoyancy, net weight), body frame\n    param b: Vec<4>;\n    /// (vertical (up), 0), the plane of height 0, space frame\n    param Z: Vec<4>;\n    /// position and attitude, body to space\n    group G: SE<3> velocity V;\n    /// (vertical, height), body frame\n    advected P: Vec<4> = G^T*Z;\n    constraint next(G) = G*V;\n    constraint next(P) = V^T*P;\n    lagrangian = -tr(J*rot(V))/h + dot((1/2)*(pos(V) + rot(V)^T*pos(V)), (1/2)*M*(pos(V) + rot(V)^T*pos(V)))/(2*h) + dot(vee(rot(V)), (1/2)*D*(pos(V) + rot(V)^T*pos(V)))/h - h*dot(b, P);\n}";
-    /// A number that changes when the model or its derivation does.
+    /// A hash of the model and the version of clebsch.
     pub const FINGERPRINT: u64 = 2595064832746986287u64;
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is not an admissible factor of the equation to solve.
+    /// If a parameter is not finite, lacks its declared symmetry, violates an assumption or
+    /// is not an admissible factor of the equation of a step. The error names the parameter.
     pub fn new(parameters: KirchhoffBodyParameters<T>) -> Result<Self, ParameterError> {
         validate::finite_entries("J", &parameters.J)?;
         validate::symmetric("J", &parameters.J)?;
@@ -78,14 +78,14 @@ impl<T: Real> KirchhoffBodyState<T> {
         self.momentum.to_body(&self.G)
     }
 }
-/// The step and the last velocities, from which the next solve starts.
+/// The step size, and the last velocities as initial guesses for the next step.
 #[derive(Clone, Copy, Debug)]
 pub struct KirchhoffBodyWorkspace<T = f64> {
     h: T,
     search: newton::Search<T, [Rotation<T>; 1], 3, [RigidMotion<T>; 1], 6>,
 }
 impl<T: Real> KirchhoffBodyWorkspace<T> {
-    /// How the last step was solved: tangents, corrections, and the residual before the last.
+    /// The tangents and corrections of the last step, and the residual before its last correction.
     pub fn solved(&self) -> newton::Summary {
         self.search.last()
     }
@@ -103,10 +103,10 @@ impl<T: Real> KirchhoffBody<T> {
             search: newton::Search::from_rest(),
         })
     }
-    /// One step, in place. Method: the group is not SO(n): Newton on the derived residual.
+    /// One step, in place. Method: Newton's method on the derived residual, because the group is not SO(n).
     ///
     /// # Errors
-    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    /// If the step cannot be solved. The error gives numbers and a remedy; the state is unchanged.
     #[inline]
     pub fn step(
         &self,
@@ -278,8 +278,8 @@ impl<T: Real> KirchhoffBody<T> {
         work.search.remember(state.node - 1, &found);
         Ok(())
     }
-    /// The solution to use if the iteration has found none, or one that is not known to be principal.
-    /// `None` if the iteration starts again, at the principal root.
+    /// The solution to use if the iteration fails or its solution may not be principal.
+    /// `None` if the iteration restarts at the principal root.
     #[cold]
     #[inline(never)]
     fn settled(
@@ -341,7 +341,7 @@ impl<T: Real> KirchhoffBody<T> {
             );
         StepCause::from(e).at_node(state.node)
     }
-    /// The trial with these rotations, its translations found.
+    /// The trial with these rotations and the translations that follow from them.
     #[cold]
     #[inline(never)]
     #[allow(unused_variables)]
@@ -407,7 +407,7 @@ impl<T: Real> KirchhoffBody<T> {
             ],
         )
     }
-    /// Their tangent.
+    /// The tangent of the residual.
     #[cold]
     #[inline(never)]
     #[allow(unused_variables)]
@@ -458,7 +458,7 @@ impl<T: Real> KirchhoffBody<T> {
             ],
         )
     }
-    /// Bounds of the rounding of the residual, in one lane.
+    /// Bounds of the rounding errors of the residual, in one lane.
     #[cold]
     #[inline(never)]
     fn rounding(
@@ -495,7 +495,7 @@ impl<T: Real> KirchhoffBody<T> {
             SVector::from([all[0], all[1], all[2]])
         }
     }
-    /// Finds the principal root, or shows that the solution is.
+    /// Finds the principal root, or proves that the given solution is the principal root.
     #[cold]
     #[inline(never)]
     fn principal(
@@ -552,7 +552,7 @@ impl<T: Real> KirchhoffBody<T> {
     invariants { energy, P_part_squared, momentum_linear_across_P_part_squared,
         spatial_momentum_linear_across_Z, spatial_momentum_angular_Z }
 }
-/// A configuration at one node, solution or not.
+/// A configuration at one node; it need not lie on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KirchhoffBodyConfiguration<T = f64> {
     /// `G` at the node: body -> space.
@@ -755,7 +755,7 @@ impl<T: Real> KirchhoffBody<T> {
     }
 }
 impl KirchhoffBody<f64> {
-    /// The sizes of all invariants at a state, in steps of `h`.
+    /// The scales of all invariants at a state, for steps of `h`.
     fn scales(&self, state: &KirchhoffBodyState<f64>, h: f64, out: &mut [f64]) {
         type T = f64;
         let KirchhoffBodyParameters { b, Z, .. } = self.parameters;
@@ -800,7 +800,7 @@ impl KirchhoffBody<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J rot(V_k))/h + ((½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/(2 h) + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h - ½ h b·P_k - ½ h b·P_{k+1}\nmomentum of G        ((pos(V_k) × (M rot(V_k)ᵀ pos(V_k)))/(4 h) + (pos(V_k) × (M pos(V_k)))/(4 h) + (pos(V_k) × (Dᵀ vee(rot(V_k))))/(2 h) - 2 vee(J rot(V_k)ᵀ)/h + vee(rot(V_k) hat(D rot(V_k)ᵀ pos(V_k)))/(2 h) + vee(rot(V_k) hat(D pos(V_k)))/(2 h), M rot(V_k)ᵀ pos(V_k)/(4 h) + M pos(V_k)/(4 h) + Dᵀ vee(rot(V_k))/(2 h) + rot(V_k) M rot(V_k)ᵀ pos(V_k)/(4 h) + rot(V_k) M pos(V_k)/(4 h) + rot(V_k) Dᵀ vee(rot(V_k))/(2 h))\nRiccati form         none: the group is not SO(n)\ninvariants           energy, P_part_squared, momentum_linear_across_P_part_squared, spatial_momentum_linear_across_Z, spatial_momentum_angular_Z\ntime reversal        symmetric: second order\ncertificate          12 identities proved by normal form, 5 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
-        solver: "Newton: the group is not SO(n): Newton on the derived residual",
+        solver: "Newton's method on the derived residual, because the group is not SO(n)",
         parameters: &[
             Kind::SecondMoments
                 .field(

@@ -1,10 +1,10 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-//! The model [`MixedFour`](struct@MixedFour) and what belongs to it.
+//! The model [`MixedFour`](struct@MixedFour) with its parameters, states and steps.
 #![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
 #![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
-/// Parameters of [`MixedFour`](struct@MixedFour), as given.
+/// The parameters of [`MixedFour`](struct@MixedFour).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixedFourParameters<T = f64> {
     /// `J`: second moments of mass of the first body about its fixed point, body frame; a 3 x 3 matrix, symmetric.
@@ -39,15 +39,15 @@ pub struct MixedFour<T = f64> {
     method: Method,
 }
 impl<T: Real> MixedFour<T> {
-    /// The model as it was stated.
+    /// The text of the model.
     pub const SOURCE: &'static str = "/// Two rigid bodies with fixed points, a free rigid body and a point mass, coupled by springs.\npub model MixedFour {\n    /// second moments of mass of the first body about its fixed point, body frame\n    param J: Sym<3>;\n    /// second moments of mass of the free body about its reference point, body frame\n    param A: Sym<3>;\n    /// mass of the free body\n    param M: Real;\n    /// principal moments of inertia of the second body\n    param I: Diag<3>;\n    /// mass of the point mass\n    param m: Real;\n    /// coefficient of the quartic kinetic energy of the point mass\n    param b: Real;\n    /// stiffness of the springs\n    param k: Real;\n    /// attachment points of the springs, body frames: first body, free body, second body\n    param p: Vec<3>;\n    /// attachment points of the springs, body frames: first body, free body, second body\n    param s: Vec<3>;\n    /// attachment points of the springs, body frames: first body, free body, second body\n    param e: Vec<3>;\n    /// gravitational acceleration of the point mass, space frame\n    param g: Vec<3>;\n    /// attitude of the first body, body to space\n    group R: SO<3> velocity V;\n    /// position and attitude of the free body, body to space\n    group G: SE<3> velocity W;\n    /// attitude of the second body, body to space\n    group q: SU<2> velocity Y;\n    /// position of the point mass, space frame\n    field X: Vec<3>;\n    constraint next(R) = R*V;\n    constraint next(G) = G*W;\n    constraint next(q) = q*Y;\n    lagrangian = -tr(J*V)/h - tr(A*rot(W))/h + M*dot(pos(next(G)) - pos(G), pos(next(G)) - pos(G))/(2*h) + 2*dot(im(Y), I*im(Y))/h + m*dot(next(X) - X, next(X) - X)/(2*h) + b*dot(next(X) - X, next(X) - X)^2/h^3 + h*m*dot(g, X) - (1/2)*h*k*dot(X - R*p, X - R*p) - (1/2)*h*k*dot(pos(G) + rot(G)*s - X, pos(G) + rot(G)*s - X) - h*k*dot(rot(q)*e, R*p);\n}";
-    /// A number that changes when the model or its derivation does.
+    /// A hash of the model and the version of clebsch.
     pub const FINGERPRINT: u64 = 11034751247602276517u64;
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-    /// assumption, or is not an admissible factor of the equation to solve.
+    /// If a parameter is not finite, lacks its declared symmetry, violates an assumption or
+    /// is not an admissible factor of the equation of a step. The error names the parameter.
     pub fn new(parameters: MixedFourParameters<T>) -> Result<Self, ParameterError> {
         validate::finite_entries("J", &parameters.J)?;
         validate::symmetric("J", &parameters.J)?;
@@ -157,7 +157,7 @@ impl<T: Real> MixedFourState<T> {
         self.momentum_X
     }
 }
-/// The step, the solver's name, and the last velocities, from which the next solves start.
+/// The step size, the solver, and the last velocities as initial guesses for the next step.
 #[derive(Clone, Copy, Debug)]
 pub struct MixedFourWorkspace<T = f64> {
     h: T,
@@ -190,10 +190,10 @@ impl<T: Real> MixedFour<T> {
             search_4: newton::Search::from_rest(),
         })
     }
-    /// One step, in place. Method: block by block: V, C is constant: Moser-Veselov; W, the group is not SO(n): Newton; Y, A is constant and symmetric, β constant: one equation for one number; ΔX, the balance is not linear in ΔX: Newton.
+    /// One step, in place. Method: V by a Moser-Veselov solver, because its left factor is constant; W by Newton's method, because the group is not SO(n); Y by one scalar equation, because its coefficients are constant; ΔX by Newton's method, because the balance is not linear in ΔX.
     ///
     /// # Errors
-    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    /// If the step cannot be solved. The error gives numbers and a remedy; the state is unchanged.
     #[inline]
     pub fn step(
         &self,
@@ -506,8 +506,8 @@ impl<T: Real> MixedFour<T> {
             );
         StepCause::from(e).at_node(state.node)
     }
-    /// The solution to use if the iteration has found none, or one that is not known to be principal.
-    /// `None` if the iteration starts again, at the principal root.
+    /// The solution to use if the iteration fails or its solution may not be principal.
+    /// `None` if the iteration restarts at the principal root.
     #[cold]
     #[inline(never)]
     fn settled_2(
@@ -573,7 +573,7 @@ impl<T: Real> MixedFour<T> {
             );
         StepCause::from(e).at_node(state.node)
     }
-    /// The trial with these rotations, its translations found.
+    /// The trial with these rotations and the translations that follow from them.
     #[cold]
     #[inline(never)]
     #[allow(unused_variables)]
@@ -630,7 +630,7 @@ impl<T: Real> MixedFour<T> {
             ],
         )
     }
-    /// Their tangent.
+    /// The tangent of the residual.
     #[cold]
     #[inline(never)]
     #[allow(unused_variables)]
@@ -657,7 +657,7 @@ impl<T: Real> MixedFour<T> {
             ],
         )
     }
-    /// Bounds of the rounding of the residual, in one lane.
+    /// Bounds of the rounding errors of the residual, in one lane.
     #[cold]
     #[inline(never)]
     fn rounding_2(
@@ -694,7 +694,7 @@ impl<T: Real> MixedFour<T> {
             SVector::from([all[0], all[1], all[2]])
         }
     }
-    /// Finds the principal root, or shows that the solution is.
+    /// Finds the principal root, or proves that the given solution is the principal root.
     #[cold]
     #[inline(never)]
     fn principal_2(
@@ -761,8 +761,8 @@ impl<T: Real> MixedFour<T> {
             );
         StepCause::from(e).at_node(state.node)
     }
-    /// The solution to use if the iteration has found none, or one that is not known to be principal.
-    /// `None` if the iteration starts again, at the principal root.
+    /// The solution to use if the iteration fails or its solution may not be principal.
+    /// `None` if the iteration restarts at the principal root.
     #[cold]
     #[inline(never)]
     fn settled_4(
@@ -842,7 +842,7 @@ impl<T: Real> MixedFour<T> {
             + X * (h * k) - motion_rotation(&G) * s * (T::from_f64(0.5) * h * k)
             - motion_translation(&G) * (T::from_f64(0.5) * h * k)) - momenta[0]
     }
-    /// Their tangent.
+    /// The tangent of the residual.
     #[cold]
     #[inline(never)]
     #[allow(unused_variables)]
@@ -870,7 +870,7 @@ impl<T: Real> MixedFour<T> {
         }
         matrix
     }
-    /// Bounds of the rounding of the residual, in one lane.
+    /// Bounds of the rounding errors of the residual, in one lane.
     #[cold]
     #[inline(never)]
     fn rounding_4(
@@ -895,7 +895,7 @@ impl<T: Real> MixedFour<T> {
         >::residual_at_4(&parameters, step, &given, &momenta, &trial)
             .map(|x| x.error())
     }
-    /// Finds the principal root, or shows that the solution is.
+    /// Finds the principal root, or proves that the given solution is the principal root.
     #[cold]
     #[inline(never)]
     fn principal_4(
@@ -954,7 +954,7 @@ impl<T: Real> MixedFour<T> {
         state.spatial_momentum_q, state.X, state.momentum_X, relative_R_q }
     invariants { total_momentum_angular_g }
 }
-/// A configuration at one node, solution or not.
+/// A configuration at one node; it need not lie on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixedFourConfiguration<T = f64> {
     /// `R` at the node: body -> space.
@@ -1315,7 +1315,7 @@ impl<T: Real> MixedFour<T> {
     }
 }
 impl MixedFour<f64> {
-    /// The sizes of all invariants at a state, in steps of `h`.
+    /// The scales of all invariants at a state, for steps of `h`.
     fn scales(&self, state: &MixedFourState<f64>, h: f64, out: &mut [f64]) {
         type T = f64;
         let MixedFourParameters { m, k, p, s, e: e_, g, .. } = self.parameters;
@@ -1386,7 +1386,7 @@ impl MixedFour<f64> {
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J V_k)/h - tr(A rot(W_k))/h + M pos(W_k)·pos(W_k)/(2 h) + 2 im(Y_k)·(I im(Y_k))/h + m ΔX_k·ΔX_k/(2 h) + b (ΔX_k·ΔX_k)²/h³ + ½ h m g·X_k - ¼ h k (X_k - R_k p)·(X_k - R_k p) - ¼ h k (pos(G_k) + rot(G_k) s - X_k)·(pos(G_k) + rot(G_k) s - X_k) - ½ h k e·(relative_{R,q,k}ᵀ p) + ½ h m g·X_{k+1} - ¼ h k (X_{k+1} - R_{k+1} p)·(X_{k+1} - R_{k+1} p) - ¼ h k (pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1})·(pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1}) - ½ h k e·(relative_{R,q,k+1}ᵀ p)\nmomentum of R        -J V_kᵀ/h + V_k J/h\nmomentum of G        (-2 vee(A rot(W_k)ᵀ)/h, M pos(W_k)/h)\nmomentum of q        2 im(Y_k quat(I im(Y_k)))/h\nmomentum of X        4 b (ΔX_k·ΔX_k) ΔX_k/h³ + m ΔX_k/h\nRiccati form         exact, C = J; none: the group is not SO(n); none; in unit quaternions, A = I, β = 0; none: the balance is not linear in ΔX\ninvariants           total_momentum_angular_g\ntime reversal        symmetric: second order\ncertificate          51 identities proved by normal form, 10 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
-        solver: "Blocks: block by block: V, C is constant: Moser-Veselov; W, the group is not SO(n): Newton; Y, A is constant and symmetric, β constant: one equation for one number; ΔX, the balance is not linear in ΔX: Newton",
+        solver: "Blocks: V by a Moser-Veselov solver, because its left factor is constant; W by Newton's method, because the group is not SO(n); Y by one scalar equation, because its coefficients are constant; ΔX by Newton's method, because the balance is not linear in ΔX",
         parameters: &[
             Kind::SecondMoments
                 .field(

@@ -138,7 +138,7 @@ def test_options():
 def test_steps_are_judged_by_the_action_as_stated(top):
     run = top.run(**top_values(steps=300), judge="sample")
     text, judged, holds = run.stated
-    assert judged == 101 and holds and "101 steps judged" in text
+    assert judged == 101 and holds and "101 steps checked" in text
     assert top.run(**top_values(steps=10), judge="all").stated[1] == 10
     assert top.run(**top_values(steps=10)).stated is None
 

@@ -149,8 +149,9 @@ impl Legendre {
                 continue;
             };
             let numbers = moved(role, own.of(node), velocity, setup.h);
-            let numbers =
-                numbers.ok_or_else(|| format!("the velocity of `{}` does not fit", m.name))?;
+            let numbers = numbers.ok_or_else(|| {
+                format!("the size of the velocity of `{}` does not match", m.name)
+            })?;
             put(&mut after, own.from, &numbers);
         }
         let nothing = Varied::new();

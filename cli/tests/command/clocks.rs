@@ -29,7 +29,7 @@ fn numbers_carried_by_any_rule_are_judged_by_it() {
         folder.write("carried.clebsch", &text);
         folder
             .runs(&format!("run @carried.clebsch --case {case} --check all"))
-            .prints("5 steps judged");
+            .prints("5 steps checked");
     }
 }
 

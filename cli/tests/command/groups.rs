@@ -20,7 +20,7 @@ fn a_motion_of_the_plane_seen_from_space_is_judged() {
     folder
         .runs(&format!("run @plate.clebsch --case {case} --steps 50"))
         .never_prints("NaN")
-        .prints("50 steps judged");
+        .prints("50 steps checked");
 }
 
 /// Advected quantities at sites may have different shapes even if their names differ only by a number.

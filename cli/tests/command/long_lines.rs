@@ -76,7 +76,7 @@ fn wrong_data_of_a_long_line_name_their_site() {
         ))
     };
     let done = of_order("4").succeeds();
-    done.prints("steps judged, largest residual");
+    done.prints("steps checked, largest residual");
     of_order("3").refuses("2, 4, 6, 8");
 }
 

@@ -31,27 +31,27 @@ macro_rules! judged {
     };
 }
 judged! {
-    fluid_ellipsoid: "elastic/fluid-ellipsoid" "10" "10 steps judged";
-    kirchhoff_static: "elastic/kirchhoff-static" "40" "40 steps judged";
-    mooney_rivlin: "elastic/mooney-rivlin" "40" "40 steps judged";
-    neo_hooke: "elastic/neo-hooke" "40" "40 steps judged";
-    pseudo_rigid: "elastic/pseudo-rigid" "5" "5 steps judged";
-    pseudo_rigid_anisotropic: "elastic/pseudo-rigid-anisotropic" "2" "2 steps judged";
-    pseudo_rigid_bipolar: "elastic/pseudo-rigid-bipolar" "1" "1 step judged";
-    pseudo_rigid_positive: "elastic/pseudo-rigid-positive" "2" "2 steps judged";
-    spherical_pendulum: "elastic/spherical-pendulum" "40" "40 steps judged";
-    circular_rod: "lattices/circular-rod" "5" "5 steps judged";
-    coupled_body_chain: "lattices/coupled-body-chain" "5" "5 steps judged";
-    coupled_tops: "lattices/coupled-tops" "5" "5 steps judged";
-    geometrically_exact_rod: "lattices/geometrically-exact-rod" "5" "5 steps judged";
-    hanging_chain: "lattices/hanging-chain" "5" "5 steps judged";
-    kirchhoff_rod: "lattices/kirchhoff-rod" "5" "5 steps judged";
-    quaternion_rod: "lattices/quaternion-rod" "5" "5 steps judged";
-    shallow_water_1d: "lattices/shallow-water-1d" "5" "5 steps judged";
-    sine_gordon: "lattices/sine-gordon" "5" "5 steps judged";
-    toda_chain: "lattices/toda-chain" "5" "5 steps judged";
-    uniform_tension_rod: "lattices/uniform-tension-rod" "5" "5 steps judged";
-    particle_mesh: "fluids/particle-mesh-1d" "2" "not judged: functionals of all sites";
+    fluid_ellipsoid: "elastic/fluid-ellipsoid" "10" "10 steps checked";
+    kirchhoff_static: "elastic/kirchhoff-static" "40" "40 steps checked";
+    mooney_rivlin: "elastic/mooney-rivlin" "40" "40 steps checked";
+    neo_hooke: "elastic/neo-hooke" "40" "40 steps checked";
+    pseudo_rigid: "elastic/pseudo-rigid" "5" "5 steps checked";
+    pseudo_rigid_anisotropic: "elastic/pseudo-rigid-anisotropic" "2" "2 steps checked";
+    pseudo_rigid_bipolar: "elastic/pseudo-rigid-bipolar" "1" "1 step checked";
+    pseudo_rigid_positive: "elastic/pseudo-rigid-positive" "2" "2 steps checked";
+    spherical_pendulum: "elastic/spherical-pendulum" "40" "40 steps checked";
+    circular_rod: "lattices/circular-rod" "5" "5 steps checked";
+    coupled_body_chain: "lattices/coupled-body-chain" "5" "5 steps checked";
+    coupled_tops: "lattices/coupled-tops" "5" "5 steps checked";
+    geometrically_exact_rod: "lattices/geometrically-exact-rod" "5" "5 steps checked";
+    hanging_chain: "lattices/hanging-chain" "5" "5 steps checked";
+    kirchhoff_rod: "lattices/kirchhoff-rod" "5" "5 steps checked";
+    quaternion_rod: "lattices/quaternion-rod" "5" "5 steps checked";
+    shallow_water_1d: "lattices/shallow-water-1d" "5" "5 steps checked";
+    sine_gordon: "lattices/sine-gordon" "5" "5 steps checked";
+    toda_chain: "lattices/toda-chain" "5" "5 steps checked";
+    uniform_tension_rod: "lattices/uniform-tension-rod" "5" "5 steps checked";
+    particle_mesh: "fluids/particle-mesh-1d" "2" "not checked: functionals of all sites";
 }
 
 /// Which steps are judged, and what the object says of them.
@@ -73,7 +73,7 @@ fn the_steps_that_are_judged_are_those_asked_for() {
     assert_eq!(of("all")["judged"], 300);
     assert!(of("none").is_null());
     clebsch("run free-body --steps 10 --order 4")
-        .prints("action as stated: not judged: a step of order 4 uses modified moments");
+        .prints("action as stated: not checked: a step of order 4 uses modified moments");
 }
 
 /// Each part of a composed step is judged with its own step size, for compiled bodies, for bodies read from a
@@ -119,5 +119,5 @@ fn a_body_at_rest_is_no_failure_of_the_check() {
     let case = folder.write("rest.toml", case);
     folder
         .runs(&format!("run @rest.clebsch --case {case}"))
-        .prints("20 steps judged, largest residual 0 of");
+        .prints("20 steps checked, largest residual 0 of");
 }

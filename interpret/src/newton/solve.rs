@@ -340,8 +340,8 @@ impl Solve {
         Ok(rows.filter_map(|i| all.get(i).copied()).collect())
     }
 
-    /// The solution to use if the iteration has found none, or one that is not known to be principal.
-    /// `None` if the iteration starts again, at the principal root.
+    /// The solution to use if the iteration fails or its solution may not be principal.
+    /// `None` if the iteration restarts at the principal root.
     #[cold]
     fn settle(
         &self,

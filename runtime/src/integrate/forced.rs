@@ -37,7 +37,7 @@ macro_rules! forced_step {
         #[doc = concat!(" One step, in place. Method: ", $solved, ".")]
         ///
         /// # Errors
-        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+        /// If the step cannot be solved. The error gives numbers and a remedy; the state is unchanged.
         #[inline]
         $visible fn $step(
             &self,

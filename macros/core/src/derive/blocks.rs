@@ -6,7 +6,7 @@
 use super::balance::{Balance, shorter};
 use super::holds;
 use super::seen_from_body::outgoing;
-use super::select_solver::{Method, Solve, StepEquation, is_constant, is_of_space};
+use super::select_solver::{BECAUSE, Method, Solve, StepEquation, is_constant, is_of_space};
 use super::two_sided_linear::TwoSidedLinear;
 use super::variation::at;
 use super::{Derivation, Letters};
@@ -21,7 +21,7 @@ pub struct Block {
     pub members: Vec<usize>,
     /// The method: a left factor, Davenport's eigenvalue problem, a linear balance or Newton.
     pub method: Method,
-    /// The reason for the method, in one clause.
+    /// The method in words and, after [`BECAUSE`], the reason for it.
     pub reason: String,
     /// The constraints whose multipliers are solved with it.
     pub holds: Vec<usize>,
@@ -37,8 +37,8 @@ impl Block {
 
     /// How a step solves a linear balance.
     pub fn linear_work(&self) -> Option<&str> {
-        let why = self.is_linear().then_some(self.reason.as_str())?;
-        Some(why.strip_prefix(LINEAR).unwrap_or(why))
+        let (work, _) = self.reason.split_once(BECAUSE)?;
+        self.is_linear().then_some(work)
     }
 
     /// Whether it is a Moser-Veselov equation with a left factor known at the node.
@@ -114,7 +114,7 @@ pub fn blocks(
 }
 
 /// How velocities are solved together with multipliers.
-pub(super) const HELD: &str = "velocities and multipliers together, so that the constraints hold at the end of the step: Newton on the derived residuals";
+pub(super) const HELD: &str = "Newton's method for velocities and multipliers together, because the constraints must be satisfied at the end of the step";
 
 /// Why Newton's method solves a linear system.
 const ONE_SYSTEM: &str = "one linear system, which the first correction of Newton's method solves";
@@ -154,25 +154,27 @@ fn block(spec: &Spec, letters: &Letters, riccati: &[StepEquation], members: Vec<
         [i] => match &riccati[*i] {
             StepEquation::Exact(mv) if is_constant(letters, mv) => (
                 Method::LeftFactor,
-                "C is constant: Moser-Veselov".to_owned(),
+                format!("a Moser-Veselov solver{BECAUSE}its left factor is constant"),
             ),
             StepEquation::Exact(_) if is_of_space(&spec.configurations[*i]) => (
                 Method::Davenport,
-                "C is known at each node: the largest real eigenvalue of a 4 x 4 matrix".to_owned(),
+                format!(
+                    "the largest real eigenvalue of a 4 x 4 matrix{BECAUSE}its left factor is known at each node"
+                ),
             ),
             StepEquation::Quaternionic(q)
                 if is_constant(letters, &q.edge) && spec.configurations[*i].side.is_body() =>
             {
-                let why = "A is constant and symmetric, β constant: one equation for one number";
-                (Method::UnitQuaternions, why.to_owned())
+                let how = format!("one scalar equation{BECAUSE}its coefficients are constant");
+                (Method::UnitQuaternions, how)
             }
             StepEquation::Linear(form) => (Method::Linear, linear(form)),
-            StepEquation::None(why) => (Method::Newton, format!("{why}: Newton")),
-            _ => (Method::Newton, "Newton on the derived residual".to_owned()),
+            StepEquation::None(why) => (Method::Newton, format!("Newton's method{BECAUSE}{why}")),
+            _ => (Method::Newton, "Newton's method".to_owned()),
         },
         _ => (
             Method::Newton,
-            "solved together: Newton on the derived residuals".to_owned(),
+            format!("Newton's method{BECAUSE}their equations are coupled"),
         ),
     };
     Block {
@@ -184,9 +186,6 @@ fn block(spec: &Spec, letters: &Letters, riccati: &[StepEquation], members: Vec<
     }
 }
 
-/// The text before the description of the solution of a linear balance.
-const LINEAR: &str = "the balance is linear: ";
-
 /// How a linear balance is solved.
 fn linear(form: &TwoSidedLinear) -> String {
     let number = |e: &Expr| e.shape().is_scalar();
@@ -195,7 +194,7 @@ fn linear(form: &TwoSidedLinear) -> String {
         (false, false) => "two small linear systems",
         _ => "one small linear system",
     };
-    format!("{LINEAR}{what}")
+    format!("{what}{BECAUSE}the balance is linear")
 }
 
 /// The methods of all blocks in one sentence, with equal ones combined.
@@ -210,17 +209,18 @@ pub fn reasons(letters: &Letters, spec: &Spec, blocks: &[Block]) -> String {
     let mut groups: Vec<(&str, Vec<String>)> = Vec::new();
     for b in blocks {
         let names: Vec<String> = b.members.iter().map(name).collect();
-        let names = names.join(" and ");
+        let names = names.join(" with ");
         match groups.iter_mut().find(|(reason, _)| *reason == b.reason) {
             Some((_, list)) => list.push(names),
             None => groups.push((&b.reason, vec![names])),
         }
     }
-    let each = groups
-        .iter()
-        .map(|(reason, list)| format!("{}, {reason}", list.join("; ")));
+    let each = groups.iter().map(|(reason, list)| match list.as_slice() {
+        [only] => format!("{only} by {reason}"),
+        several => format!("{} each by {reason}", several.join(", ")),
+    });
     let clauses: Vec<String> = each.collect();
-    format!("block by block: {}", clauses.join("; "))
+    clauses.join("; ")
 }
 
 impl Derivation {

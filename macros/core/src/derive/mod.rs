@@ -250,8 +250,8 @@ impl Derivation {
         match degenerate.filter(|_| self.solve.needs_second_moments()) {
             None => reason.clone(),
             Some((rank, n)) => format!(
-                "{reason}, but the kinetic energy has rank {rank} of {n}: every choice of the parameters is rejected at the \
-                 start"
+                "{reason}; but the kinetic energy has rank {rank} of {n}, so every choice of the parameters is rejected at \
+                 the start"
             ),
         }
     }

@@ -34,8 +34,6 @@ pub(super) fn form(
     i: usize,
     algebra: &Algebra,
 ) -> Result<(Expr, Expr, Expr), String> {
-    let refused =
-        "the momentum is not the momentum of a quadratic form plus a multiple of the real part";
     let name = &letters.symbols.get(spec.configurations[i].velocity).name;
     // As the balance of a model with a single configuration.
     let own = Spec {
@@ -55,7 +53,9 @@ pub(super) fn form(
     };
     whole
         .or_else(without_node)
-        .ok_or_else(|| format!("{refused} of {name}"))
+        .ok_or_else(|| {
+            format!("the Lagrangian is not a quadratic form in the imaginary part of {name} plus a multiple of its real part")
+        })
 }
 
 fn read(

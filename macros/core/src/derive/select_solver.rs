@@ -77,6 +77,12 @@ pub enum Method {
     Blocks,
 }
 
+/// Joins a method and its reason.
+pub(crate) const BECAUSE: &str = ", because ";
+
+/// Newton's method for one equation.
+const NEWTON: &str = "Newton's method on the derived residual";
+
 /// The equations to solve, and how they are solved.
 #[derive(Clone, Debug)]
 pub struct Solve {
@@ -84,7 +90,7 @@ pub struct Solve {
     pub riccati: Vec<StepEquation>,
     /// The method of the emitted stepper.
     pub method: Method,
-    /// The reason for this method, in one sentence.
+    /// The method and, after [`BECAUSE`], the reason for it.
     pub reason: String,
     /// `C` in the other frame, if it is constant along the motion: it depends on parameters and on the reference
     /// values of advected quantities.
@@ -182,57 +188,66 @@ pub fn select_solver(
         [StepEquation::Exact(mv)] if three(0) && mv.symmetric && is_free(mv) => (
             Method::FreeMoserVeselov,
             format!(
-                "C is {} and no node term acts, so κ is conserved: solved once, every step explicit",
+                "explicit up to the root of one quartic at the start{BECAUSE}the left factor is symmetric and {}, and no \
+                 force acts",
                 constancy(letters, mv)
             ),
         ),
         [StepEquation::Exact(mv)] if three(0) && mv.symmetric && keeps_edge(mv) => (
             Method::ForcedMoserVeselov,
-            format!("C is {} and symmetric: {kappa}", constancy(letters, mv)),
+            format!(
+                "{kappa}{BECAUSE}the left factor is symmetric and {}",
+                constancy(letters, mv)
+            ),
         ),
         [StepEquation::Quaternionic(q)] if keeps_edge(&q.edge) => (
             Method::UnitQuaternions,
             format!(
-                "A is {} and symmetric, β constant: one equation for one number a step",
+                "one scalar equation per step{BECAUSE}its coefficients are {}",
                 constancy(letters, &q.edge)
             ),
         ),
         [StepEquation::Quaternionic(_)] => (
             Method::Newton,
-            "A depends on the step or changes along the motion: Newton on the derived residual"
-                .to_owned(),
+            format!(
+                "{NEWTON}{BECAUSE}a coefficient depends on the step size or changes along the motion"
+            ),
         ),
         [StepEquation::Exact(_)] if turned.is_some() => (
             Method::LeftFactor,
-            format!("C is constant seen from the body, where the equation is solved: {solver}"),
+            format!("{solver}, in the body frame{BECAUSE}the left factor is constant there"),
         ),
         [StepEquation::Exact(mv)] if three(0) && !is_constant(letters, mv) => (
             Method::Davenport,
-            "C is known at each node: the largest real eigenvalue of a 4 x 4 matrix".to_owned(),
+            format!(
+                "the largest real eigenvalue of a 4 x 4 matrix{BECAUSE}the left factor is known at each node but is not \
+                 constant"
+            ),
         ),
         [StepEquation::Exact(mv)] if three(0) && mv.symmetric => (
             Method::LeftFactor,
-            format!("C is constant and symmetric: {kappa}"),
+            format!("{kappa}{BECAUSE}the left factor is symmetric and constant"),
         ),
         [StepEquation::Exact(_)] if three(0) => (
             Method::LeftFactor,
-            format!("C is constant, a rotation times a symmetric matrix: {kappa}"),
+            format!(
+                "{kappa}{BECAUSE}the left factor is constant and equals a rotation times a symmetric matrix"
+            ),
         ),
-        [StepEquation::Exact(mv)] if is_constant(letters, mv) => {
-            (Method::LeftFactor, format!("C is constant: {iterated}"))
-        }
+        [StepEquation::Exact(mv)] if is_constant(letters, mv) => (
+            Method::LeftFactor,
+            format!("{iterated}{BECAUSE}the left factor is constant"),
+        ),
         [StepEquation::Exact(_)] => (
             Method::Newton,
-            "C depends on the step or changes along the motion: Newton on the derived residual"
-                .to_owned(),
+            format!(
+                "{NEWTON}{BECAUSE}the left factor depends on the step size or changes along the motion"
+            ),
         ),
-        [StepEquation::None(why)] => (
-            Method::Newton,
-            format!("{why}: Newton on the derived residual"),
-        ),
+        [StepEquation::None(why)] => (Method::Newton, format!("{NEWTON}{BECAUSE}{why}")),
         _ => (
             Method::Newton,
-            "several velocities are solved together: Newton on the derived residuals".to_owned(),
+            format!("{NEWTON}s{BECAUSE}the equations of several velocities are coupled"),
         ),
     };
     let seen_from_body = match method {
@@ -299,7 +314,7 @@ pub(super) fn is_constant(letters: &Letters, mv: &MoserVeselov) -> bool {
 fn constancy(letters: &Letters, mv: &MoserVeselov) -> &'static str {
     match is_constant(letters, mv) {
         true => "constant",
-        false => "carried by the motion, constant in the body,",
+        false => "constant in the body frame",
     }
 }
 
@@ -494,7 +509,9 @@ fn riccati(
     let poly = algebra.lower(&matrix);
     let Some((factor, rest)) = split(algebra, &poly, c.velocity, s) else {
         let name = &s.get(c.velocity).name;
-        return StepEquation::None(format!("the momentum is not linear in {name} on the left"));
+        return StepEquation::None(format!(
+            "the momentum is not linear in {name} as its left factor"
+        ));
     };
     let step = expr::here(s, spec.step);
     // h N = Ω C^T - C Ω^T, and the balance contains 1/h.
@@ -517,7 +534,9 @@ fn riccati(
     let own = at(c.velocity, Shift::HERE);
     if expr::contains(&mv.factor, own) || expr::contains(&mv.rest, own) {
         let name = &s.get(c.velocity).name;
-        return StepEquation::None(format!("the momentum is not linear in {name} on the left"));
+        return StepEquation::None(format!(
+            "the momentum is not linear in {name} as its left factor"
+        ));
     }
     let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
     if moving(&mv.factor) || moving(&mv.rest) {

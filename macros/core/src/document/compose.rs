@@ -94,6 +94,8 @@ pub fn without_remarks(stated: &str) -> String {
 fn meanings(sheet: &Sheet) -> Vec<Vec<Inline>> {
     let spec = &sheet.d.spec;
     let mut out: Vec<Vec<Inline>> = Vec::new();
+    // The documentation of the last item, and the position after its names: one statement documents all its names.
+    let mut shared: Option<(String, usize)> = None;
     // Letters that the derivation adds are undocumented.
     for id in spec.symbols.ids() {
         let symbol = spec.symbols.get(id);
@@ -102,7 +104,17 @@ fn meanings(sheet: &Sheet) -> Vec<Vec<Inline>> {
             continue;
         }
         // Printed without a time index: the sentence names the quantity, not its value at a node.
-        let mut words: Vec<Inline> = vec![Formula::Continuous(Box::new(sheet.here(id))).into()];
+        let name: Inline = Formula::Continuous(Box::new(sheet.here(id))).into();
+        if symbol.typeset.is_none()
+            && let Some((_, end)) = shared.as_mut().filter(|(shared, _)| *shared == doc)
+            && let Some(item) = out.last_mut()
+        {
+            item.splice(*end..*end, [", ".into(), name]);
+            *end += 2;
+            continue;
+        }
+        shared = symbol.typeset.is_none().then(|| (doc.clone(), 1));
+        let mut words: Vec<Inline> = vec![name];
         if symbol.typeset.is_some() {
             words.extend([" is ".into(), Inline::Code(symbol.name.clone())]);
             words.push(" of the model".into());
@@ -263,7 +275,7 @@ fn action(sheet: &Sheet, doc: &mut Document) {
     if let Some(scale) = &d.spec.scale {
         let typed = Formula::name("ℓ^{typed}");
         section.paragraph([
-            "The Lagrangian is typed as ".into(),
+            "The model states ".into(),
             sheet.math(scale).into(),
             " times the discrete Lagrangian:".into(),
         ]);
@@ -280,7 +292,7 @@ fn action(sheet: &Sheet, doc: &mut Document) {
         section.equation(Formula::equal(Formula::name("ℓ"), physical(sheet)));
     }
     if d.action.nodal.is_zero() {
-        section.text("The discrete Lagrangian of the step from a node to the next:");
+        section.text("The discrete Lagrangian of the step from one node to the next:");
     } else {
         section.text(match d.spec.node_rule {
             NodeRule::Symmetric => {
@@ -307,7 +319,7 @@ fn action(sheet: &Sheet, doc: &mut Document) {
         .iter()
         .any(|c| c.group.is_orthogonal())
     {
-        ", and gradients are taken in this pairing. The Clebsch action adds one multiplier for each constraint; that of a rotation enters with a factor 1/2:"
+        ", and gradients are taken in this pairing. The Clebsch action adds one multiplier for each constraint; the multiplier of a rotation enters with a factor 1/2:"
     } else {
         ", and gradients are taken in this pairing. The Clebsch action adds one multiplier for each constraint:"
     };

@@ -61,8 +61,8 @@ pub fn held(sheet: &Sheet, doc: &mut Document) {
         .map(|h| sheet.here(h.multiplier))
         .collect();
     let mut words: Vec<Inline> = vec![match names.len() {
-        1 => "The multiplier ".into(),
-        _ => "The multipliers ".into(),
+        1 => "The step solves for the multiplier ".into(),
+        _ => "The step solves for the multipliers ".into(),
     }];
     for (i, name) in names.into_iter().enumerate() {
         if i > 0 {
@@ -72,8 +72,8 @@ pub fn held(sheet: &Sheet, doc: &mut Document) {
     }
     words.push(
         match d.spec.holds.len() {
-            1 => " is solved for in the step, so that the constraint is satisfied at its end (SHAKE):",
-            _ => " are solved for in the step, so that the constraints are satisfied at its end (SHAKE):",
+            1 => ", so that the constraint is satisfied at its end (SHAKE):",
+            _ => ", so that the constraints are satisfied at its end (SHAKE):",
         }
         .into(),
     );
@@ -116,11 +116,11 @@ pub(super) const ALONG: &str = "so that the velocity on the left is tangent to t
 /// The sentence before the equations for the reported multipliers; `MIDDLE` follows these equations.
 pub(super) fn no_change(d: &Derivation) -> String {
     format!(
-        "The projection changes no configuration: without it, the multiplier of the next step would supply the same impulse. The reported multiplier at node {} is the multiplier of the step that ended there, combined with the impulse of the projection divided by the step size:",
+        "The projection does not change the configuration: without it, the multiplier of the next step would supply the same impulse. The reported multiplier at node {} is the multiplier of the step that ended there, combined with the impulse of the projection divided by the step size:",
         d.spec.time_index
     )
 }
-pub(super) const MIDDLE: &str = "It approximates the multiplier at the middle of that step to second order; each of its two parts contributes about half of it.";
+pub(super) const MIDDLE: &str = "It approximates the multiplier at the middle of that step to second order; its two parts contribute about half each.";
 
 /// Substitutes velocities for variations.
 fn velocities(d: &Derivation) -> Vec<(Letter, Expr)> {

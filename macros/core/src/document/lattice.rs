@@ -179,11 +179,11 @@ fn sites(lattice: &Lattice, doc: &mut Document) {
         let spacing = l.step.as_ref();
         let spacing = spacing.map_or_else(String::new, |s| format!("; the spacing is {}", s.text));
         section.text(&format!(
-            "The label {index} indexes a line of {count} segments: nodes {index} = 0, ..., {count} and segments {index} = 0, ..., {count}-1; segment {index} joins the nodes {index} and {index}+1{spacing}."
+            "The label {index} indexes a chain of {count} segments: nodes {index} = 0, ..., {count} and segments {index} = 0, ..., {count}-1; segment {index} joins the nodes {index} and {index}+1{spacing}."
         ));
         if lattice.periodic.is_some() {
             section.text(&format!(
-                "Closed to a ring it has {count} nodes and {count} segments, indices taken modulo {count}."
+                "If the chain is closed to a ring, it has {count} nodes and {count} segments, and indices are taken modulo {count}."
             ));
         }
         for q in lattice.quantities.iter().filter(|q| q.label == i) {
@@ -291,13 +291,13 @@ fn terms(folded: &mut IndexedNotation, part: &Part, doc: &mut Document) {
     for stated in holds::stated_holds(part) {
         let name = stated.name;
         section.text(&format!(
-            "The action of a step also contains, at every site, the constraint term of the multiplier {name}: the step size times {name} paired with the left side minus the right side of its constraint, at the start of the step."
+            "At every site, the action of a step also contains the constraint term of the multiplier {name}. It is the step size times {name}, paired with the left side minus the right side of the constraint at the start of the step."
         ));
     }
     for stated in &part.unfolded.totals {
         let name = &stated.name;
         section.text(&format!(
-            "The action of a step also contains, once for all sites, the constraint term of the multiplier {name}: the step size times {name} paired with the left side minus the right side of its constraint, at the start of the step."
+            "Once for all sites, the action of a step also contains the constraint term of the multiplier {name}. It is the step size times {name}, paired with the left side minus the right side of the constraint at the start of the step."
         ));
     }
 }
@@ -468,7 +468,7 @@ pub(super) fn like_the_middle(
 
 fn interior(folded: &mut IndexedNotation, part: &Part, doc: &mut Document) {
     let section = doc.section("Equations of a site");
-    section.text("In terms of the momentum at the node in time, the first equation is solved for the velocity, and the second gives the momentum at the next node.");
+    section.text("If the momentum at the node is known, the first equation is solved for the velocity, and the second gives the momentum at the next node.");
     for s in stated_configurations(part) {
         let c = &part.d.spec.configurations[s.shown];
         let (first, last) = like_the_middle(folded, part, &s);
@@ -521,8 +521,8 @@ fn range_words(
 fn certificate(lattice: &Lattice, parts: &[Part], doc: &mut Document) {
     let section = doc.section("Certificate");
     section.text(match lattice.meshes.is_empty() {
-        false => "One site of each kind is written out; its symbols stand for those of all sites. Each identity of the derivation is proved on it, scalars being identified when their sums over all sites are equal. That the transposed derivative of a functional is computed correctly is tested, not proved.",
-        true => "The equations above are those of short lattices, written out body by body, on which the sites shown have all their neighbours and every end has its own equation. Each identity of the derivation is proved there; a longer lattice repeats the equations of the interior.",
+        false => "The equations are written for one site of each kind, which represents all sites. clebsch proves each identity of the derivation for this site; two scalars count as equal if their sums over all sites are equal. The transposed derivatives of functionals are tested, not proved.",
+        true => "The equations above come from short chains, written out site by site: each site shown has all its neighbours, and each end has its own equations. clebsch proves each identity of the derivation for these chains; a longer chain repeats the equations of the interior.",
     });
     let items = parts.iter().map(|p| {
         let words = format!("{}: {}", p.choice.words(lattice), p.d.certificate.summary());

@@ -18,7 +18,9 @@ pub fn invariants(sheet: &Sheet, doc: &mut Document) {
     let section = doc.section("Invariants");
     let mut items: Vec<Vec<Inline>> = d.invariants.iter().map(|v| invariant(sheet, v)).collect();
     if let Known::NotSought(why) = &d.integrability.casimirs {
-        items.push(vec![format!("Casimirs are not sought: {why}").into()]);
+        items.push(vec![
+            format!("clebsch does not look for Casimirs: {why}").into(),
+        ]);
     }
     if items.is_empty() {
         section.text("None was found among the candidates.");
@@ -57,7 +59,7 @@ fn reversal(sheet: &Sheet, section: &mut Section) {
             "The discrete Lagrangian is not self-adjoint: {first}"
         )),
         Reversal::Broken(Some(left)) => section.paragraph([
-            "The discrete Lagrangian is not self-adjoint: the sum of it and of its adjoint (ends exchanged, step reversed) is ".into(),
+            "The discrete Lagrangian is not self-adjoint: the sum of the Lagrangian and its adjoint (ends exchanged, step reversed) is ".into(),
             sheet.derived(left).into(),
             format!(", not constant in general: {first}").into(),
         ]),
@@ -113,8 +115,8 @@ pub fn limit(sheet: &Sheet, doc: &mut Document) {
     let (Ok(_), Some(x)) = (&d.limit, &d.continuous) else {
         if let Err(why) = &d.limit {
             let none = match why.as_str() {
-                STANDING => "There is none",
-                _ => "Not derived",
+                STANDING => "There is no limit",
+                _ => "clebsch does not derive the limit",
             };
             section.text(&format!("{none}: {why}."));
         }

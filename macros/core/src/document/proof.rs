@@ -10,7 +10,7 @@ pub fn proof(d: &Derivation) -> String {
     let st = style(d);
     let show = |e: &crate::expr::Expr| expression(e, &d.letters.symbols, &st, Format::Text);
     let mut out = String::from(
-        "Proof. Each step is an identity for all variations, of which both sides have the same normal form\nor, where it says so, agree at random points in exact arithmetic modulo 2^61 - 1.\n",
+        "Proof. Each step is an identity for all variations. Both sides have the same normal form\nor, where stated, agree at random points in exact arithmetic modulo 2^61 - 1.\n",
     );
     for (i, step) in d.certificate.steps.iter().enumerate() {
         let how = match step.known {

@@ -63,7 +63,7 @@ pub(super) fn equation(
         with.push(Formula::equal(n, rest));
     }
     section.equation(Formula::List(with));
-    section.text("Once the number");
+    section.text("If the number");
     let less = Formula::minus(number(1), w.clone());
     section.equation(Formula::equal(
         s.clone(),
@@ -72,7 +72,7 @@ pub(super) fn equation(
             Formula::Product(vec![real.clone(), less.clone()]),
         ]),
     ));
-    section.text("is known it is linear,");
+    section.text("is known, the equation is linear:");
     let id: Expr = expr::identity(crate::expr::shape::Dim::Fixed(3));
     let shifted = Formula::Product(vec![
         Formula::minus(real.clone(), s.clone()),
@@ -84,11 +84,13 @@ pub(super) fn equation(
         product(&[&w, &u]),
     ));
     section.paragraph([
-        "which gives the direction of ".into(),
+        "This gives the direction of ".into(),
         Formula::List(vec![w.clone(), v.clone()]).into(),
-        " by polynomials in ".into(),
+        " as polynomials in ".into(),
         s.clone().into(),
-        ", and its length is 1. What is left is one equation for this number:".into(),
+        "; the length is 1. One equation for ".into(),
+        s.clone().into(),
+        " remains:".into(),
     ]);
     section.equation(Formula::equal(
         Formula::minus(Formula::Dot(boxed(&u), boxed(&v)), product(&[&s, &w])),

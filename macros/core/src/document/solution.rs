@@ -5,7 +5,7 @@ use super::citations::Place;
 use super::sheet::{Sheet, listed};
 use crate::check::spec::{Configuration, Spec};
 use crate::derive::convex::convexity;
-use crate::derive::select_solver::{Method, MoserVeselov, StepEquation};
+use crate::derive::select_solver::{BECAUSE, Method, MoserVeselov, StepEquation};
 use crate::derive::two_sided_linear::TwoSidedLinear;
 use crate::emit;
 use crate::expr::symbol::Role;
@@ -370,11 +370,7 @@ fn method(sheet: &Sheet, section: &mut Section) {
         section.text(&format!("No stepper is emitted: {}.", refused.message));
         return;
     }
-    let why = d.solve.reason.as_str();
-    let why = match d.solve.method {
-        Method::Blocks => why,
-        _ => why.split(": Newton on").next().unwrap_or(why),
-    };
+    let reason = d.solve.reason.as_str();
     let letter = d.solve.riccati.first().and_then(|r| match r {
         StepEquation::Exact(mv) | StepEquation::Coupled(mv) => Some(factor(sheet, mv, 0).0),
         StepEquation::Quaternionic(_) | StepEquation::Linear(_) | StepEquation::None(_) => None,
@@ -384,11 +380,11 @@ fn method(sheet: &Sheet, section: &mut Section) {
         && let (Some(degenerate), Some(letter)) = (&degenerate, &letter)
     {
         section.paragraph([
-            "The stepper makes no step: it tests ".into(),
+            "The stepper makes no step: it rejects every value of ".into(),
             letter.clone().into(),
             format!(
-                " when it is given and rejects every value, because {degenerate} for all \
-                 parameters. The warning says what to write instead."
+                ", because {degenerate} for all parameters. The warning says what to write \
+                 instead."
             )
             .into(),
         ]);
@@ -401,15 +397,14 @@ fn method(sheet: &Sheet, section: &mut Section) {
         }
         StepEquation::Quaternionic(_) | StepEquation::Linear(_) | StepEquation::None(_) => false,
     });
-    let constant = if carried {
-        " is constant in the body, where it is solved"
-    } else {
-        " is constant"
+    let frame = match carried {
+        true => " in the body frame, where the equation is solved",
+        false => "",
     };
     if let [only] = d.solve.blocks.as_slice()
         && let Some(what) = only.linear_work()
     {
-        section.text(&format!("The stepper is explicit: {what} a step."));
+        section.text(&format!("The stepper is explicit: {what} per step."));
         return;
     }
     let words = match (d.solve.method.clone(), letter) {
@@ -417,38 +412,53 @@ fn method(sheet: &Sheet, section: &mut Section) {
             "The stepper is explicit up to the root of one quartic for the whole trajectory: "
                 .into(),
             letter.into(),
-            format!("{constant}, and nothing but the velocity changes the momentum.").into(),
+            format!(" is constant{frame}, and no force changes the momentum.").into(),
         ],
         (Method::ForcedMoserVeselov, Some(letter)) => vec![
             "The stepper is explicit up to the root of one quartic per step: ".into(),
             letter.into(),
-            format!("{constant}, and symmetric.").into(),
+            format!(" is symmetric and constant{frame}.").into(),
         ],
+        (Method::UnitQuaternions, _) => {
+            let why = reason.split_once(BECAUSE).map_or("", |(_, why)| why);
+            vec![format!("The stepper solves only this scalar equation{BECAUSE}{why}.").into()]
+        }
+        (Method::Blocks, _) => {
+            vec![format!("The stepper solves the equations block by block: {reason}.").into()]
+        }
         (method, letter) => {
-            let how = match method {
-                Method::LeftFactor => {
-                    "The stepper solves it for any left factor, by a solver chosen by name: "
-                }
-                Method::Davenport => {
-                    "The stepper solves it as an eigenvalue problem at each node: "
-                }
-                Method::UnitQuaternions => "The stepper solves it so: ",
-                Method::Blocks => "The stepper solves ",
-                Method::Newton if d.solve.one_system.contains(&0) => "The stepper solves ",
-                Method::Newton if d.spec.has_only_fields() => {
-                    "The stepper iterates with Newton's method: "
-                }
-                Method::FreeMoserVeselov
-                | Method::ForcedMoserVeselov
-                | Method::Linear
-                | Method::Newton => "The stepper iterates with Newton's method on the group: ",
+            let (how, why) = match reason.split_once(BECAUSE) {
+                Some((how, why)) => (how, Some(why)),
+                None => (reason, None),
             };
-            let mut words: Vec<Inline> = vec![how.into()];
-            match (why.strip_prefix("C "), letter) {
-                (Some(rest), Some(letter)) => {
-                    words.extend([letter.into(), format!(" {rest}.").into()]);
+            let by_newton = how.strip_prefix("Newton's method on the derived residual");
+            let lead = match method {
+                Method::Newton if by_newton.is_some() && d.spec.has_only_fields() => {
+                    "The stepper uses Newton's method".to_owned()
                 }
-                _ => words.push(format!("{why}.").into()),
+                Method::Newton if by_newton.is_some() => {
+                    "The stepper uses Newton's method on the group".to_owned()
+                }
+                Method::Newton if d.solve.one_system.contains(&0) => {
+                    format!("The stepper solves {how}")
+                }
+                Method::Davenport => format!("The stepper finds {how}"),
+                _ if how.starts_with("explicit") => format!("The stepper is {how}"),
+                _ => format!("The stepper uses {how}"),
+            };
+            let mut words: Vec<Inline> = vec![lead.into()];
+            if let Some(why) = why {
+                words.push(BECAUSE.into());
+                match (why.strip_prefix("the left factor "), letter) {
+                    (Some(rest), Some(letter)) => {
+                        words.extend([letter.into(), format!(" {rest}").into()]);
+                    }
+                    _ => words.push(why.into()),
+                }
+            }
+            words.push(".".into());
+            if matches!(method, Method::LeftFactor | Method::Davenport) {
+                words.push(" You can choose another solver by name.".into());
             }
             words
         }

@@ -103,18 +103,20 @@ pub fn bracket(sheet: &Sheet, doc: &mut Document) {
         Known::Counted(counts) => counts,
         Known::NotSought(why) => {
             if d.bracket.holds_elements {
-                section.text("The configuration itself occurs in the equations: Casimirs of a reduced space are not sought.");
+                section.text("The equations contain the configuration itself, so clebsch does not look for Casimirs of a reduced space.");
                 return;
             }
             section.text(&format!(
-                "Its Casimirs were neither counted nor sought: {why}. Whatever they are, they are conserved."
+                "clebsch neither counted its Casimirs nor looked for them: {why}. Every Casimir is conserved."
             ));
             return;
         }
     };
     match counts.as_slice() {
         [] => {
-            section.text("Its Casimirs are not counted, for sizes that vary independently.");
+            section.text(
+                "clebsch does not count its Casimirs, because several sizes vary independently.",
+            );
         }
         [one] if one.size.is_none() => {
             section.text(&format!(
@@ -144,19 +146,19 @@ fn listed(c: &Count) -> String {
             let others = match all {
                 true => "",
                 false => {
-                    "; no others are among the scalar products, traces and determinants that were tried"
+                    "; clebsch found no others among the scalar products, traces and determinants"
                 }
             };
             let same = match c.same {
-                1 => "1 is the same number for every state and is not".to_owned(),
-                n => format!("{n} are the same numbers for every state and are not"),
+                1 => "1 has the same value for every state and is not listed".to_owned(),
+                n => format!("{n} have the same value for every state and are not listed"),
             };
             let shown = match shown {
                 0 => "none of them is".to_owned(),
                 1 => "1 of them is".to_owned(),
                 n => format!("{n} of them are"),
             };
-            format!("{shown} listed below, {same}{others}")
+            format!("{shown} listed below; {same}{others}")
         }
         true if c.found == 0 => {
             "the quantities listed below are conserved for other reasons".to_owned()
@@ -164,7 +166,7 @@ fn listed(c: &Count) -> String {
         true if c.found == 1 => "it is listed below".to_owned(),
         true => "all of them are listed below".to_owned(),
         false => format!(
-            "{} of them are listed below; no others are among the scalar products, traces and determinants that were tried",
+            "{} of them are listed below; clebsch found no others among the scalar products, traces and determinants",
             c.found
         ),
     }
@@ -195,18 +197,18 @@ fn by_size(d: &Derivation, counts: &[Count], section: &mut Section) {
     let beyond = d.spec.dimensions.iter().any(|n| n.to > largest as u64);
     if let Some(same) = counts.iter().map(|c| c.same).max().filter(|n| *n > 0) {
         section.text(&format!(
-            "{same} of them are the same number for every state and are not listed."
+            "{same} of them have the same value for every state and are not listed."
         ));
     }
     section.text(match (complete, beyond) {
         (true, false) => {
-            "All of them are listed below; at the smaller sizes those that are listed depend on one another."
+            "All of them are listed below; at the smaller sizes, the listed Casimirs depend on one another."
         }
         (true, true) => {
-            "All of them are listed below, up to the largest of these sizes; beyond it they were not counted."
+            "Up to the largest of these sizes, all of them are listed below; clebsch did not count Casimirs at larger sizes."
         }
         (false, _) => {
-            "No others are among the scalar products, traces and determinants that were tried."
+            "clebsch found no others among the scalar products, traces and determinants."
         }
     });
 }
@@ -222,7 +224,7 @@ pub fn lax(sheet: &Sheet, doc: &mut Document) {
     section.paragraph([
         "For every ".into(),
         spectral.into(),
-        " the matrix L of the node after is similar to that of the node before, so its eigenvalues are conserved:".into(),
+        ", the matrix L at the next node is similar to the matrix L at this node, so its eigenvalues are conserved:".into(),
     ]);
     let letter = |base: &str, by: i8| {
         let base = sheet.symbols().fresh_name(base);

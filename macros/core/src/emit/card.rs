@@ -206,6 +206,10 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
         },
         d.how_solved()
     );
+    let solver = match solver.strip_prefix("Newton: ") {
+        Some(how) if how.starts_with("Newton's method") => how.to_owned(),
+        _ => solver,
+    };
     // A symmetric one-step action gives an even order; one-sided nodal terms leave order one.
     let irreversible = (!d.reversible).then(|| quote!(order: 1, reversible: false,));
     let discrete_energy = discrete_energy(d);
@@ -231,7 +235,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
     let state = item(d, "State");
     quote! {
         impl #bound #name #plain {
-            /// The sizes of all invariants at a state, in steps of `h`.
+            /// The scales of all invariants at a state, for steps of `h`.
             fn scales(&self, state: &#state #plain, h: f64, out: &mut [f64]) {
                 #scales
             }

@@ -430,8 +430,8 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
         #[doc = #method]
         ///
         /// # Errors
-        /// If the step cannot be solved, or leaves the domain of the model, with numbers and
-        /// a remedy; the state is then unchanged.
+        /// If the step cannot be solved or leaves the domain of the model. The error gives numbers
+        /// and a remedy; the state is unchanged.
         #[inline]
         pub fn step(&self, state: &mut #state #used, work: &mut #work #used) -> Result<(), StepError> {
             let #before = *state;

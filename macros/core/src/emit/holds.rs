@@ -51,7 +51,7 @@ pub(super) fn fields(d: &Derivation) -> (Vec<TokenStream>, Vec<TokenStream>) {
             ty(s, shape(d, hold)),
         );
         let doc = format!(
-            " The multiplier of `{} = {}` over the step that ended here, zero at the start: the constraint force is this multiple of the derivative of the left side minus the right side.",
+            " The multiplier of `{} = {}` over the step that ended here, zero at the start. The constraint force is the multiplier times the derivative of the left side minus the right side.",
             text(d, &hold.left),
             text(d, &hold.right)
         );
@@ -225,7 +225,7 @@ fn project(d: &Derivation, names: &Names, projection: &Projection) -> TokenStrea
         .map(|(i, value)| update(d, names, i, value));
     let updates: TokenStream = updates.collect();
     quote! {
-        /// Takes from the momentum at a node what would move the configuration off its constraints.
+        /// Projects the momentum at a node, so that the velocity is tangent to the constraints.
         fn project(&self, state: &mut #state #used) {
             #parameters
             #locals
@@ -291,7 +291,7 @@ fn rates(d: &Derivation, names: &Names, projection: &Projection) -> TokenStream 
             let (sums, t) = (sums(d, rate, &bindings), ty(s, shape(d, hold)));
             let zero = none(d, hold);
             let doc = format!(
-                " The rate of change of `{}` at this state, which vanishes.",
+                " The rate of change of `{}` at this state: zero up to rounding.",
                 text(d, &hold.value)
             );
             let both = rate_and_scale(d, hold);
@@ -302,7 +302,7 @@ fn rates(d: &Derivation, names: &Names, projection: &Projection) -> TokenStream 
                     rate
                 }
 
-                /// The constraint with the size of its terms.
+                /// The rate of change of the constraint, and the size of its terms.
                 fn #both(&self, state: &#state #used) -> (#t, T) {
                     #parameters
                     #locals

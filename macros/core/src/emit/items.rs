@@ -114,7 +114,7 @@ pub fn factor_of_state(d: &Derivation) -> TokenStream {
     });
     let used = Generics::of(d).used();
     quote! {
-        /// The body behind the quantities of a state.
+        /// The factor of the equation at a state, prepared for the solver.
         #[inline(never)]
         fn factor(&self, state: &#state #used) -> Result<#kind, ParameterError> {
             #parameters
@@ -149,7 +149,7 @@ pub fn structure_text(structure: Structure) -> &'static str {
 pub fn parameters(d: &Derivation) -> TokenStream {
     let s = &d.letters.symbols;
     let name = item(d, "Parameters");
-    let doc = format!(" Parameters of [`{0}`](struct@{0}), as given.", d.spec.name);
+    let doc = format!(" The parameters of [`{0}`](struct@{0}).", d.spec.name);
     let fields = d.spec.parameters.iter().map(|p| {
         let symbol = s.get(*p);
         let (field, t) = (own(d, *p), ty(s, symbol.shape));
@@ -162,7 +162,7 @@ pub fn parameters(d: &Derivation) -> TokenStream {
     });
     let phantom = d.spec.parameters.is_empty().then(|| {
         quote! {
-            #[doc = " No parameters: the scalar type alone."]
+            #[doc = " The model has no parameters; this field fixes the scalar type."]
             pub scalar: ::core::marker::PhantomData<T>
         }
     });
@@ -509,16 +509,16 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
 
         impl #bound #name #used {
             #sizes
-            /// The model as it was stated.
+            /// The text of the model.
             pub const SOURCE: &'static str = #source;
-            /// A number that changes when the model or its derivation does.
+            /// A hash of the model and the version of clebsch.
             pub const FINGERPRINT: u64 = #fingerprint;
 
             /// Checks the parameters.
             ///
             /// # Errors
-            /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-            /// assumption, or is not an admissible factor of the equation to solve.
+            /// If a parameter is not finite, lacks its declared symmetry, violates an assumption or
+            /// is not an admissible factor of the equation of a step. The error names the parameter.
             pub fn new(parameters: #data #used) -> Result<Self, ParameterError> {
                 #admitted
                 #(#checks)*

@@ -136,7 +136,7 @@ fn made_of(d: &Derivation, turned: &Expr) -> TokenStream {
 /// The fields of the workspace, and its documentation.
 pub(super) fn work(d: &Derivation) -> (TokenStream, &'static str) {
     let Some(turned) = &d.solve.turned else {
-        return (quote!(method: Method,), " The step and the solver's name.");
+        return (quote!(method: Method,), " The step size and the solver.");
     };
     let s = &d.letters.symbols;
     let kind = ty(d, 0);
@@ -145,7 +145,7 @@ pub(super) fn work(d: &Derivation) -> (TokenStream, &'static str) {
         .map(|id| quantity(s, s.get(id).shape));
     (
         quote!(method: Method, factor: #kind, made_of: (#(#types,)*),),
-        " The step, the solver's name, and the left factor seen from the body with the values it is made of: made anew for a state with others.",
+        " The step size, the solver, and the left factor in the body frame. If the state has another left factor, a step computes it again.",
     )
 }
 
@@ -186,7 +186,7 @@ fn factor_at(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
         .write(turned);
         let kind = ty(d, 0);
         return quote! {
-            /// The left factor seen from the body, where it is constant along the motion.
+            /// The left factor in the body frame, where it is constant along the motion.
             #[cold]
             fn factor_at(&self, state: &#state #used) -> Result<#kind, LeftFactorError> {
                 #parameters
@@ -244,7 +244,7 @@ fn edge_momentum(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStrea
     let covector = element::covector(d, 0);
     let frame = match d.solve.turned.is_some() {
         true => {
-            " The momentum of the edge that starts at this node, seen from the body, for a step `h`."
+            " The momentum, in the body frame, of the edge that starts at this node, for the step size `h`."
         }
         false => " The momentum of the edge that starts at this node, for a step `h`.",
     };

@@ -218,7 +218,7 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
     ];
     let given = functional::paths(&d.letters.symbols);
     let about = format!(
-        " The model [`{}`](struct@{}) and what belongs to it.",
+        " The model [`{}`](struct@{}) with its parameters, states and steps.",
         d.spec.name, d.spec.name
     );
     quote! {

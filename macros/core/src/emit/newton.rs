@@ -308,8 +308,8 @@ impl Together<'_> {
         // The arguments of cold functions are copied at the call: a value whose address is taken inside the loop
         // would live in memory.
         let functions = quote! {
-            /// The solution to use if the iteration has found none, or one that is not known to be principal.
-            /// `None` if the iteration starts again, at the principal root.
+            /// The solution to use if the iteration fails or its solution may not be principal.
+            /// `None` if the iteration restarts at the principal root.
             #[cold]
             #[inline(never)]
             fn #settled(

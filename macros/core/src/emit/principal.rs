@@ -158,7 +158,7 @@ impl Principal<'_> {
             let (turned, body, count) = (format_ident!("{TURNED}"), &part.alone, part.rows.len() / 3);
             let count = Literal::usize_unsuffixed(count);
             quote! {
-                /// The trial with these rotations, its translations found.
+                /// The trial with these rotations and the translations that follow from them.
                 #[cold]
                 #[inline(never)]
                 #[allow(unused_variables)]
@@ -199,7 +199,7 @@ impl Principal<'_> {
                 #residual
             }
 
-            /// Their tangent.
+            /// The tangent of the residual.
             #[cold]
             #[inline(never)]
             #[allow(unused_variables)]
@@ -210,7 +210,7 @@ impl Principal<'_> {
                 #tangent
             }
 
-            /// Bounds of the rounding of the residual, in one lane.
+            /// Bounds of the rounding errors of the residual, in one lane.
             #[cold]
             #[inline(never)]
             fn #rounding(&self, #step: T, #given: &#given_type, #momenta: &#momenta_type, #trial: &#elements, lane: usize) -> SVector<f64, #rows> {
@@ -223,7 +223,7 @@ impl Principal<'_> {
                 #rounded_rows
             }
 
-            /// Finds the principal root, or shows that the solution is.
+            /// Finds the principal root, or proves that the given solution is the principal root.
             #[cold]
             #[inline(never)]
             fn #principal(

@@ -128,7 +128,7 @@ pub fn balance(d: &Derivation, names: &Names) -> [TokenStream; 2] {
     let (declared, used) = (g.declared(), g.used());
     let components = components(d);
     let data = quote! {
-        /// A configuration at one node, solution or not.
+        /// A configuration at one node; it need not lie on a solution.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct #configuration #declared { #(#elements,)* #(#others,)* #(#multipliers,)* }
     };

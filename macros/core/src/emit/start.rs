@@ -22,7 +22,7 @@ pub(super) enum Choice {
     Order,
     /// The solver; the model's own by default.
     Solver,
-    /// Nothing.
+    /// The zero contribution.
     Nothing,
 }
 

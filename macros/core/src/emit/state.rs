@@ -106,7 +106,7 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
     let summary = matches!(d.solve.method, Method::Newton).then(|| {
         quote! {
             impl #bound #work #used {
-                /// How the last step was solved: tangents, corrections, and the residual before the last.
+                /// The tangents and corrections of the last step, and the residual before its last correction.
                 pub fn solved(&self) -> newton::Summary {
                     self.search.last()
                 }
@@ -147,27 +147,27 @@ fn workspace(d: &Derivation, names: &Names) -> (TokenStream, &'static str) {
             });
             (
                 quote!(solver: Free<T>, #(#kept,)*),
-                " The step and the constants of the trajectory. A state of another body needs a new one.",
+                " The step size and the constants of the trajectory. A step from any other state computes the constants again.",
             )
         }
         Method::FreeMoserVeselov => (
             quote!(solver: Free<T>,),
-            " The step and the constants of the trajectory. Belongs to the state it was started with.",
+            " The step size and the constants of the trajectory. A step from any other state computes the constants again.",
         ),
         Method::ForcedMoserVeselov if !factor_references(d).is_empty() => (
             quote!(method: Method, factor: Poinsot<T>, edge: Edge<T>, here: #state #used,),
-            " The step, the solver's name, the body, and the momentum of the edge that begins at the state `here`. Any other state needs a new one.",
+            " The step size, the solver, the left factor, and the momentum of the edge that begins at the state `here`. A step from any other state computes them again.",
         ),
         Method::ForcedMoserVeselov => (
             quote!(method: Method, edge: Edge<T>, here: #state #used,),
-            " The step, the solver's name, and the momentum of the edge that begins at the state `here`. Any other state needs a new one.",
+            " The step size, the solver, and the momentum of the edge that begins at the state `here`. A step from any other state computes the momentum again.",
         ),
         Method::UnitQuaternions => {
             let kind = super::items::factor_type(d);
             let factor = (!factor_references(d).is_empty()).then(|| quote!(factor: #kind,));
             (
                 quote!(#factor edge: Edge<T>, here: #state #used,),
-                " The step and the momentum of the edge that begins at the state `here`. Any other state needs a new one.",
+                " The step size, and the momentum of the edge that begins at the state `here`. A step from any other state computes the momentum again.",
             )
         }
         Method::LeftFactor | Method::Davenport => super::left_factor::work(d),
@@ -175,7 +175,7 @@ fn workspace(d: &Derivation, names: &Names) -> (TokenStream, &'static str) {
             let search = super::newton::search_of_all(d, names);
             (
                 quote!(search: #search,),
-                " The step and the last velocities, from which the next solve starts.",
+                " The step size, and the last velocities as initial guesses for the next step.",
             )
         }
         Method::Linear | Method::Blocks => super::blocks::work(d, names),

@@ -69,7 +69,7 @@ pub(super) fn step_signature(d: &Derivation, body: TokenStream) -> TokenStream {
         #[doc = #doc]
         ///
         /// # Errors
-        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+        /// If the step cannot be solved. The error gives numbers and a remedy; the state is unchanged.
         #[inline]
         #head(&self, state: &mut #state #used, work: &mut #work #used) -> Result<(), StepError> {
             #body

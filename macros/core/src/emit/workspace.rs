@@ -22,12 +22,14 @@ pub(super) fn work(d: &Derivation, names: &Names) -> (TokenStream, &'static str)
     let forces: TokenStream = forces.collect();
     let doc = match (method.is_some(), searches.is_empty()) {
         (false, true) if !forces.is_empty() => {
-            " The step, and what acts at the node where it starts."
+            " The step size, and the forces at the node where the step starts."
         }
-        (true, true) => " The step and the solver's name.",
-        (false, _) => " The step and the last velocities, from which the next solves start.",
+        (true, true) => " The step size and the solver.",
+        (false, _) => {
+            " The step size, and the last velocities as initial guesses for the next step."
+        }
         (true, false) => {
-            " The step, the solver's name, and the last velocities, from which the next solves start."
+            " The step size, the solver, and the last velocities as initial guesses for the next step."
         }
     };
     (quote!(#method #(#searches)* #forces), doc)

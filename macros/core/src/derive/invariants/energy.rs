@@ -105,8 +105,8 @@ pub(super) fn discrete(x: &Inputs, passages: &[RandomStep], lax: Option<&Lax>) -
         value,
         exact,
         reason: if exact {
-            "it contains the trace of the left factor times the velocity, whose eigenvalues are half of the eigenvalues of the \
-                Lax matrix, selected by the principal solution".to_owned()
+            "apart from constants, it is the trace of the left factor times the velocity, which the eigenvalues of the Lax \
+                matrix determine".to_owned()
         } else {
             "the stepper is symplectic".to_owned()
         },

@@ -221,11 +221,12 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
     let known = Integrability {
         casimirs: match large {
             _ if elements => Known::NotSought(
-                "the equations contain the configuration itself, and the bracket is that of its phase space".to_owned(),
+                "the equations contain the configuration itself, not only reduced variables"
+                    .to_owned(),
             ),
             Some(why) => Known::NotSought(why),
             None if work::cut_short() => Known::NotSought(format!(
-                "the search took more than {} products of numbers",
+                "the search needs more than {} products of numbers",
                 work::products()
             )),
             None => Known::Counted(counts),
@@ -260,7 +261,7 @@ fn too_large(x: &Inputs) -> Option<String> {
         return Some("the Lie algebra of the configuration has too many dimensions".to_owned());
     }
     (entries.saturating_pow(3) > 16 * LARGEST)
-        .then(|| format!("the advected quantities have {entries} entries"))
+        .then(|| format!("the advected quantities have {entries} entries, too many for the search"))
 }
 
 /// Numbers invariants that share a name, so that their names differ.

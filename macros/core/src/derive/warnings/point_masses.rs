@@ -59,7 +59,7 @@ fn what_no_parameters_can_step_is_said() {
             assert!(constant || text.contains(words), "{body}\n{words}\n{text}");
         }
         for words in [
-            "The stepper solves it",
+            "You can choose another solver",
             "still determines",
             "The velocity that tends to the identity",
             "is bounded",

@@ -63,7 +63,11 @@ fn end(
         if let (Some((at, _)), Some(e)) = (s.end, e)
             && at == last
         {
-            let words: [Inline; 3] = ["This end adds ".into(), Formula::Expr(e).into(), ".".into()];
+            let words: [Inline; 3] = [
+                "This end adds the term ".into(),
+                Formula::Expr(e).into(),
+                " to the Lagrangian.".into(),
+            ];
             section.paragraph(words);
         }
     }

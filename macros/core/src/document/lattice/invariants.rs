@@ -76,7 +76,7 @@ pub(super) fn invariants(
     }
     let lines = folded.lattice.line.is_some();
     if lines {
-        section.text("clebsch does not look for the fluxes between neighbouring sites, whose differences are the changes of densities.");
+        section.text("clebsch does not look for local conservation laws, that is, for fluxes between neighbouring sites.");
     }
     let reversible = parts.iter().all(|p| p.d.reversible);
     section.text(match reversible {
@@ -135,7 +135,7 @@ fn heading(lattice: &Lattice, part: &Part) -> String {
     if part.choice.periodic {
         return "On a ring".to_owned();
     }
-    format!("On a line {}", part.choice.held(lattice))
+    format!("On a chain {}", part.choice.held(lattice))
 }
 
 /// An invariant that holds for every number of sites.

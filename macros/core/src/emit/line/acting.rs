@@ -394,7 +394,7 @@ fn stage(l: &Lines, m: &Moving) -> Option<TokenStream> {
     let values = values.chain(pulled.iter().map(Pulled::seen));
     Some(quote! {
         ::clebsch::in_lanes! {
-            /// Momenta that arrive, of several sites together.
+            /// The momenta at the node and on the outgoing edges, for several sites together.
             #name(model: #model<T>, h: T, at: #places<T>, pulls: #pulls<T>) -> #t, #t
             #windows
             |site, edge| model.#arrived(model.#acted(*h, #(#values),*), #turn edge)
@@ -419,8 +419,8 @@ fn arrival(l: &Lines, m: Moving) -> Option<TokenStream> {
     let arrived = arrived_call(&m, &call(l, &m, &quote!(at)));
     let part = m.part(&quote!(edges.#name));
     let doc = format!(
-        " The momenta of `{}` at the node and on the outgoing edges, from the momenta on the incoming edges. Reports at \
-         which site they are not finite.",
+        " The momenta of `{}` at the node and on the outgoing edges, from the momenta on the incoming edges. If a \
+         momentum is not finite, the error names its site.",
         m.mover.name
     );
     let (loop_over_sites, together) = match are_together(&wanted(l, &m)) {

@@ -10,7 +10,7 @@ pub(super) fn around(l: &Lines, moving: &[Moving]) -> TokenStream {
     let beyond = number(l.line.beyond());
     if l.line.lattice.periodic.is_none() || l.line.beyond() == 0 {
         return quote! {
-            /// No site is beyond the last one.
+            /// There are no sites beyond the last one.
             #[inline]
             fn around(&self, _: &mut #places<T>) {}
         };
@@ -41,7 +41,7 @@ pub(super) fn around(l: &Lines, moving: &[Moving]) -> TokenStream {
     });
     let each: Vec<TokenStream> = each.collect();
     quote! {
-        /// The sites beyond the last one of a ring are those from its beginning.
+        /// Copies the first sites of a ring beyond its last site.
         #[inline]
         fn around(&self, at: &mut #places<T>) {
             if let #pattern = self.sites.ends {

@@ -104,7 +104,7 @@ pub(super) fn told(l: &Lines) -> TokenStream {
     };
     quote! {
         impl<T: Real> #name<T> {
-            /// The velocities of the momenta of a node, in the limit of small steps.
+            /// The velocities that belong to the momenta at a node, in the limit of small steps.
             fn velocities_of_node(&self, at: &#places<T>, momenta: &#momenta<T>, velocities: &mut #velocities<T>) {
                 let h = T::one();
                 #(#moved)*

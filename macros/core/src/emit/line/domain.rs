@@ -132,7 +132,7 @@ pub(super) fn domain(l: &Lines) -> (TokenStream, TokenStream) {
         let count = number(a.tests.len());
         let (lets, values) = &a.body;
         kernels.extend(quote! {
-            /// Arguments of functions that have a domain.
+            /// The arguments of functions that are not defined everywhere.
             #[inline(always)]
             fn #kernel(&self, #h: T, site: usize, at: &#places<T>) -> [T; #count] {
                 let _ = #h;

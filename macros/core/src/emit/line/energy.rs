@@ -54,7 +54,7 @@ fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
             let values = [expr::quaternion_components(s, &d.defined(&limit.potential))];
             let (lets, results) = l.computed(s, &l.of_site(d, &values), &values);
             kernels.extend(quote! {
-                /// The potential energy of one site by itself.
+                /// The potential energy of one site without its neighbours.
                 fn #kernel(&self, site: usize, at: &#places<T>) -> T {
                     let _ = (site, at);
                     #lets
@@ -79,7 +79,7 @@ fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
         let values = [expr::quaternion_components(s, &energy)];
         let (lets, results) = l.computed(s, &known(l, &values), &values);
         kernels.extend(quote! {
-            /// The potential energy of one term of neighbours.
+            /// The potential energy of one term that couples neighbours.
             fn #kernel(&self, site: usize, at: &#places<T>) -> T {
                 #lets
                 #(#results)*
@@ -105,8 +105,7 @@ fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
         #kernels
         #ends
 
-        /// The kinetic and the potential energy at this node, of all sites: those of the limit of small
-        /// steps, at the momenta of the node.
+        /// The kinetic and the potential energy of all sites at this node, in the limit of small steps.
         pub fn energies(&self, state: &#state<T>) -> (T, T) {
             let (at, momenta) = (&state.places, &state.momenta);
             let kinetic = #(#kinetic)+*;
@@ -229,7 +228,7 @@ fn momenta_of_velocities(l: &Lines, m: &Moving) -> Option<TokenStream> {
         #[doc = #doc]
         ///
         /// # Errors
-        /// Lists of another length than there are sites.
+        /// If a list does not have one entry for each site.
         pub fn #function(&self, #name: &[#covector], velocities: &[#covector]) -> Result<Vec<#covector>, LineError> {
             line::length_of(#text, #name, #count, "sites")?;
             line::length_of(#given, velocities, #count, "sites")?;

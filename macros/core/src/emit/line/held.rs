@@ -246,7 +246,7 @@ pub(super) fn held(l: &Lines) -> TokenStream {
         #[derive(Clone, Debug)]
         struct #reached<T> { #(#lists),* }
 
-        /// How what moves answers to impulses.
+        /// The derivatives of positions and velocities with respect to impulses.
         #[derive(Clone, Debug)]
         struct #responses<T> { #(#of_bodies),* }
 
@@ -328,7 +328,7 @@ fn of_hold(l: &Lines, k: usize, h: &ChainConstraint) -> (TokenStream, TokenStrea
         #[derive(Clone, Copy, Debug)]
         struct #ty<T> { value: SMatrix<T, #r, 1>, size: T, #fields }
         impl<T: Real> #ty<T> {
-            /// Nothing.
+            /// The zero contribution.
             fn none() -> Self { Self { value: SMatrix::<T, #r, 1>::zeros(), size: T::zero(), #zeros } }
         }
     };

@@ -17,8 +17,8 @@ pub(super) fn not_less_than_impulses(l: &Lines) -> Option<TokenStream> {
     let [name, state, work] = ["", "State", "Workspace"].map(|suffix| l.item(suffix));
     Some(quote! {
         impl<T: Real> #name<T> {
-            /// The state as scales take it: its momenta not less than the impulses of its node, which are those of
-            /// the workspace with which the state was reached.
+            /// The state with its momenta enlarged to at least the impulses at its node, for the scales of invariants.
+            /// The impulses are those of the workspace that reached the state.
             #[doc(hidden)]
             pub fn not_less_than_impulses(&self, state: &#state<T>, work: &#work<T>) -> #state<T> {
                 let mut enlarged = state.clone();

@@ -50,7 +50,7 @@ pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
         },
     );
     let mut kernels = quote! {
-        /// The momenta of one site where nothing moves, and their derivatives by velocities, in the limit of small steps.
+        /// The momenta of one site at zero velocity, and their derivatives with respect to the velocities, in the limit of small steps.
         fn inertia(&self, site: usize, at: &#places<T>) -> (SVector<T, #size>, SMatrix<T, #size, #size>) {
             let _ = (site, at);
             let mut made = [SVector::<T, #size>::zeros(); 1];
@@ -87,7 +87,7 @@ pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
         let ((fill, blocks), count_of_blocks) = (derivatives.emitted(), derivatives.count());
         let (kernel, wide) = (format_ident!("inertia_{}", k + 1), number(tie.width + 1));
         kernels.extend(quote! {
-            /// The contribution of a coupling term to them.
+            /// The contribution of a coupling term to these momenta and derivatives.
             fn #kernel(&self, site: usize, at: &#places<T>) -> ([SVector<T, #size>; #wide], [(usize, usize, SMatrix<T, #size, #size>); #count_of_blocks]) {
                 let _ = (site, at);
                 let mut made = [SVector::<T, #size>::zeros(); #wide];

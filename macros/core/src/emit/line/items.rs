@@ -114,7 +114,7 @@ pub(super) fn parameters(l: &Lines) -> TokenStream {
     let s = &l.line.representative.d.letters.symbols;
     let name = l.item("Parameters");
     let model = l.item("");
-    let doc = format!(" Parameters of [`{model}`](struct@{model}), as given.");
+    let doc = format!(" The parameters of [`{model}`](struct@{model}).");
     let fields = l.given().into_iter().map(|g| {
         let field = format_ident!("{}", g.name);
         let t = ty(s, g.symbol.shape);
@@ -136,7 +136,7 @@ pub(super) fn parameters(l: &Lines) -> TokenStream {
     let fields: Vec<TokenStream> = fields.collect();
     let phantom = fields.is_empty().then(|| {
         quote! {
-            #[doc = " No parameters: the scalar type alone."]
+            #[doc = " The model has no parameters; this field fixes the scalar type."]
             pub scalar: ::core::marker::PhantomData<T>
         }
     });
@@ -165,12 +165,12 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
         let (field, index) = (format_ident!("{}", label.count.text), &label.index.text);
         if label.grid {
             let d = number(l.extent().map_or(1, |(_, d)| d));
-            return quote!(#[doc = " Cells of the grid along each direction."] pub #field: [usize; #d]);
+            return quote!(#[doc = " The number of grid cells in each direction."] pub #field: [usize; #d]);
         }
         let doc = match label.set {
             true => format!(" The number of sites of `{index}`."),
             false => {
-                format!(" The number of segments of `{index}`; along a ring also that of nodes.")
+                format!(" The number of segments of `{index}`; on a ring, also the number of nodes.")
             }
         };
         quote!(#[doc = #doc] pub #field: usize)
@@ -178,7 +178,7 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
     if lattice.line.is_none() {
         let extent = l.extent_fields();
         return quote! {
-            /// How many sites there are.
+            /// The numbers of sites.
             #[derive(Clone, Copy, Debug, PartialEq)]
             pub struct #name<T = f64> { #(#counts,)* #extent #[doc(hidden)] pub scalar: ::core::marker::PhantomData<T> }
         };
@@ -193,7 +193,7 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
             let (v, given) = (&a.variant, &a.given);
             let held = match given.as_slice() {
                 [] => String::new(),
-                list => format!("; {} held at the initial value", list.join(", ")),
+                list => format!("; {} prescribed at the initial value", list.join(", ")),
             };
             let doc = format!(" `{v}`{held}.");
             let list = a.parameters.iter().map(|p| {
@@ -207,8 +207,8 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
             }
         });
         let doc = match last {
-            false => " How the line begins.",
-            true => " How the line ends.",
+            false => " The condition at the first end.",
+            true => " The condition at the last end.",
         };
         // A marker variant that uses the scalar type if no alternative does.
         let none = alternatives.iter().all(|a| a.parameters.is_empty());
@@ -230,7 +230,7 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
     };
     let ring = lattice.periodic.is_some().then(|| {
         let offsets = l.offsets().into_iter().map(|(name, m)| {
-            let doc = format!(" By what `{}` grows once around the ring.", m.mover.name);
+            let doc = format!(" The increment of `{}` once around the ring.", m.mover.name);
             let field = format_ident!("{name}");
             let t = m.value();
             quote!(#[doc = #doc] #field: #t)
@@ -246,15 +246,15 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
     });
     quote! {
         #types
-        /// How the line ends.
+        /// The end conditions of the chain.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum #ends<T = f64> { #open, #ring #[doc(hidden)] Scalar(::core::marker::PhantomData<T>) }
 
-        /// How many sites there are, and how the line ends.
+        /// The numbers of sites, and the end conditions.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct #name<T = f64> {
             #(#counts,)*
-            /// How the line ends.
+            /// The end conditions.
             pub ends: #ends<T>,
         }
     }
@@ -337,11 +337,11 @@ pub(super) fn model(l: &Lines) -> TokenStream {
     factors(l, &mut fields, &mut init, &mut made);
     let nodes = l.segments().map(|n| {
         quote! {
-            /// The number of nodes of the line.
+            /// The number of nodes of the chain.
             pub fn nodes(&self) -> usize {
                 self.sites.#n + usize::from(!self.is_ring())
             }
-            /// Whether the line is closed to a ring.
+            /// Whether the chain is closed to a ring.
             pub fn is_ring(&self) -> bool {
                 #ring
             }
@@ -367,13 +367,13 @@ pub(super) fn model(l: &Lines) -> TokenStream {
         }
 
         impl<T: Real> #name<T> {
-            /// The model as it was stated.
+            /// The text of the model.
             pub const SOURCE: &'static str = #source;
 
             /// Checks the parameters, at every site.
             ///
             /// # Errors
-            /// Names the parameter and the site whose value is not admissible, and lists of a wrong length.
+            /// If a value is not admissible or a list has the wrong length. The error names the parameter and the site.
             pub fn new(parameters: #data<T>, sites: #sites<T>) -> Result<Self, LineError> {
                 #(#counts)*
                 let mut model = Self {
@@ -391,13 +391,13 @@ pub(super) fn model(l: &Lines) -> TokenStream {
                 Ok(model)
             }
 
-            /// This model, with its loops over sites shared by so many threads. Threads do not change any bit of a result.
+            /// Distributes the loops over sites to `threads` threads. Results are identical for any number of threads.
             #[must_use]
             pub fn with_threads(self, threads: usize) -> Self {
                 Self { threads: line::Threads(threads), ..self }
             }
 
-            /// How many sites there are, and how the line ends.
+            /// The numbers of sites, and the end conditions.
             pub fn sites(&self) -> &#sites<T> {
                 &self.sites
             }

@@ -92,7 +92,7 @@ impl<'a> Lines<'a> {
             quote!(self.sites.#name)
         });
         quote! {
-            /// Where particles live, and the grid.
+            /// The domain of the particles, the grid and the number of particles.
             pub fn setting(&self) -> mesh::Setting<#d> {
                 mesh::Setting { domain: #domain, grid: #grid, particles: #particles }
             }
@@ -427,7 +427,7 @@ fn written(
     let asked = plan.asked();
     let text = meshes.to_string();
     let items = quote! {
-        /// Functionals of all sites, with their values, the seeds of their pull-backs and these.
+        /// Functionals of all sites: their values, the seeds of their pull-backs, and the pull-backs.
         #[derive(Clone)]
         struct #meshes<T: Real> { #fields }
 
@@ -442,14 +442,14 @@ fn written(
 
             #asked
 
-            /// Functionals that have not been computed yet.
+            /// The functionals before their first evaluation.
             fn meshes(&self) -> Result<#meshes<T>, LineError> {
                 let setting = self.setting();
                 #made
                 Ok(#meshes { #inits })
             }
 
-            /// The values of functionals at these places.
+            /// The values of functionals at these positions.
             #[allow(unused_variables)]
             fn valued(&self, at: &#places<T>, meshes: &mut #meshes<T>) -> Result<(), (&'static str, mesh::MeshError)> {
                 let #meshes { #(#functionals,)* #(#open,)* #opened .. } = meshes;
@@ -458,7 +458,7 @@ fn written(
                 Ok(())
             }
 
-            /// The contributions of functionals to the momenta of all sites at these positions, all of them at one node.
+            /// The contributions of functionals to the momenta of all sites at these positions, taken at one node.
             #[allow(unused_variables)]
             fn meshed(&self, #step: T, at: &#places<T>, meshes: &mut #meshes<T>, pulls: &mut #pulls<T>) -> Result<(), (&'static str, mesh::MeshError)> {
                 let _ = #step;
@@ -533,12 +533,12 @@ impl Plan<'_> {
         let each = self.arrays.iter().filter(|a| a.seed.is_none()).map(|a| {
             let name = &self.l.line.lattice.meshes[a.mesh].name.text;
             let (function, field) = (format_ident!("values_{name}"), &a.field);
-            let doc = format!(" The values of `{name}` at the places of a state, one for each of its sites.");
+            let doc = format!(" The values of `{name}` at the positions of a state, one value per site.");
             quote! {
                 #[doc = #doc]
                 ///
                 /// # Errors
-                /// Names the functional that has no value there, and why.
+                /// If a functional has no value at these positions. The error names the functional and the reason.
                 pub fn #function(&self, state: &#state<T>) -> Result<Vec<T>, LineError> {
                     let mut meshes = self.meshes()?;
                     if let Err((quantity, cause)) = self.valued(&state.places, &mut meshes) {
@@ -566,7 +566,7 @@ impl Plan<'_> {
         });
         let terms: Vec<TokenStream> = terms.collect();
         let kernel = quote! {
-            /// The potential energy of terms with functionals; NaN where one has no value.
+            /// The potential energy of terms with functionals; NaN if a functional has no value.
             #[allow(unused_variables)]
             fn potential_of_meshes(&self, at: &#places<T>) -> T {
                 let Ok(mut meshes) = self.meshes() else {

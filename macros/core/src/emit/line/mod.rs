@@ -80,7 +80,8 @@ pub fn emit_line(line: &Line, source: &str) -> TokenStream {
         of_meshes.map(|m| m.items.clone()).unwrap_or_default(),
         walls.map(|w| w.items).unwrap_or_default(),
     ];
-    let about = format!(" The model [`{name}`](struct@{name}) and what belongs to it.");
+    let about =
+        format!(" The model [`{name}`](struct@{name}) with its parameters, states and steps.");
     quote! {
         #[doc = #about]
         #[allow(non_snake_case, non_camel_case_types, uncommon_codepoints, mixed_script_confusables, confusable_idents, clippy::all)]

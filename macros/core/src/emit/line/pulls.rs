@@ -103,7 +103,7 @@ fn of_pull(l: &Lines, n: usize, pull: &NeighbourForce) -> [TokenStream; 3] {
     let kernel = format_ident!("pull_{n}");
     let (term, sites) = (term_text(l, pull), pull.forces.len());
     let doc = format!(
-        " The contribution of `{term}` to the momenta of its {sites} sites, all of it at one node."
+        " The contribution of `{term}` to the momenta of its {sites} sites, taken at one node."
     );
     let together = are_together(&values);
     let over_sites = over_sites(l, n, pull, &read.arguments, together);
@@ -113,7 +113,7 @@ fn of_pull(l: &Lines, n: usize, pull: &NeighbourForce) -> [TokenStream; 3] {
         #[derive(Clone, Copy, Debug)]
         struct #t<T> { #fields }
         impl<T: Real> #t<T> {
-            /// Nothing.
+            /// The zero contribution.
             fn none() -> Self { Self { #zeros } }
         }
         ::clebsch::numbered! { #t { #counts } }

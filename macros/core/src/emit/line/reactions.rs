@@ -160,8 +160,8 @@ pub(super) fn state(l: &Lines) -> (TokenStream, TokenStream) {
         let (name, r) = (format_ident!("{}", h.name), number(h.components));
         let [left, right] = sides(l, h);
         let doc = format!(
-            " The multipliers of `{left} = {right}` over the step that ended here, zero at the start: the constraint force \
-             is this multiple of the derivative of the left side minus the right side."
+            " The multipliers of `{left} = {right}` over the step that ended here, zero at the start. The constraint \
+             force is the multiplier times the derivative of the left side minus the right side."
         );
         fields.extend(quote!(#name: Vec<SMatrix<T, #r, 1>>,));
         let (shown, value) = match h.beside {

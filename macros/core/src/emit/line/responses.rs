@@ -26,7 +26,7 @@ pub(super) fn kernels(l: &Lines, b: &Bodies) -> TokenStream {
         None => {
             let factor = format_ident!("factor_{}", first.mover.name);
             quote! {
-                /// How it turns at the end of an edge by an impulse at its start.
+                /// The derivative of the attitude at the end of an edge with respect to an impulse at its start.
                 #[inline(always)]
                 fn #response(&self, #h: T, site: usize, from: &#places<T>, to: &#places<T>) -> #ty {
                     let factor = &self.#factor[site.min(self.#factor.len() - 1)];
@@ -41,7 +41,7 @@ pub(super) fn kernels(l: &Lines, b: &Bodies) -> TokenStream {
             };
             let body = inverse(l, b, list, more);
             quote! {
-                /// How velocities answer to an impulse at the start of an edge.
+                /// The derivative of the velocities with respect to an impulse at the start of an edge.
                 #[inline(always)]
                 fn #response(&self, #h: T, site: usize, at: &#places<T>, #argument) -> #ty {
                     let _ = (#h, site, at);
@@ -65,14 +65,14 @@ pub(super) fn kernels(l: &Lines, b: &Bodies) -> TokenStream {
     quote! {
         #of_edge
 
-        /// How velocities answer to an impulse at a node, in the limit of small steps.
+        /// The derivative of the velocities with respect to an impulse at a node, in the limit of small steps.
         #[inline(always)]
         fn #weight(&self, #h: T, site: usize, at: &#places<T>) -> #ty {
             let _ = (#h, site, at);
             #of_node
         }
 
-        /// The velocities of the momenta of a node, in the limit of small steps.
+        /// The velocities that belong to the momenta at a node, in the limit of small steps.
         #[inline(always)]
         fn #velocity(&self, #h: T, site: usize, at: &#places<T>, momenta: &#momenta<T>, weights: &[#ty]) -> SVector<T, #n> {
             let _ = (#h, at);

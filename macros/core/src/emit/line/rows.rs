@@ -160,7 +160,7 @@ pub(super) fn rows(l: &Lines, bodies: &[Bodies]) -> TokenStream {
             held
         }
 
-        /// The derivatives of what is held at places `there` by impulses that act at `here`.
+        /// The derivatives of the constraints at the positions `there` with respect to impulses at the positions `here`.
         #[inline(always)]
         fn held_row(&self, site: usize, there: &#reached<T>, here: &#reached<T>, responses: &#responses<T>) -> SMatrix<T, #size, #wide> {
             let _ = (there, here);
@@ -170,7 +170,7 @@ pub(super) fn rows(l: &Lines, bodies: &[Bodies]) -> TokenStream {
             row
         }
 
-        /// The rates of change of what is held.
+        /// The rates of change of the constraints.
         #[inline(always)]
         fn held_rate(&self, site: usize, reached: &#reached<T>, velocities: &#velocities<T>) -> SVector<T, #size> {
             let _ = reached;

@@ -86,7 +86,7 @@ fn rotation(l: &Lines, m: Moving) -> TokenStream {
     let factor = format_ident!("factor_{}", m.mover.name);
     let h = step(m.outline());
     let doc = format!(
-        " `{}` where the edge that leaves a site ends.",
+        " `{}` at the end of the outgoing edge of a site.",
         m.mover.name
     );
     let turn = match m.is_quaternion() {
@@ -133,7 +133,7 @@ fn field(l: &Lines, m: Moving) -> TokenStream {
     let index = m.mover.index;
     let solution = linear_solution(m.d(), index, form, left.clone(), known, right.clone());
     let doc = format!(
-        " `{}` where the edge that leaves a site ends.",
+        " `{}` at the end of the outgoing edge of a site.",
         m.mover.name
     );
     let at_once = is_divided(form).then(|| {
@@ -208,7 +208,7 @@ fn stage(l: &Lines, m: &Moving) -> Option<TokenStream> {
     };
     Some(quote! {
         ::clebsch::in_lanes! {
-            /// Where edges end, of several sites together.
+            /// The positions at the ends of outgoing edges, for several sites together.
             #name(model: #model<T>, h: T, at: #places<T>, edges: #edges) -> #t
             #windows
             |site| #reached
@@ -291,11 +291,11 @@ fn system(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
     }
     let names: Vec<String> = members.iter().map(|m| m.mover.name.clone()).collect();
     let what = format!(
-        "the derivative of the momenta of {} by their velocities",
+        "the derivative of the momenta of {} with respect to their velocities",
         names.join(", ")
     );
     let doc = format!(
-        " The velocities of {}, of the edge that leaves a site.",
+        " The velocities of {} on the outgoing edge of a site.",
         names.join(", ")
     );
     quote! {
@@ -370,14 +370,14 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
     }
     let names: Vec<String> = members.iter().map(|m| m.mover.name.clone()).collect();
     let names = names.join(", ");
-    let doc = format!(" The velocities of {names}, of the edge that leaves a site.");
+    let doc = format!(" The velocities of {names} on the outgoing edge of a site.");
     let of_momenta = format!(
-        " The momenta of {names} at the start of an edge with these velocities, and their derivative by them."
+        " The momenta of {names} at the start of an edge with these velocities, and their derivative with respect to the velocities."
     );
     let solved = match tied {
         true => {
             let given_of = format_ident!("given_{}", first.mover.name);
-            let doc = format!(" The momenta of {names}, of the edge that leaves a site.");
+            let doc = format!(" The momenta of {names} on the outgoing edge of a site.");
             quote! {
                 #[doc = #doc]
                 #[inline(always)]

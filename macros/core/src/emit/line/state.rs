@@ -122,7 +122,7 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
     let counted = boxed.then(|| {
         quote! {
             impl<T: Real> #work<T> {
-                /// How many times particles have been reflected at walls since the workspace was made.
+                /// The number of reflections at walls since the workspace was created.
                 pub fn reflections(&self) -> u64 { self.reflections }
             }
         }
@@ -134,11 +134,11 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
         #[derive(Clone, Debug, PartialEq)]
         pub struct #initial<T = f64> { #(#given),* }
 
-        /// Places of all sites, those beyond the last one included.
+        /// Positions of all sites, including the sites beyond the last one.
         #[derive(Clone, Debug, PartialEq)]
         struct #places<T> { #(#names: #place_lists),* }
 
-        /// Momenta of all sites, of rotations in the space frame.
+        /// Momenta of all sites; momenta of rotations are in the space frame.
         #[derive(Clone, Debug, PartialEq)]
         struct #momenta<T> { #(#names: Vec<#momentum_types>),* }
 
@@ -178,7 +178,7 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
             }
         }
 
-        /// The step, and the momenta of the edges that begin at the state of the same stamp.
+        /// The step size, and the momenta of the edges that begin at the state with the same stamp.
         #[derive(Clone, Debug)]
         pub struct #work<T: Real = f64> {
             h: T,

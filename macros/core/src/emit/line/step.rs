@@ -180,11 +180,11 @@ pub(super) fn step(
     let (domains, inside) = super::domain::domain(l);
     quote! {
         impl<T: Real> #name<T> {
-            /// Starts a trajectory with step `h` from data at node 0.
+            /// Starts a trajectory with step size `h` from data at node 0.
             ///
             /// # Errors
-            /// Names the quantity and the site whose value is not admissible, or says at which site the first
-            /// step cannot be made.
+            /// If a value is not admissible or the first step fails. The error names the quantity and the
+            /// site.
             pub fn start(&self, initial: #initial<T>, h: T) -> Result<(#state<T>, #work<T>), LineError> {
                 validate::positive_step(h)?;
                 #(#checks)*
@@ -209,10 +209,10 @@ pub(super) fn step(
                 Ok((state, work))
             }
 
-            /// A workspace for steps of `h`, of either sign, from any state.
+            /// A workspace for steps of size `h`, of either sign, from any state.
             ///
             /// # Errors
-            /// When `h` is zero or not finite.
+            /// If `h` is zero or not finite.
             pub fn workspace(&self, state: &#state<T>, h: T) -> Result<#work<T>, LineError> {
                 validate::directed_step(h)?;
                 #(line::length_of(#texts, &state.momenta.#names, #counts, #words)?;)*
@@ -238,8 +238,8 @@ pub(super) fn step(
             /// One step, in place.
             ///
             /// # Errors
-            /// When the step cannot be made: at which site, why, and which shorter step can; the state is then
-            /// unchanged.
+            /// If the step fails. The error names the site, the cause and a smaller step size that succeeds; the
+            /// state is unchanged.
             pub fn step(&self, state: &mut #state<T>, work: &mut #work<T>) -> Result<(), LineError> {
                 let h = work.h;
                 #(line::length_of(#texts, &state.momenta.#names, #counts, #words)?;)*
@@ -289,7 +289,7 @@ pub(super) fn step(
                 LineError::Step { node: state.node, at, cause, works: self.shorter(state, h) }
             }
 
-            /// The first of the halves of `h` with which a step can be made from a state.
+            /// The largest of `h/2`, `h/4`, ... with which a step from a state succeeds.
             #[cold]
             #[inline(never)]
             fn shorter(&self, state: &#state<T>, h: T) -> Option<f64> {
@@ -363,7 +363,7 @@ fn range(l: &Lines, m: &Moving) -> TokenStream {
         None => quote!(#count),
     };
     let doc = format!(
-        " The sites at which `{}` moves: the first, and the one after the last.",
+        " The range of sites at which `{}` moves: the first site, and the site after the last.",
         m.mover.name
     );
     quote! {

@@ -358,7 +358,7 @@ fn of_tie(
     let ((made, blocks), count) = (derivatives.emitted(), derivatives.count());
     let kernel = format_ident!("tied_{k}");
     let doc = " The contribution of a coupling term to the momenta of its sites at the start of an edge, and the \
-               derivatives by their velocities.";
+               derivatives with respect to their velocities.";
     let added = adds(l).then(|| added_kernel(l, k, tie, n, members));
     quote! {
         #[doc = #doc]

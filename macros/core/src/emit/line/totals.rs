@@ -93,7 +93,7 @@ pub(super) fn kernels(l: &Lines, bodies: &[Bodies]) -> TokenStream {
             held
         }
 
-        /// The derivatives of what sums hold at places `there` by impulses that act at `here`.
+        /// The derivatives of the constraints on sums at the positions `there` with respect to impulses at the positions `here`.
         fn held_sums_row(&self, there: &#reached<T>, here: &#reached<T>, responses: &#responses<T>) -> SMatrix<T, #size, #wide> {
             let own: SMatrix<T, #size, #size> = #(#rows)+*;
             let mut row = SMatrix::<T, #size, #wide>::zeros();
@@ -101,7 +101,7 @@ pub(super) fn kernels(l: &Lines, bodies: &[Bodies]) -> TokenStream {
             row
         }
 
-        /// The rates of change of what sums hold.
+        /// The rates of change of the constraints on sums.
         fn held_sums_rate(&self, reached: &#reached<T>, velocities: &#velocities<T>) -> SVector<T, #size> {
             #(#rates)+*
         }

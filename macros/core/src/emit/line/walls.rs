@@ -128,7 +128,7 @@ pub(super) fn walls(l: &Lines) -> Option<Walls> {
     );
     let (lets, results) = l.program(s, &values, &bindings);
     let value = m.array(results.into_iter().next().unwrap_or_default());
-    let doc = format!(" The momentum of `{text}` at rest, by its place.");
+    let doc = format!(" The momentum of `{text}` at zero velocity.");
     let items = quote! {
         impl<T: Real> #name<T> {
             #[doc = #doc]
