@@ -7,8 +7,8 @@
 //! Takes the equations and a fraction of the path; gives the next point, or a shorter fraction to try.
 
 use super::changes::{CHANGE, Changes};
-use super::looks::{Judged, Left, looks, shared_noise};
-use super::parts::Aside;
+use super::checked_points::{JudgedDifference, Remainders, looks, shared_noise};
+use super::parts::SlowPartTest;
 use super::principal::{Curve, FALLS};
 use crate::linalg::{Dense, Reals};
 use crate::scalar::larger;
@@ -63,7 +63,7 @@ impl<G: Clone> Stage<G> {
             residual: curve.residual(&velocity),
             units: curve
                 .parts()
-                .units(&|i, j| tangent.at(i, j), Aside::OfStage),
+                .units(&|i, j| tangent.at(i, j), SlowPartTest::OfStage),
             open: curve.parts().kinds().are_open(&|i, j| tangent.at(i, j)),
             velocity,
             inverse,
@@ -103,7 +103,7 @@ pub(super) fn ratio(lengths: &[f64], bounds: &[f64]) -> f64 {
 }
 
 /// The end of a stage.
-pub(super) struct Ended<G> {
+pub(super) struct StageEnd<G> {
     pub velocity: G,
     /// The tangent at the end, if it was evaluated.
     pub tangent: Option<Dense<f64>>,
@@ -121,7 +121,7 @@ pub(super) fn ended<C: Curve>(
     goal: &[f64],
     last: bool,
     is_looked_at: bool,
-) -> Result<Ended<C::Velocity>, f64> {
+) -> Result<StageEnd<C::Velocity>, f64> {
     let parts = curve.parts();
     let first = stage.correction(goal, &stage.residual);
     let course = parts.course(&parts.lengths(&first), &stage.units, |b| curve.noise(b));
@@ -195,7 +195,7 @@ pub(super) fn ended<C: Curve>(
             return Err((AIM * CHANGE / change).clamp(SHORTEST_TRY, AIM));
         }
     }
-    Ok(Ended {
+    Ok(StageEnd {
         velocity: at,
         tangent,
         course,
@@ -206,7 +206,7 @@ pub(super) fn ended<C: Curve>(
 /// Measures a remainder at a point, and a change between two points, relative to the reference lengths.
 struct Judges<'a> {
     value: &'a dyn Fn(&[f64]) -> f64,
-    slope: &'a dyn Fn(&Judged<Reals>) -> f64,
+    slope: &'a dyn Fn(&JudgedDifference<Reals>) -> f64,
 }
 
 /// The largest remainder of the equations between the ends of a stage, and its largest change between two checked
@@ -234,7 +234,7 @@ fn on_the_way<C: Curve>(
         larger(curve.noise(b), shared * unit)
     };
     // Changes at rounding level do not count.
-    let judge = |x: &Judged<Reals>| {
+    let judge = |x: &JudgedDifference<Reals>| {
         let lengths = curve.parts().lengths(&times(&x.difference, x.factor));
         let known = lengths.iter().enumerate().map(|(b, length)| {
             match *length <= FALLS * x.noise(noise(b)) {
@@ -246,7 +246,7 @@ fn on_the_way<C: Curve>(
     };
     let nothing = Reals::from_elem(0.0, first.len());
     let mut seen = vec![(0.0, nothing.clone())];
-    let mut so_far = Left::nothing(nothing);
+    let mut so_far = Remainders::nothing(nothing);
     let (mut left, mut steepest, mut rough) = (0.0, 0.0, vec![]);
     // The tangent is exact at the start of the stage, so the additional first point is skipped.
     for look in looks(1.0).filter(|look| look.is_regular()) {
@@ -283,8 +283,8 @@ fn left_between(
     let half = 0.5 * (to.0 - from.0);
     let middle = (from.0 + half, off(from.0 + half));
     let [before, after] = [less(&middle.1, &from.1), less(&to.1, &middle.1)];
-    let bend = (judges.slope)(&Judged::slope(less(&after, &before), half));
-    let slopes = [before, after].map(|x| (judges.slope)(&Judged::slope(x, half)));
+    let bend = (judges.slope)(&JudgedDifference::slope(less(&after, &before), half));
+    let slopes = [before, after].map(|x| (judges.slope)(&JudgedDifference::slope(x, half)));
     let most = slopes.into_iter().fold((judges.value)(&middle.1), worse);
     let halved = halvings > 0 && most <= FALLS && bend > BEND;
     if !halved {

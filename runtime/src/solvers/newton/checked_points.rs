@@ -26,7 +26,7 @@ const WEIGHTS: f64 = 16.0;
 
 /// A point at which the equations are checked.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Look {
+pub(super) struct CheckedPoint {
     /// The position, as a fraction of the path.
     pub share: f64,
     /// The distance to the previous point.
@@ -35,7 +35,7 @@ pub(super) struct Look {
     number: Option<u8>,
 }
 
-impl Look {
+impl CheckedPoint {
     /// Whether the point is one of the equidistant points.
     pub(super) fn is_regular(self) -> bool {
         self.number.is_some()
@@ -48,15 +48,15 @@ const FARTHEST: f64 = 1.4;
 
 /// All points of a path up to a fraction of it: 1, or more if the solution lies beyond the end of the path.
 #[inline(always)]
-pub(super) fn looks(share: f64) -> impl Iterator<Item = Look> {
+pub(super) fn looks(share: f64) -> impl Iterator<Item = CheckedPoint> {
     let last = share.clamp(1.0, FARTHEST);
-    let first = Look {
+    let first = CheckedPoint {
         share: FIRST,
         apart: FIRST,
         number: None,
     };
     let apart = 1.0 / f64::from(PIECES);
-    let others = (1..2 * PIECES).map(move |k| Look {
+    let others = (1..2 * PIECES).map(move |k| CheckedPoint {
         share: f64::from(k) * apart,
         apart,
         number: Some(k),
@@ -74,14 +74,14 @@ pub(super) fn shared_noise(noise: &[f64], units: &[f64]) -> f64 {
 
 /// A difference that, multiplied by `factor`, is judged like a remainder.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Judged<V> {
+pub(super) struct JudgedDifference<V> {
     pub difference: V,
     pub factor: f64,
     /// The rounding error of the difference, in rounding errors of a remainder.
     noise: f64,
 }
 
-impl<V> Judged<V> {
+impl<V> JudgedDifference<V> {
     /// The change between two points at the distance `apart`.
     #[inline(always)]
     pub(super) fn slope(difference: V, apart: f64) -> Self {
@@ -101,12 +101,12 @@ impl<V> Judged<V> {
 
 /// The remainders at the points so far.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Left<V> {
+pub(super) struct Remainders<V> {
     /// The last remainder and its differences, up to the third.
     last: [V; 4],
 }
 
-impl<V: Clone> Left<V> {
+impl<V: Clone> Remainders<V> {
     /// The remainder at rest, which is zero.
     #[inline(always)]
     pub(super) fn nothing(zero: V) -> Self {
@@ -120,12 +120,12 @@ impl<V: Clone> Left<V> {
     #[inline(always)]
     pub(super) fn next(
         &mut self,
-        look: Look,
+        look: CheckedPoint,
         off: &V,
         less: impl Fn(&V, &V) -> V,
-    ) -> [Option<Judged<V>>; 2] {
+    ) -> [Option<JudgedDifference<V>>; 2] {
         let first = less(off, &self.last[0]);
-        let slope = Some(Judged::slope(first.clone(), look.apart));
+        let slope = Some(JudgedDifference::slope(first.clone(), look.apart));
         let Some(number) = look.number else {
             return [slope, None];
         };
@@ -133,7 +133,7 @@ impl<V: Clone> Left<V> {
         let third = less(&second, &self.last[2]);
         let fourth = less(&third, &self.last[3]);
         self.last = [off.clone(), first, second, third];
-        let rough = (number >= 4).then_some(Judged {
+        let rough = (number >= 4).then_some(JudgedDifference {
             difference: fourth,
             factor: FALLS / ROUGH,
             noise: WEIGHTS,
