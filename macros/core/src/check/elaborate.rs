@@ -4,9 +4,9 @@
 mod components;
 mod domains;
 mod functions;
-mod given;
 mod names;
 mod products;
+mod user_functions;
 
 use super::declare::Declared;
 use super::messages::{self, shape_text};

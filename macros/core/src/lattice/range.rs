@@ -1,6 +1,6 @@
 //! The range of a term: the sites at which all its letters exist.
 
-use super::choice::Choice;
+use super::chain_config::Choice;
 use super::declared::{Lattice, Sites};
 use super::parts::{LINEAR, has_sum, parts};
 use crate::diagnostic::{Diagnostic, Place};

@@ -24,7 +24,7 @@ pub use functional_force::FunctionalForce;
 pub use inertia::{Inertia, of_site as inertia_of_site};
 pub use neighbour_force::{EndTerm, Force, NeighbourForce};
 pub use signs::{Signs, Wall, signs};
-pub use site::{BASE, Sited};
+pub use site::{BASE, SiteCopy};
 pub use site_model::{SiteModel, SiteSolve, SiteUnknown};
 pub use total::{Density, Total, totals_on};
 pub use velocity_coupling::{Part, VelocityCoupling};

@@ -136,7 +136,7 @@ pub(super) fn pulls(
         if !edge.is_zero()
             && let Some(placed) = placed(lattice, part, summand, &edge)?
         {
-            velocity_coupling::put(&mut ties, part, placed);
+            velocity_coupling::add_coupling(&mut ties, part, placed);
         }
         if nodal.is_zero() {
             continue;

@@ -3,7 +3,7 @@
 //! fills it.
 
 use super::locals::step;
-use super::pulls::known;
+use super::neighbour_forces::stated_letters;
 use super::{Lines, number};
 use crate::algebra::Algebra;
 use crate::emit::functional::path;
@@ -232,7 +232,7 @@ fn known_letters(
     l: &Lines,
     values: &[Expr],
     is_array: &dyn Fn(SymbolId) -> bool,
-) -> Vec<super::locals::Known> {
+) -> Vec<super::locals::StatedLetter> {
     let part = &l.line.representative;
     let own: Vec<Expr> = values
         .iter()
@@ -240,7 +240,7 @@ fn known_letters(
         .filter(|x| !is_array(x.symbol))
         .map(|x| expr::letter(&part.d.letters.symbols, x.symbol, x.shift))
         .collect();
-    known(l, &own)
+    stated_letters(l, &own)
 }
 
 /// The emitted code of functionals.

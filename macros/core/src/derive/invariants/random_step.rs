@@ -34,7 +34,11 @@ impl RandomStep<'_> {
 }
 
 /// A few steps, as far as there are points at which all expressions are defined.
-pub(crate) fn passages<'a>(x: &Inputs<'a>, roots: &Roots, assumed: &[Expr]) -> Vec<RandomStep<'a>> {
+pub(crate) fn random_steps<'a>(
+    x: &Inputs<'a>,
+    roots: &Roots,
+    assumed: &[Expr],
+) -> Vec<RandomStep<'a>> {
     let wanted = if assumed.is_empty() {
         STEPS
     } else {

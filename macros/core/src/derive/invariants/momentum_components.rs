@@ -118,7 +118,7 @@ struct Axis {
 }
 
 /// All components for the given sorts, whole momenta first.
-pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<MomentumComponent> {
+pub(super) fn momentum_components(x: &Inputs, sorts: &[Sort]) -> Vec<MomentumComponent> {
     let mut out = Vec::new();
     let order = |sort: &Sort| match sort {
         Sort::Rigid(_) => 0,

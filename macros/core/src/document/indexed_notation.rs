@@ -21,7 +21,7 @@ pub(super) struct Part {
 
 /// The origin that site indices are relative to.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum From {
+pub(super) enum IndexOrigin {
     /// Relative to this site: `i`, `i+1`.
     Site(usize),
     /// Relative to the first site: `0`, `1`.
@@ -57,7 +57,7 @@ impl<'a> IndexedNotation<'a> {
     }
 
     /// An expression of a part in the shared symbols.
-    pub(super) fn expression(&mut self, part: &Part, e: &Expr, from: From) -> Expr {
+    pub(super) fn expression(&mut self, part: &Part, e: &Expr, from: IndexOrigin) -> Expr {
         let replaced: Vec<(Letter, Expr)> = expr::letters(e)
             .into_iter()
             .map(|l| {
@@ -75,20 +75,26 @@ impl<'a> IndexedNotation<'a> {
         part: &Part,
         symbol: SymbolId,
         shift: Shift,
-        from: From,
+        from: IndexOrigin,
     ) -> Formula {
         let id = self.symbol(part, symbol, from);
         Formula::Expr(expr::letter(&self.symbols, id, shift))
     }
 
     /// A derived expression in the shared symbols, with a positive term first.
-    pub(super) fn derived(&mut self, part: &Part, e: &Expr, from: From) -> Formula {
+    pub(super) fn derived(&mut self, part: &Part, e: &Expr, from: IndexOrigin) -> Formula {
         let e = self.expression(part, e, from);
         Formula::Expr(expr::positive_first(&expr::shown(&self.symbols, &e)))
     }
 
     /// Formats the index of a site.
-    pub(super) fn index(&self, part: &Part, label: usize, site: usize, from: From) -> String {
+    pub(super) fn index(
+        &self,
+        part: &Part,
+        label: usize,
+        site: usize,
+        from: IndexOrigin,
+    ) -> String {
         let Some(l) = self.lattice.labels.get(label) else {
             return String::new();
         };
@@ -101,15 +107,15 @@ impl<'a> IndexedNotation<'a> {
         // A ring wraps around.
         let around = part.choice.periodic && self.lattice.line == Some(label);
         let site = match from {
-            From::End(origin) if around && site < origin => site + count,
+            IndexOrigin::End(origin) if around && site < origin => site + count,
             _ => site,
         };
         let relative = |name: &str, origin: usize| relative(name, site, origin);
         match from {
             _ if l.set => relative(&l.index.text, part_site(from)),
-            From::Site(origin) | From::End(origin) => relative(&l.index.text, origin),
-            From::First => site.to_string(),
-            From::Last => relative(&l.count.text, count),
+            IndexOrigin::Site(origin) | IndexOrigin::End(origin) => relative(&l.index.text, origin),
+            IndexOrigin::First => site.to_string(),
+            IndexOrigin::Last => relative(&l.count.text, count),
         }
     }
 
@@ -141,12 +147,12 @@ impl<'a> IndexedNotation<'a> {
         given.then(|| 2 * at.site > part.choice.count(at.label))
     }
 
-    fn symbol(&mut self, part: &Part, symbol: SymbolId, from: From) -> SymbolId {
+    fn symbol(&mut self, part: &Part, symbol: SymbolId, from: IndexOrigin) -> SymbolId {
         let own = part.d.letters.symbols.get(symbol).clone();
         let from = match from {
-            From::End(_) => match self.end(part, symbol) {
-                Some(true) => From::Last,
-                Some(false) => From::First,
+            IndexOrigin::End(_) => match self.end(part, symbol) {
+                Some(true) => IndexOrigin::Last,
+                Some(false) => IndexOrigin::First,
                 None => from,
             },
             _ => from,
@@ -207,9 +213,9 @@ impl<'a> IndexedNotation<'a> {
         each.map(|(s, e)| {
             let e = e.filter(moves);
             let from = match s.end {
-                None => From::Site(s.site),
-                Some((false, _)) => From::First,
-                Some((true, _)) => From::Last,
+                None => IndexOrigin::Site(s.site),
+                Some((false, _)) => IndexOrigin::First,
+                Some((true, _)) => IndexOrigin::Last,
             };
             e.map(|e| self.checked(part, &e, from))
         })
@@ -217,15 +223,15 @@ impl<'a> IndexedNotation<'a> {
     }
 
     /// Converts an expression in the symbols of the checked model. The derivation numbers these symbols first.
-    fn checked(&mut self, part: &Part, e: &Expr, from: From) -> Expr {
+    fn checked(&mut self, part: &Part, e: &Expr, from: IndexOrigin) -> Expr {
         self.expression(part, e, from)
     }
 }
 
-fn part_site(from: From) -> usize {
+fn part_site(from: IndexOrigin) -> usize {
     match from {
-        From::Site(site) | From::End(site) => site,
-        From::First | From::Last => 0,
+        IndexOrigin::Site(site) | IndexOrigin::End(site) => site,
+        IndexOrigin::First | IndexOrigin::Last => 0,
     }
 }
 

@@ -118,17 +118,17 @@ impl ExpandedModel {
 
 /// The names in all statements, including the end conditions that were not chosen.
 #[derive(Clone, Debug)]
-pub(super) struct Named {
+pub(super) struct StatementNames {
     /// Parameters whose names do not occur anywhere.
     not_at_all: BTreeSet<String>,
     /// Names that the terms of end conditions use, chosen or not.
     by_ends: BTreeSet<String>,
 }
 
-impl Named {
+impl StatementNames {
     /// Collects the names of a model.
     pub(super) fn of(model: &Model) -> Self {
-        Named {
+        StatementNames {
             not_at_all: unnamed(model),
             by_ends: of_ends(model),
         }

@@ -1,7 +1,7 @@
 //! Substitutes the copies at one site into an expression: each quantity of the chain becomes its copy. Across the
 //! seam of a ring the copy is shifted by the offset of its field; prescribed quantities do not move.
 
-use super::choice::Choice;
+use super::chain_config::Choice;
 use super::declared::{Lattice, Quantity, Sites};
 use super::names::copy_name;
 use crate::algebra::Rational;
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 /// The replacement of a copy that does not move.
 #[derive(Clone, Debug)]
-pub(super) enum Still {
+pub(super) enum FixedCopy {
     /// A parameter of the same name.
     Given,
     /// The identity, for the velocity of a prescribed configuration.
@@ -21,7 +21,7 @@ pub(super) enum Still {
 }
 
 /// Copies that do not move, by name.
-pub(super) type Pinned = BTreeMap<String, Still>;
+pub(super) type PrescribedCopies = BTreeMap<String, FixedCopy>;
 
 /// The site of a substitution.
 pub(super) struct SiteSubstitution<'a> {
@@ -30,7 +30,7 @@ pub(super) struct SiteSubstitution<'a> {
     /// The chosen sites and ends.
     pub choice: &'a Choice,
     /// The copies that do not move.
-    pub pinned: &'a Pinned,
+    pub pinned: &'a PrescribedCopies,
     /// Names of an end condition, with their names in the expanded model.
     pub locals: &'a [(String, String)],
     /// The index of the site.
@@ -43,7 +43,7 @@ type Placed = Result<Expression, Box<Diagnostic>>;
 
 impl SiteSubstitution<'_> {
     /// The expression at the site.
-    pub(super) fn put(&self, e: &Expression) -> Placed {
+    pub(super) fn substitute(&self, e: &Expression) -> Placed {
         self.at(e, 0)
     }
 
@@ -124,9 +124,9 @@ impl SiteSubstitution<'_> {
         };
         let copy = copy_name(n, site);
         let value = match self.pinned.get(&copy) {
-            Some(Still::Identity) => still(q, e),
-            Some(Still::Defined(by_given)) => by_given.clone(),
-            Some(Still::Given) | None => named(copy, e),
+            Some(FixedCopy::Identity) => still(q, e),
+            Some(FixedCopy::Defined(by_given)) => by_given.clone(),
+            Some(FixedCopy::Given) | None => named(copy, e),
         };
         let Some(offset) = q.offset.as_ref().filter(|_| turns != 0) else {
             return Ok(value);
@@ -169,7 +169,7 @@ impl SiteSubstitution<'_> {
         let place = e.place;
         let arguments = mesh.arguments.iter().map(|a| {
             let kind = Kind::Name(a.text.clone());
-            at_first.put(&Expression { kind, place })
+            at_first.substitute(&Expression { kind, place })
         });
         let name = crate::syntax::ast::Name {
             place,

@@ -4,7 +4,7 @@
 use super::arguments::{Argument, seen_at};
 use super::lanes::{Windows, are_together};
 use super::locals::{Places, step};
-use super::pulls::{field, front};
+use super::neighbour_forces::{field, front};
 use super::velocities::taken_apart;
 use super::{Lines, Moving, number};
 use crate::algebra::Rational;
@@ -14,7 +14,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 /// The form of the force at a node.
-pub(super) enum Acting {
+pub(super) enum ForceForm {
     /// One covector: half of it acts before the node, half after.
     Halves,
     /// One covector before the node and one after.
@@ -39,14 +39,14 @@ fn own(m: &Moving) -> [Expr; 2] {
 }
 
 impl Lines<'_> {
-    /// [`Acting::Halves`] if the two shares of every force are equal, both of the site's own forces and of neighbour
+    /// [`ForceForm::Halves`] if the two shares of every force are equal, both of the site's own forces and of neighbour
     /// forces.
-    pub(super) fn acting(&self, m: &Moving) -> Acting {
+    pub(super) fn force_form(&self, m: &Moving) -> ForceForm {
         let [arrive, leave] = own(m);
         let [before, after] = self.line.shares;
         match arrive == leave && before == after {
-            true => Acting::Halves,
-            false => Acting::Both,
+            true => ForceForm::Halves,
+            false => ForceForm::Both,
         }
     }
 
@@ -126,7 +126,7 @@ pub(super) fn edge_kernel(m: &Moving) -> Ident {
 }
 
 /// The kernels.
-pub(super) fn acting(l: &Lines) -> TokenStream {
+pub(super) fn all_kernels(l: &Lines) -> TokenStream {
     let name = l.item("");
     let each = l.moving().map(|m| one(l, m));
     let each: Vec<TokenStream> = each.collect();
@@ -144,9 +144,9 @@ pub(super) fn acting(l: &Lines) -> TokenStream {
 fn wanted(l: &Lines, m: &Moving) -> Vec<Expr> {
     let s = &m.outline().letters.symbols;
     let [arrive, leave] = own(m);
-    let wanted: Vec<Expr> = match l.acting(m) {
-        Acting::Halves => vec![crate::emit::forced::doubled(s, &leave)],
-        Acting::Both => vec![arrive, leave],
+    let wanted: Vec<Expr> = match l.force_form(m) {
+        ForceForm::Halves => vec![crate::emit::forced::doubled(s, &leave)],
+        ForceForm::Both => vec![arrive, leave],
     };
     wanted
         .iter()
@@ -179,7 +179,7 @@ fn one(l: &Lines, m: Moving) -> TokenStream {
     let s = &d.letters.symbols;
     let (kernel, t) = (kernel(&m), m.covector());
     let h = step(d);
-    let halves = matches!(l.acting(&m), Acting::Halves);
+    let halves = matches!(l.force_form(&m), ForceForm::Halves);
     let wanted = wanted(l, &m);
     let read = l.read(s, &l.of_site(d, &wanted));
     let (lets, results) = l.program(s, &wanted, &read.bindings);
@@ -317,15 +317,15 @@ fn arrived(l: &Lines, m: &Moving) -> TokenStream {
     let (kernel, t) = (arrived_kernel(m), m.covector());
     let turned = m.is_rotation().then(|| quote!(turn *));
     let in_space = m.is_rotation().then(|| quote!(let acting = turn * acting;));
-    let (acting, done) = match l.acting(m) {
-        Acting::Halves => (
+    let (acting, done) = match l.force_form(m) {
+        ForceForm::Halves => (
             quote!(#t),
             quote! {
                 #in_space
                 (edge + acting * T::from_f64(0.5), edge + acting)
             },
         ),
-        Acting::Both => (
+        ForceForm::Both => (
             quote!([#t; 2]),
             quote! {
                 let [before, after] = acting;
@@ -465,7 +465,7 @@ pub(super) fn arrive(l: &Lines, m: &Moving) -> TokenStream {
             }
         };
     };
-    let (edge_kernel, tied) = (edge_kernel(m), super::tied::added(l, m));
+    let (edge_kernel, tied) = (edge_kernel(m), super::coupled_velocities::added(l, m));
     let of_edge = quote!(self.#edge_kernel(h, site, &state.places, at, &work.#field[site])#tied);
     let added = quote!(let edge = edge + #of_edge;);
     let arrived = arrived_call(m, &call(l, m, &quote!(at)));

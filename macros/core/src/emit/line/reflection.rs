@@ -3,7 +3,7 @@
 //! reflection.
 
 use super::locals::Places;
-use super::{Lines, Moving, acting, number};
+use super::{Lines, Moving, force_kernels, number};
 use crate::algebra::Algebra;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::line::Line;
@@ -12,7 +12,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 /// The emitted code of walls.
-pub(super) struct Walls {
+pub(super) struct ReflectionCode {
     /// The kernel of the vector potential.
     pub items: TokenStream,
     /// The statements of a step after all positions have moved.
@@ -104,7 +104,7 @@ fn kernel(m: &Moving) -> Ident {
 }
 
 /// The walls of a box, if there are any.
-pub(super) fn walls(l: &Lines) -> Option<Walls> {
+pub(super) fn reflection_code(l: &Lines) -> Option<ReflectionCode> {
     let (extent, directions) = l.extent()?;
     if !matches!(extent, Extent::Box(_)) {
         return None;
@@ -143,7 +143,7 @@ pub(super) fn walls(l: &Lines) -> Option<Walls> {
     };
     let added = m.mover.how.added().is_some().then(|| {
         let velocities = l.system_of(&m).map(|(field, ..)| field);
-        let edge = acting::edge_kernel(&m);
+        let edge = force_kernels::edge_kernel(&m);
         quote!(self.#edge(h, site, &state.places, &work.places, &work.#velocities[site]))
     });
     let added = added.unwrap_or_else(|| quote!(SMatrix::zeros()));
@@ -165,5 +165,5 @@ pub(super) fn walls(l: &Lines) -> Option<Walls> {
             }
         }
     };
-    Some(Walls { items, call })
+    Some(ReflectionCode { items, call })
 }

@@ -9,7 +9,7 @@ use crate::expr::{self, Expr};
 use crate::syntax::ast::Expression;
 
 impl Elaborator<'_> {
-    pub(super) fn given(
+    pub(super) fn user_function_call(
         &self,
         function: FunctionalId,
         args: &[Expression],

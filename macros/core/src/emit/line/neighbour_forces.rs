@@ -4,7 +4,7 @@
 use super::arguments::Argument;
 use super::forms::forms;
 use super::lanes::{Windows, are_together};
-use super::locals::{Known, Places, Stands};
+use super::locals::{Places, QuaternionUse, StatedLetter};
 use super::{Lines, number};
 use crate::emit::expression::{Bindings, Writer};
 use crate::emit::items::letters_of;
@@ -90,7 +90,7 @@ fn of_pull(l: &Lines, n: usize, pull: &NeighbourForce) -> [TokenStream; 3] {
         .iter()
         .map(|f| expr::quaternion_components(s, &f.value));
     let values: Vec<_> = values.collect();
-    let letters = known(l, &values);
+    let letters = stated_letters(l, &values);
     let read = l.read(s, &letters);
     let (locals, arguments) = (&read.lets, read.arguments.iter().map(Argument::declared));
     let (lets, results) = computed(l, s, &values, &read.bindings);
@@ -199,22 +199,22 @@ fn term_text(l: &Lines, pull: &NeighbourForce) -> String {
 }
 
 /// The letters of a neighbour term.
-pub(super) fn known(l: &Lines, values: &[Expr]) -> Vec<Known> {
+pub(super) fn stated_letters(l: &Lines, values: &[Expr]) -> Vec<StatedLetter> {
     let part = &l.line.representative;
     let letters = letters_of(values).into_iter();
     letters
         .map(|letter| match part.sited(letter.symbol) {
-            Some(at) => Known {
+            Some(at) => StatedLetter {
                 letter,
                 of: at.of,
                 on: Some(at.site.saturating_sub(crate::line::BASE)),
-                stands: Stands::of(&part.d.letters.symbols, letter, values),
+                stands: QuaternionUse::of(&part.d.letters.symbols, letter, values),
             },
-            None => Known {
+            None => StatedLetter {
                 letter,
                 of: part.d.letters.symbols.get(letter.symbol).name.clone(),
                 on: None,
-                stands: Stands::default(),
+                stands: QuaternionUse::default(),
             },
         })
         .collect()

@@ -2,7 +2,7 @@
 //! configuration.
 
 use super::locals::Places;
-use super::pulls::{known, range_of};
+use super::neighbour_forces::{range_of, stated_letters};
 use super::{Lines, Moving, number, responses, rows, totals};
 use crate::emit::expression::Bindings;
 use crate::expr::symbol::Role;
@@ -146,7 +146,7 @@ impl Lines<'_> {
 }
 
 /// How the derivative of a constraint is stored.
-pub(super) enum Kept {
+pub(super) enum DerivativeStorage {
     /// A constant, written where it is used.
     Fixed(TokenStream),
     /// A number per site.
@@ -160,16 +160,16 @@ pub(super) fn field(r: &Reach) -> Ident {
     format_ident!("{}_{}", r.on, r.site)
 }
 
-pub(super) fn kept(l: &Lines, r: &Reach) -> Kept {
+pub(super) fn kept(l: &Lines, r: &Reach) -> DerivativeStorage {
     match &r.columns {
-        Matrix::Columns(_) => Kept::Matrix,
+        Matrix::Columns(_) => DerivativeStorage::Matrix,
         // The derivative of a sum vanishes beyond the ends of the chain, so it is stored.
         Matrix::Multiple(e) if crate::expr::letters(e).is_empty() && !r.in_sum => {
             let s = &l.line.representative.d.letters.symbols;
             let (_, value) = l.program(s, std::slice::from_ref(e), &Bindings::new());
-            Kept::Fixed(value.into_iter().next().unwrap_or_default())
+            DerivativeStorage::Fixed(value.into_iter().next().unwrap_or_default())
         }
-        Matrix::Multiple(_) => Kept::Number,
+        Matrix::Multiple(_) => DerivativeStorage::Number,
     }
 }
 
@@ -177,9 +177,9 @@ pub(super) fn kept(l: &Lines, r: &Reach) -> Kept {
 pub(super) fn size_of(l: &Lines, r: &Reach, list: &Ident) -> TokenStream {
     let own = field(r);
     let number = match kept(l, r) {
-        Kept::Matrix => return quote!(length(&reached.#list[site + 1].#own)),
-        Kept::Fixed(c) => quote!((#c)),
-        Kept::Number => quote!(reached.#list[site + 1].#own),
+        DerivativeStorage::Matrix => return quote!(length(&reached.#list[site + 1].#own)),
+        DerivativeStorage::Fixed(c) => quote!((#c)),
+        DerivativeStorage::Number => quote!(reached.#list[site + 1].#own),
     };
     quote!((#number * #number).sqrt())
 }
@@ -275,12 +275,12 @@ fn of_hold(l: &Lines, k: usize, h: &ChainConstraint) -> (TokenStream, TokenStrea
     for reach in &h.reaches {
         let name = field(reach);
         match kept(l, reach) {
-            Kept::Fixed(_) => continue,
-            Kept::Number => {
+            DerivativeStorage::Fixed(_) => continue,
+            DerivativeStorage::Number => {
                 fields.extend(quote!(#name: T,));
                 zeros.extend(quote!(#name: T::zero(),));
             }
-            Kept::Matrix => {
+            DerivativeStorage::Matrix => {
                 let c = number(components(l, &reach.on));
                 fields.extend(quote!(#name: SMatrix<T, #c, #r>,));
                 zeros.extend(quote!(#name: SMatrix::<T, #c, #r>::zeros(),));
@@ -288,7 +288,7 @@ fn of_hold(l: &Lines, k: usize, h: &ChainConstraint) -> (TokenStream, TokenStrea
         }
         values.extend(reach.columns.expressions().iter().cloned());
     }
-    let letters = known(l, &values);
+    let letters = stated_letters(l, &values);
     let (locals, bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
     let (lets, results) = l.program(s, &values, &bindings);
     let mut results = results.into_iter();
@@ -298,12 +298,12 @@ fn of_hold(l: &Lines, k: usize, h: &ChainConstraint) -> (TokenStream, TokenStrea
     for reach in &h.reaches {
         let (name, c) = (field(reach), components(l, &reach.on));
         match (kept(l, reach), &reach.columns) {
-            (Kept::Fixed(_), _) => {}
-            (Kept::Number, _) => {
+            (DerivativeStorage::Fixed(_), _) => {}
+            (DerivativeStorage::Number, _) => {
                 let value = results.next().unwrap_or_default();
                 made.extend(quote!(#name: #value,));
             }
-            (Kept::Matrix, of) => {
+            (DerivativeStorage::Matrix, of) => {
                 let is_number = is_number(l, &reach.on);
                 let columns = of.expressions().iter().enumerate().filter_map(|(j, e)| {
                     let value = results.next().unwrap_or_default();
@@ -384,9 +384,9 @@ fn reacted(l: &Lines, m: &Moving) -> TokenStream {
             };
             let impulse = quote!(impulses[#at].fixed_rows::<#r>(#row).into_owned());
             terms.push(match kept(l, reach) {
-                Kept::Fixed(c) => quote!(#impulse * (#c)),
-                Kept::Number => quote!(#impulse * reached.#list[site + #by].#own),
-                Kept::Matrix => quote!(reached.#list[site + #by].#own * #impulse),
+                DerivativeStorage::Fixed(c) => quote!(#impulse * (#c)),
+                DerivativeStorage::Number => quote!(#impulse * reached.#list[site + #by].#own),
+                DerivativeStorage::Matrix => quote!(reached.#list[site + #by].#own * #impulse),
             });
         }
     }

@@ -3,7 +3,7 @@
 //! Casimirs.
 
 use super::homogeneous;
-use super::passage::RandomStep;
+use super::random_step::RandomStep;
 use super::{Candidate, Inputs, here, totals};
 use crate::algebra::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};

@@ -12,7 +12,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 /// The value of the force at one end of an edge.
-pub(super) struct Acting {
+pub(super) struct EdgeForce {
     pub(super) value: TokenStream,
     /// Whether the value is in the frame of space although the momentum is stated in the body.
     pub(super) in_space: bool,
@@ -28,7 +28,7 @@ pub(super) fn seen_from_space(d: &Derivation, i: usize, shift: Shift, e: &Expr) 
 }
 
 /// The statements that compute one momentum, and those that store it.
-pub(super) struct Carried {
+pub(super) struct MomentumStatements {
     pub(super) found: TokenStream,
     pub(super) stored: TokenStream,
     /// The local with the components of the momentum.
@@ -55,8 +55,8 @@ pub(super) fn carried(
     d: &Derivation,
     names: &Names,
     i: usize,
-    values: &mut impl Iterator<Item = Acting>,
-) -> Carried {
+    values: &mut impl Iterator<Item = EdgeForce>,
+) -> MomentumStatements {
     let c = &d.spec.configurations[i];
     let body = Body {
         c,
@@ -70,7 +70,7 @@ pub(super) fn carried(
     let value = names.local(&format!("{}_next", body.field));
     let kind = element::kept_name(d, i);
     let (u, field) = (&d.carries[i], &body.field);
-    let parts: Vec<Option<Acting>> = u
+    let parts: Vec<Option<EdgeForce>> = u
         .parts()
         .into_iter()
         .map(|e: &Expr| {
@@ -79,13 +79,13 @@ pub(super) fn carried(
         })
         .collect();
     let acts = match element::rests(d, i) {
-        Some([_, rest]) => body.acting(u, &parts).map(|acts| (rest, acts)),
+        Some([_, rest]) => body.added_forces(u, &parts).map(|acts| (rest, acts)),
         None => None,
     };
     match acts {
         Some((rest, acts)) => {
             let left = names.local(&format!("{field}_rest"));
-            Carried {
+            MomentumStatements {
                 found: quote! {
                     let (#value, #left) = added(&state.#field.0, &state.#rest, &(#acts));
                 },
@@ -95,7 +95,7 @@ pub(super) fn carried(
         }
         None => {
             let whole = body.whole(u, &parts);
-            Carried {
+            MomentumStatements {
                 found: quote!(let #value = #whole;),
                 stored: quote!(state.#field = #kind(#value);),
                 value,
@@ -111,14 +111,14 @@ pub(super) fn gained(
     names: &Names,
     i: usize,
     form: &SpatialIncrementForm,
-    values: &mut impl Iterator<Item = Acting>,
-) -> Carried {
+    values: &mut impl Iterator<Item = EdgeForce>,
+) -> MomentumStatements {
     let field = per_configuration(d, "momentum", i);
     let [value, leaving] = ["next", "leaving"].map(|tag| names.local(&format!("{field}_{tag}")));
     let added = values.next().filter(|_| !form.added.is_zero());
-    let added = added.map(|Acting { value, .. }| quote!(+ #value));
+    let added = added.map(|EdgeForce { value, .. }| quote!(+ #value));
     let kind = element::kept_name(d, i);
-    Carried {
+    MomentumStatements {
         found: quote!(let #value = #leaving #added;),
         stored: quote!(state.#field = #kind(#value);),
         value,
@@ -127,7 +127,7 @@ pub(super) fn gained(
 
 impl Body<'_> {
     /// The increment of a momentum stored in two numbers. None if the update is not a sum.
-    fn acting(&self, u: &MomentumUpdate, parts: &[Option<Acting>]) -> Option<TokenStream> {
+    fn added_forces(&self, u: &MomentumUpdate, parts: &[Option<EdgeForce>]) -> Option<TokenStream> {
         let values = parts.iter().map(|a| a.as_ref().map(|a| a.value.clone()));
         let values: Vec<Option<TokenStream>> = values.collect();
         let Body {
@@ -167,7 +167,7 @@ impl Body<'_> {
     }
 
     /// The momentum of the next node.
-    fn whole(&self, u: &MomentumUpdate, parts: &[Option<Acting>]) -> TokenStream {
+    fn whole(&self, u: &MomentumUpdate, parts: &[Option<EdgeForce>]) -> TokenStream {
         let Body {
             element,
             moved,
@@ -176,7 +176,7 @@ impl Body<'_> {
             ..
         } = self;
         let part = |k: usize| parts.get(k).and_then(Option::as_ref);
-        let plus = |e: Option<&Acting>| e.map(|Acting { value, .. }| quote!(+ #value));
+        let plus = |e: Option<&EdgeForce>| e.map(|EdgeForce { value, .. }| quote!(+ #value));
         let old = element::value(c, quote!(state.#field.0));
         let value = match (c.side.is_body(), u) {
             _ if c.group.is_additive() => {
@@ -213,8 +213,8 @@ impl Body<'_> {
     }
 
     /// The force on the body, added in the frame of space.
-    fn turned(&self, element: &TokenStream, matrix: &Ident, acting: &Acting) -> TokenStream {
-        let Acting { value, in_space } = acting;
+    fn turned(&self, element: &TokenStream, matrix: &Ident, acting: &EdgeForce) -> TokenStream {
+        let EdgeForce { value, in_space } = acting;
         match family(self.c) {
             _ if *in_space => quote!(+ #value),
             Family::Rotation => quote!(+ #matrix * (#value)),

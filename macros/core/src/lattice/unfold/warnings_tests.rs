@@ -5,7 +5,7 @@ use crate::lattice::{Choice, Lattice};
 use crate::pipeline::{derive_lattice, parse_source, representative};
 
 /// The warnings for a chain with these ends, or for the ring.
-fn told(source: &str, count: Option<usize>, ends: Option<[&str; 2]>) -> Vec<Warning> {
+fn warnings_of(source: &str, count: Option<usize>, ends: Option<[&str; 2]>) -> Vec<Warning> {
     let model = parse_source(source).unwrap_or_else(|e| panic!("{source}\n{e}"));
     let lattice = Lattice::read(&model).unwrap();
     let choice = representative(&model, &lattice).unwrap();
@@ -29,7 +29,7 @@ fn velocities_that_are_joined_weakly_have_a_positive_energy() {
             "model Ring {{ label i in 0..N; periodic; {parameters} field x: Vec<3> at nodes; let d = next(x) - x;
              lagrangian = {kinetic} - h*dot(next(x, i) - x, next(x, i) - x)/2; }}"
         );
-        let all = told(&source, Some(5), None);
+        let all = warnings_of(&source, Some(5), None);
         let sign = |w: &&Warning| w.topic == Topic::SignOfKineticEnergy;
         all.iter().filter(sign).count()
     };
@@ -74,7 +74,7 @@ fn a_term_of_an_end_without_a_limit_is_told_where_it_stands() {
          lagrangian = m*(next(q) - q)^2/(2*h) - h*k*(next(q, i) - q)^2/2;
          end i = 0 {{ free; load {{ param F: Real; term {end}; }} }} }}"
     );
-    let all = told(&source, None, Some(["load", "free"]));
+    let all = warnings_of(&source, None, Some(["load", "free"]));
     let limits: Vec<&Warning> = all.iter().filter(|w| w.topic == Topic::NoLimit).collect();
     let [only] = limits.as_slice() else {
         panic!("{limits:?}");
@@ -103,7 +103,7 @@ fn what_nothing_names_is_told_of_every_line() {
         )
     };
     let unused = |source: &str, count, ends| -> Vec<String> {
-        let all = told(source, count, ends).into_iter();
+        let all = warnings_of(source, count, ends).into_iter();
         let own = all.filter(|w| w.topic == Topic::UnusedParameter);
         own.map(|w| w.diagnostic.message).collect()
     };
@@ -136,7 +136,7 @@ fn a_parameter_that_another_end_uses_is_not_unused() {
     };
     for term in ["h*F*q + h*g*q", "h*f"] {
         for ends in [None, Some(["free", "free"]), Some(["free", "load"])] {
-            let all = told(&source(term), Some(12), ends).into_iter();
+            let all = warnings_of(&source(term), Some(12), ends).into_iter();
             let own = all.filter(|w| w.topic == Topic::UnusedParameter);
             let messages: Vec<String> = own.map(|w| w.diagnostic.message).collect();
             let expected = ["the parameter `b` is never used"];
@@ -150,7 +150,7 @@ fn a_definition_that_nothing_uses_is_said_once() {
     let source = "model Beads { label i in 0..N; param m, k: Real; field q: Real at nodes; let d = next(q, i) - q; let f = k*d;
          lagrangian = m*(next(q) - q)^2/(2*h) - h*k*d^2/2; end i = 0 { free; pulled { param F: Real; term h*F*q; } } }";
     let unused = |source: &str| {
-        let all = told(source, None, Some(["free", "free"]));
+        let all = warnings_of(source, None, Some(["free", "free"]));
         let own = all.iter().filter(|w| w.topic == Topic::UnusedLet);
         own.map(|w| w.diagnostic.message.clone())
             .collect::<Vec<_>>()

@@ -2,7 +2,7 @@
 //! expanded, they become sums over the sites if both read alike.
 
 use super::{Stated, stated_configurations, sums};
-use crate::document::folded::{From, IndexedNotation, Part};
+use crate::document::indexed_notation::{IndexOrigin, IndexedNotation, Part};
 use crate::expr::Shift;
 use crate::print::formula::Formula;
 use crate::print::{Format, Style, formula};
@@ -19,7 +19,7 @@ pub(super) fn equations(
         let all = stated_configurations(part);
         let shown = all.iter().find(|o| o.name == s.name)?.shown;
         let b = part.d.balances.get(shown)?;
-        let sides = [&b.outgoing, &b.incoming].map(|e| sums::told(folded, part, e));
+        let sides = [&b.outgoing, &b.incoming].map(|e| sums::as_sums(folded, part, e));
         sides.into_iter().collect::<Option<Vec<Formula>>>()
     };
     let (own, there) = (told(part)?, told(longer)?);
@@ -35,7 +35,7 @@ pub(super) fn equations(
     let mu = *part.d.letters.node_momentum.get(s.shown)?;
     let sides = [Shift::HERE, Shift::NEXT].into_iter().zip(own);
     let each = sides.map(|(shift, sum)| {
-        let momentum = folded.letter(part, mu, shift, From::Site(s.site));
+        let momentum = folded.letter(part, mu, shift, IndexOrigin::Site(s.site));
         Formula::equal(momentum, sum)
     });
     Some(each.collect())

@@ -334,10 +334,10 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
     }
     let letters = l.of_site(d, &values);
     let (locals, mut bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
-    let tied = super::tied::is_tied(l, members);
+    let tied = super::coupled_velocities::is_tied(l, members);
     let velocities = taken_apart(members, &letters, &mut bindings, tied);
     let (lets, results) = l.program(s, &values, &bindings);
-    let (size, turns) = (number(n), super::tied::turns(members));
+    let (size, turns) = (number(n), super::coupled_velocities::turns(members));
     let (mut fill, mut given) = (TokenStream::new(), TokenStream::new());
     let mut row = 0;
     let mut results = values.iter().zip(results);
@@ -405,7 +405,7 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
         },
     };
     let velocity = match tied {
-        true => super::tied::velocity(n, members),
+        true => super::coupled_velocities::velocity(n, members),
         false => quote!(SVector<T, #size>),
     };
     quote! {

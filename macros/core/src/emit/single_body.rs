@@ -34,7 +34,7 @@ pub(super) fn scaled_momentum(
 }
 
 /// The solution of a Moser-Veselov equation that forms a block by itself.
-pub(super) fn alone(
+pub(super) fn single_body_solution(
     d: &Derivation,
     n: usize,
     i: usize,

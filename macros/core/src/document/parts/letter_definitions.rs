@@ -2,7 +2,7 @@
 
 use super::Motions;
 use super::names::{Kind, Names};
-use super::read::taken_kind;
+use super::rigid_motion_patterns::taken_kind;
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::spelling;
 use crate::expr::symbol::SymbolId;
@@ -16,7 +16,7 @@ const LONG: u32 = 20;
 
 /// The letters that have been defined, and those still to define.
 #[derive(Default)]
-pub struct Said {
+pub struct LetterDefinitions {
     /// Letters whose parts have been defined, or are pending.
     known: BTreeSet<(Kind, String)>,
     /// Whether the letters of one site define those of all sites.
@@ -32,14 +32,14 @@ pub struct Said {
     entries: [bool; 2],
 }
 
-impl Said {
+impl LetterDefinitions {
     /// Nothing defined yet. With `sites`, the letters of one site define those of all. If motions stay whole, entries
     /// use the notation of the language and need no explanation.
-    pub fn of(motions: Motions, sites: bool) -> Said {
-        Said {
+    pub fn of(motions: Motions, sites: bool) -> LetterDefinitions {
+        LetterDefinitions {
             sites,
             entries: [false, motions == Motions::Whole],
-            ..Said::default()
+            ..LetterDefinitions::default()
         }
     }
 }
@@ -115,7 +115,7 @@ impl Names {
                 words.push(self.definition(*kind, *whole).into());
             }
             if let Some((kind, whole)) = group.first() {
-                words.push(said(*kind, self.symbols.get(*whole).shape).into());
+                words.push(parts_in_words(*kind, self.symbols.get(*whole).shape).into());
             }
         }
         let (long, short): (Vec<_>, Vec<_>) = named.into_iter().partition(|(size, _)| *size > LONG);
@@ -186,7 +186,7 @@ impl Names {
 }
 
 /// Describes the parts in words.
-fn said(kind: Kind, shape: Shape) -> &'static str {
+fn parts_in_words(kind: Kind, shape: Shape) -> &'static str {
     match kind {
         Kind::Twist => ", angular and linear part",
         Kind::Point if shape.rows == Dim::Fixed(3) => ", the first two entries and the last",

@@ -2,7 +2,7 @@
 //! equations of all sites, and the force of the edge.
 
 use super::locals::{Places, step};
-use super::pulls::{known, range_of};
+use super::neighbour_forces::{range_of, stated_letters};
 use super::step::range_name;
 use super::velocities::{as_array, width};
 use super::{Lines, Moving, number};
@@ -246,7 +246,7 @@ impl Derivatives {
     }
 
     /// Adds columns to the block of two sites: their first row, their number of rows, and the first column.
-    pub(super) fn put(
+    pub(super) fn store_column(
         &mut self,
         pair: [usize; 2],
         [row, rows, column]: [usize; 3],
@@ -350,7 +350,7 @@ fn of_tie(
                 let Some((e, value)) = results.next() else {
                     break;
                 };
-                derivatives.put([of.site, by.site], [row, rows, j], e, value);
+                derivatives.store_column([of.site, by.site], [row, rows, j], e, value);
                 j += width(e);
             }
         }
@@ -386,7 +386,7 @@ fn computed(
 ) -> (TokenStream, Vec<TokenStream>) {
     let part = &l.line.representative;
     let s = &part.d.letters.symbols;
-    let letters = known(l, values);
+    let letters = stated_letters(l, values);
     let (locals, mut bindings): (TokenStream, Bindings) =
         l.locals(s, &letters, &Places::of_node(), &quote!(site));
     let mut used: Vec<String> = Vec::new();

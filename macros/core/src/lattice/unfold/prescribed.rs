@@ -7,7 +7,7 @@ use crate::check::are_same;
 use crate::lattice::declared::Kind as Role;
 use crate::lattice::names::copy_name;
 use crate::lattice::parts::names;
-use crate::lattice::put::{Still, any_name};
+use crate::lattice::substitution::{FixedCopy, any_name};
 use crate::syntax::ast::{Expression, Kind, Kindred, Model, Name, Statement};
 use std::collections::BTreeSet;
 
@@ -23,10 +23,10 @@ impl Writer<'_> {
                 let site = if last { count.saturating_sub(1) } else { 0 };
                 let own = copy_name(&name.text, site);
                 self.out.given.push(own.clone());
-                self.pinned.insert(own, Still::Given);
+                self.pinned.insert(own, FixedCopy::Given);
                 if let Some(velocity) = velocity_of(model, &name.text) {
                     let own = copy_name(&velocity.text, site);
-                    self.pinned.insert(own, Still::Identity);
+                    self.pinned.insert(own, FixedCopy::Identity);
                 }
             }
         }
@@ -71,16 +71,18 @@ impl Writer<'_> {
                     _ => None,
                 });
                 let still = match definition {
-                    Some(value) => match self.put(at).put(&inlined(value, self.lets)) {
-                        Ok(defined) => Still::Defined(defined),
-                        Err(d) => {
-                            self.errors.push(*d);
-                            return false;
+                    Some(value) => {
+                        match self.substitution(at).substitute(&inlined(value, self.lets)) {
+                            Ok(defined) => FixedCopy::Defined(defined),
+                            Err(d) => {
+                                self.errors.push(*d);
+                                return false;
+                            }
                         }
-                    },
+                    }
                     None => {
                         self.out.given.push(own.clone());
-                        Still::Given
+                        FixedCopy::Given
                     }
                 };
                 self.pinned.insert(own, still);
@@ -92,14 +94,14 @@ impl Writer<'_> {
     /// Whether the update of a copy leaves the copy unchanged: it contains no other moving quantity, and after
     /// substitution of prescribed values it equals the copy.
     fn stands_still(&self, model: &Model, own: &str, update: &Expression, at: isize) -> bool {
-        let Ok(put) = self.put(at).put(update) else {
+        let Ok(put) = self.substitution(at).substitute(update) else {
             return false;
         };
         let named = |n: &str| Expression {
             kind: Kind::Name(n.to_owned()),
             place: put.place,
         };
-        let moves = |n: &str| n != own && self.put(at).is_moving(&named(n));
+        let moves = |n: &str| n != own && self.substitution(at).is_moving(&named(n));
         if any_name(&put, &moves) {
             return false;
         }

@@ -3,7 +3,7 @@
 
 use super::each_formula;
 use super::names::Kind;
-use super::read::{homogeneous, last_taken, taken_kind};
+use super::rigid_motion_patterns::{homogeneous, last_taken, taken_kind};
 use crate::expr::shape::Dim;
 use crate::expr::symbol::SymbolId;
 use crate::expr::{Constant, Expr, Node};
@@ -11,7 +11,7 @@ use crate::print::document::{Block, Document};
 use std::collections::BTreeSet;
 
 /// The result of the scan.
-pub struct Found {
+pub struct DocumentScan {
     /// Names in displayed equations that are not symbols.
     pub names: BTreeSet<String>,
     /// Dimensions of the homogeneous coordinates.
@@ -20,9 +20,9 @@ pub struct Found {
     pub parted: BTreeSet<(Kind, SymbolId)>,
 }
 
-impl Found {
+impl DocumentScan {
     /// Scans a document.
-    pub fn in_document(doc: &Document) -> Found {
+    pub fn in_document(doc: &Document) -> DocumentScan {
         let mut names = BTreeSet::new();
         // Definitions use dummy letters; a letter in an equation has a fixed meaning.
         for block in doc.sections.iter().flat_map(|s| &s.blocks) {
@@ -45,7 +45,7 @@ impl Found {
                 taken_apart(e, &points, &mut parted);
             });
         });
-        Found {
+        DocumentScan {
             names,
             points,
             parted,

@@ -11,7 +11,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 /// Known values and their names.
-pub(super) struct Stated {
+pub(super) struct PrecomputedValues {
     /// The statements that compute the values.
     pub statements: TokenStream,
     /// The locals of the values.
@@ -26,7 +26,7 @@ pub(super) fn stated(
     known: Vec<(SymbolId, Expr)>,
     prefix: &str,
     bindings: &Bindings,
-) -> Stated {
+) -> PrecomputedValues {
     let (names, values): (Vec<_>, Vec<Expr>) = known.into_iter().unzip();
     let mut p = schedule::program(s, &values, prefix);
     let (mut out, values) = program(&p, bindings);
@@ -43,7 +43,7 @@ pub(super) fn stated(
             }
         }
     }
-    Stated {
+    PrecomputedValues {
         statements: out,
         bindings: found,
         computed: p,
