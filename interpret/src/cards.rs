@@ -17,7 +17,7 @@ use std::rc::Rc;
 use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 
 /// A card, and the warnings of its text.
-type Told = (Card, Vec<Warning>);
+type CardWithWarnings = (Card, Vec<Warning>);
 
 /// Cards by their texts and the chosen sizes or sites, and whether the text has warnings.
 static KNOWN: RwLock<BTreeMap<String, (Card, bool)>> = RwLock::new(BTreeMap::new());
@@ -26,8 +26,8 @@ static KNOWN: RwLock<BTreeMap<String, (Card, bool)>> = RwLock::new(BTreeMap::new
 /// derived again for them.
 fn once(
     key: String,
-    make: impl FnOnce(Option<Card>) -> Result<Told, Refused>,
-) -> Result<Told, Refused> {
+    make: impl FnOnce(Option<Card>) -> Result<CardWithWarnings, Refused>,
+) -> Result<CardWithWarnings, Refused> {
     let all = KNOWN.read().unwrap_or_else(PoisonError::into_inner);
     let known = all.get(&key).copied();
     drop(all);
@@ -96,7 +96,11 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
     })
 }
 
-fn on_lattice(source: &str, choice: &Choice, known: Option<Card>) -> Result<Told, Refused> {
+fn on_lattice(
+    source: &str,
+    choice: &Choice,
+    known: Option<Card>,
+) -> Result<CardWithWarnings, Refused> {
     let model = pipeline::parse_source(source).map_err(Refused::Model)?;
     let lattice = Lattice::read(&model).map_err(Refused::Model)?;
     let mut written_out = None;
@@ -173,7 +177,7 @@ fn body_by_body(
     source: &str,
     written_out: Option<String>,
     known: Option<Card>,
-) -> Result<Told, Refused> {
+) -> Result<CardWithWarnings, Refused> {
     let derived = pipeline::derive_lattice(model, lattice, choice);
     let (unfolded, d) = derived.map_err(Refused::Model)?;
     let warnings = unfolded.told(choice, &d.warnings);
@@ -229,7 +233,7 @@ fn card_of_line(
     line: Arc<LineModel>,
     source: &str,
     known: Option<Card>,
-) -> Result<Told, Refused> {
+) -> Result<CardWithWarnings, Refused> {
     let (mut carded, warnings) = Carded::of(stated, choice, line, source)?;
     if let Some(card) = known {
         return Ok((card, warnings));
@@ -244,7 +248,7 @@ fn card_of_line(
 }
 
 /// The card at given sizes.
-fn at_sizes(source: &str, sizes: Option<&[usize]>) -> Result<Told, Refused> {
+fn at_sizes(source: &str, sizes: Option<&[usize]>) -> Result<CardWithWarnings, Refused> {
     once(format!("{sizes:?}\n{source}"), |known| {
         let text = derived(source)?;
         let warnings = text.derivation.warnings.clone();
@@ -280,7 +284,10 @@ fn derived(source: &str) -> Result<Rc<Text>, Refused> {
 const NOT_OPEN: OpenError = OpenError::Solver { offered: &[] };
 
 /// Opens a model and returns its card; `resize` returns its cards of other sizes.
-fn kept(mut model: Opened, resize: impl Fn(&[usize]) -> Option<Told> + Sync + 'static) -> Card {
+fn kept(
+    mut model: Opened,
+    resize: impl Fn(&[usize]) -> Option<CardWithWarnings> + Sync + 'static,
+) -> Card {
     let place: &'static OnceLock<Opened> = Box::leak(Box::default());
     let open = move |parameters: &[Vec<f64>], initial: &[Vec<f64>], settings: Settings| {
         let model = place.get().ok_or(NOT_OPEN)?;

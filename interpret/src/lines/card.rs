@@ -2,7 +2,7 @@
 //! for all sites. Takes a model with labels and a choice; gives the card that the command reads and starts.
 
 use super::LineModel;
-use super::coordinates::{self, Of};
+use super::coordinates::{self, UserRole};
 use crate::cards::named;
 use crate::constants::Constants;
 use crate::opened::Text;
@@ -198,7 +198,7 @@ impl Carded {
         for c in &model.coordinates {
             summary.push_str(&format!("\ncoordinates          {}", c.words()));
         }
-        summary.push_str(&told(&left_out));
+        summary.push_str(&program_description(&left_out));
         let card = Card {
             source: text(source),
             summary: text(&summary),
@@ -281,7 +281,7 @@ fn of_all_sites<'a>(summary: &str, names: impl Iterator<Item = &'a str>) -> Stri
 }
 
 /// Describes how a chain is run, and lists the quantities that are not computed.
-fn told(left_out: &[String]) -> String {
+fn program_description(left_out: &[String]) -> String {
     let mut told = String::from(
         "\nprogram              one for any number of sites, with loops over the sites",
     );
@@ -306,9 +306,9 @@ fn in_groups(
             return vec![(field, place)];
         };
         let own = match of {
-            Of::Rest => Vec::new(),
-            Of::Element => coordinates::fields(c, site, false, initial),
-            Of::Momentum => coordinates::fields(c, site, true, initial),
+            UserRole::Rest => Vec::new(),
+            UserRole::Element => coordinates::fields(c, site, false, initial),
+            UserRole::Momentum => coordinates::fields(c, site, true, initial),
         };
         let placed = own.into_iter().map(|(field, key)| {
             let site = Some(site);

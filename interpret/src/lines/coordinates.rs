@@ -16,7 +16,7 @@ use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 /// The role of a variable of the program in the form that users see.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Of {
+pub(super) enum UserRole {
     /// Users see the element instead.
     Element,
     /// Users see the momentum of the element instead.
@@ -48,7 +48,7 @@ pub(super) fn shown(c: &Coordinates) -> [String; 3] {
 }
 
 /// The role of a variable of the program, by its name or its ASCII name.
-pub(super) fn of(c: &Coordinates, name: &str) -> Option<Of> {
+pub(super) fn of(c: &Coordinates, name: &str) -> Option<UserRole> {
     let is = |prefix: &str, own: &str| {
         let whole = format!("{prefix}{own}");
         name == whole || name == ascii(&whole)
@@ -65,13 +65,13 @@ pub(super) fn of(c: &Coordinates, name: &str) -> Option<Of> {
         "momentum_"
     };
     if is("", first) {
-        return Some(Of::Element);
+        return Some(UserRole::Element);
     }
     if is(momentum, first) {
-        return Some(Of::Momentum);
+        return Some(UserRole::Momentum);
     }
     let beside = place.is_some_and(|p| is("", p) || is("momentum_", p));
-    (beside || of_turn && is("spatial_momentum_", first)).then_some(Of::Rest)
+    (beside || of_turn && is("spatial_momentum_", first)).then_some(UserRole::Rest)
 }
 
 /// The fields of a card of an element and of its momenta.
@@ -198,10 +198,10 @@ pub(super) fn given(c: &Coordinates, name: &str, numbers: &Numbers<'_>) -> Optio
     let (rows, [high, wide]) = sizes(c);
     let body = c.side.is_body();
     let elements = numbers(&c.name)?;
-    if asked == Of::Element && matches!(c.by, By::Entries(_)) {
+    if asked == UserRole::Element && matches!(c.by, By::Entries(_)) {
         return Some(elements);
     }
-    let is_of_place = asked == Of::Rest;
+    let is_of_place = asked == UserRole::Rest;
     let of_momentum = name.starts_with("momentum_") || name.starts_with("body_momentum_");
     let momenta = match of_momentum {
         true => numbers(&given_momentum(c))?,
@@ -292,7 +292,7 @@ pub(super) fn named(all: &[Coordinates], e: LineError) -> LineError {
 }
 
 /// The elements or momenta that users see, computed from the variables of the program.
-pub(super) fn told(
+pub(super) fn user_coordinates(
     c: &Coordinates,
     name: &str,
     mut seen: impl FnMut(&str) -> Option<Vec<f64>>,

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// The value with every number replaced. Returns nothing for data prepared from numbers, such as the factors of a
 /// solver.
-pub fn over<T: Real, U: Real>(
+pub fn map_scalar<T: Real, U: Real>(
     value: &Value<T>,
     change: &mut impl FnMut(T) -> U,
 ) -> Option<Value<U>> {
@@ -69,12 +69,12 @@ fn all<T: Real, U: Real>(
 ) -> Option<Vec<Value<U>>> {
     let mut out = Vec::with_capacity(list.len());
     for value in list {
-        out.push(over(value, change)?);
+        out.push(map_scalar(value, change)?);
     }
     Some(out)
 }
 
-/// The numbers of a value, in the order of [`over`]. Nothing for what it does not change either.
+/// The numbers of a value, in the order of [`map_scalar`]. Nothing for what it does not change either.
 pub fn numbers<T: Real>(value: &Value<T>, out: &mut Vec<T>) -> Option<()> {
     match value {
         Value::Real(x) => out.push(*x),
@@ -95,7 +95,7 @@ pub fn numbers<T: Real>(value: &Value<T>, out: &mut Vec<T>) -> Option<()> {
         }
         Value::Search(_) => {}
         other => {
-            over(other, &mut |x| {
+            map_scalar(other, &mut |x| {
                 out.push(x);
                 x
             })?;
@@ -104,7 +104,7 @@ pub fn numbers<T: Real>(value: &Value<T>, out: &mut Vec<T>) -> Option<()> {
     Some(())
 }
 
-/// Puts numbers into a value, in the order of [`over`].
+/// Puts numbers into a value, in the order of [`map_scalar`].
 pub fn fill(value: &mut Value<f64>, from: &mut impl Iterator<Item = f64>) {
     let mut next = |x: &mut f64| *x = from.next().unwrap_or(*x);
     match value {
@@ -118,7 +118,7 @@ pub fn fill(value: &mut Value<f64>, from: &mut impl Iterator<Item = f64>) {
         Value::List(list) => list.iter_mut().for_each(|value| fill(value, from)),
         Value::Search(_) => {}
         other => {
-            if let Some(made) = over(other, &mut |x: f64| from.next().unwrap_or(x)) {
+            if let Some(made) = map_scalar(other, &mut |x: f64| from.next().unwrap_or(x)) {
                 *other = made;
             }
         }

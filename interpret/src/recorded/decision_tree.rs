@@ -1,17 +1,17 @@
 //! The tapes of one function of a trajectory, one for each outcome of its decisions.
 
 use super::counts::Growth;
-use super::kept::MOST;
 use super::load;
-use super::solves::{Between, Went};
+use super::solves::{SolveBetweenTapes, TapeOutcome};
+use super::tape_storage::MOST;
 use crate::code::Places;
 use clebsch_program::{Frame, Machine};
 
 /// A function as tapes, by how it decided where it was recorded.
 #[derive(Debug)]
-pub struct Way {
+pub struct OutcomeTape {
     /// The equations that are solved on the way, with the tapes before them.
-    pub between: Vec<Between>,
+    pub between: Vec<SolveBetweenTapes>,
     /// The last tape.
     pub machine: Machine,
     /// Its registers.
@@ -32,25 +32,25 @@ pub struct Node<'a> {
     pub places: &'a mut Places<f64>,
 }
 
-impl Way {
+impl OutcomeTape {
     /// Computes the function at a node.
-    fn follows(&mut self, node: &mut Node) -> Went {
+    fn follows(&mut self, node: &mut Node) -> TapeOutcome {
         let given = match self.between.first() {
             Some(_) => node.numbers.len(),
             // The workspace comes last: its numbers may be more than the tape reads.
             None => self.machine.inputs(),
         };
         let Some(own) = node.numbers.get(..given) else {
-            return Went::Elsewhere;
+            return TapeOutcome::Elsewhere;
         };
         self.numbers.clear();
         self.numbers.extend_from_slice(own);
         for at in 0..self.between.len() {
             let went = match self.between.get_mut(at) {
                 Some(next) => next.solve(&mut self.numbers, node.first, node.places),
-                None => Went::Unsolved,
+                None => TapeOutcome::Unsolved,
             };
-            if went != Went::On {
+            if went != TapeOutcome::On {
                 self.undo(at, node.places);
                 return went;
             }
@@ -58,12 +58,12 @@ impl Way {
         let loaded = load(self.frame.inputs(), &self.numbers);
         if loaded.is_none() || !self.machine.run(&mut self.frame) {
             self.undo(self.between.len(), node.places);
-            return Went::Elsewhere;
+            return TapeOutcome::Elsewhere;
         }
         for solved in &self.between {
             solved.remember(node.first, node.places);
         }
-        Went::On
+        TapeOutcome::On
     }
 
     /// Searches are as they were before the parts up to `at`.
@@ -76,15 +76,15 @@ impl Way {
 
 /// The ways of one function, with the last used way at the end, and the number of further ways that may be recorded.
 #[derive(Debug)]
-pub struct Ways {
-    known: Vec<Way>,
+pub struct TapesByOutcome {
+    known: Vec<OutcomeTape>,
     left: usize,
 }
 
-impl Ways {
+impl TapesByOutcome {
     /// None yet; none at all, unless the function `records`.
     pub fn new(records: bool) -> Self {
-        Ways {
+        TapesByOutcome {
             known: Vec::new(),
             left: if records { MOST } else { 0 },
         }
@@ -99,24 +99,24 @@ impl Ways {
     pub fn found(
         &mut self,
         mut node: Node,
-        make: impl FnOnce(&mut Places<f64>) -> Option<Way>,
-    ) -> Option<&mut Way> {
+        make: impl FnOnce(&mut Places<f64>) -> Option<OutcomeTape>,
+    ) -> Option<&mut OutcomeTape> {
         for at in (0..self.known.len()).rev() {
             match self.known.get_mut(at)?.follows(&mut node) {
-                Went::On => {
+                TapeOutcome::On => {
                     if at + 1 < self.known.len() {
                         let way = self.known.remove(at);
                         self.known.push(way);
                     }
                     return self.known.last_mut();
                 }
-                Went::Elsewhere => {}
-                Went::Unsolved => return None,
+                TapeOutcome::Elsewhere => {}
+                TapeOutcome::Unsolved => return None,
             }
         }
         self.left = self.left.checked_sub(1)?;
         let mut made = make(node.places)?;
-        if made.follows(&mut node) != Went::On {
+        if made.follows(&mut node) != TapeOutcome::On {
             return None;
         }
         self.known.push(made);

@@ -75,7 +75,7 @@ impl LineTrajectory {
     pub fn observe(&mut self, name: &str) -> Option<Vec<f64>> {
         let model = self.model.clone();
         for c in &model.coordinates {
-            if let Some(told) = coordinates::told(c, name, |own| self.seen(own)) {
+            if let Some(told) = coordinates::user_coordinates(c, name, |own| self.seen(own)) {
                 return Some(told);
             }
         }

@@ -4,34 +4,34 @@
 #![allow(missing_docs, mixed_script_confusables)]
 
 #[allow(dead_code)]
-#[path = "lines/beside.rs"]
-mod beside;
+#[path = "lines/comparison.rs"]
+mod comparison;
 #[allow(dead_code)]
 #[path = "lines/compiled.rs"]
 mod compiled;
 
-use beside::{bits, choice, start};
 use clebsch::card::{Field, Settings};
 use clebsch_interpret::lines::LineModel;
-use compiled::{Case, held, springs, sums};
+use comparison::{bits, choice, start};
+use compiled::{Case, constraints, springs, sums};
 
 #[test]
 fn held_lines_equal_the_compiled_ones_to_the_last_bit() {
-    beside::equal_to_the_last_bit(held::all());
-    beside::equal_to_the_last_bit(sums::all());
+    comparison::equal_to_the_last_bit(constraints::all());
+    comparison::equal_to_the_last_bit(sums::all());
 }
 
 /// Long, since every line is derived body by body.
 #[test]
 fn held_lines_move_as_their_bodies_do() {
-    beside::move_as_bodies_do(held::all(), 3);
-    beside::move_as_bodies_do(sums::all(), 3);
+    comparison::move_as_bodies_do(constraints::all(), 3);
+    comparison::move_as_bodies_do(sums::all(), 3);
 }
 
 #[test]
 fn totals_about_what_ends_hold_equal_the_compiled_ones_and_those_of_bodies() {
-    beside::equal_to_the_last_bit([springs::line()]);
-    beside::move_as_bodies_do([springs::line()], 5);
+    comparison::equal_to_the_last_bit([springs::line()]);
+    comparison::move_as_bodies_do([springs::line()], 5);
     let strung = springs::line();
     for (ends, name) in [
         (["pinned", "free"], "total_momentum_angular_about_X"),
@@ -43,7 +43,7 @@ fn totals_about_what_ends_hold_equal_the_compiled_ones_and_those_of_bodies() {
         let case = Case::new(60, Some(ends));
         let data = (strung.data)(&case);
         let settings = Settings::step(case.h);
-        let (card, _) = beside::opened(strung.source, &case, &data, settings);
+        let (card, _) = comparison::opened(strung.source, &case, &data, settings);
         let listed = card.invariants.iter().any(|i| i.name == name);
         assert!(listed, "{ends:?}: {:?}", card.invariants);
         let model = LineModel::read(strung.source).expect("is read");
@@ -66,7 +66,7 @@ fn totals_about_what_ends_hold_equal_the_compiled_ones_and_those_of_bodies() {
 /// The order of composed steps, for positions and momenta. A failed step leaves the chain unchanged.
 #[test]
 fn composed_steps_have_their_order() {
-    let [_, of_held, _] = held::all();
+    let [_, of_held, _] = constraints::all();
     let of = |source: &str| {
         let mut all = compiled::all().into_iter();
         all.find(|own| own.source == source).expect("is here")
@@ -78,14 +78,14 @@ fn composed_steps_have_their_order() {
     ];
     for (own, case) in lines {
         let data = (own.data)(&case);
-        let (card, _) = beside::opened(own.source, &case, &data, Settings::step(case.h));
+        let (card, _) = comparison::opened(own.source, &case, &data, Settings::step(case.h));
         assert_eq!(card.orders, [2, 4, 6, 8], "{}", card.name);
         let end = |order: u32, steps: u32| {
             let settings = Settings {
                 order: Some(order),
                 ..Settings::step(0.16 / f64::from(steps))
             };
-            let (_, mut line) = beside::opened(own.source, &case, &data, settings);
+            let (_, mut line) = comparison::opened(own.source, &case, &data, settings);
             for _ in 0..steps {
                 line.step().expect("steps");
             }
@@ -93,7 +93,7 @@ fn composed_steps_have_their_order() {
             // The quantities with initial data; multipliers belong to the last substep.
             let mut all = vec![0.0; card.observable_count()];
             line.observe(&mut all);
-            let given = |f: &Field| data.of_ascii(beside::split(f).0).is_some();
+            let given = |f: &Field| data.of_ascii(comparison::split(f).0).is_some();
             let of = card.observables.iter();
             let moving: Vec<bool> = of.flat_map(|f| vec![given(f); f.count()]).collect();
             let all = all.into_iter().zip(moving);
@@ -130,7 +130,7 @@ fn a_composed_step_that_is_refused_leaves_the_line_where_it_was() {
         order: Some(4),
         ..Settings::step(0.02)
     };
-    let (card, mut line) = beside::opened(source, &case, &wild, settings);
+    let (card, mut line) = comparison::opened(source, &case, &wild, settings);
     let mut seen = vec![0.0; card.observable_count()];
     let refused = (0..1000).find_map(|node| {
         line.observe(&mut seen);
@@ -146,40 +146,41 @@ fn a_composed_step_that_is_refused_leaves_the_line_where_it_was() {
 
 #[test]
 fn a_held_line_is_written_down_and_goes_on_to_the_last_bit() {
-    beside::go_on(held::all());
-    beside::go_on(sums::all());
-    beside::go_on_composed(held::all());
-    beside::go_on_composed(sums::all());
+    comparison::go_on(constraints::all());
+    comparison::go_on(sums::all());
+    comparison::go_on_composed(constraints::all());
+    comparison::go_on_composed(sums::all());
 }
 
 #[test]
 fn a_wrong_sign_of_what_is_held_is_seen() {
     let wrong = [
-        (held::ROD, " + (h/s)*tr(B*Λ^T*next(Λ, i))", ""),
+        (constraints::ROD, " + (h/s)*tr(B*Λ^T*next(Λ, i))", ""),
         (
-            held::CHAIN,
+            constraints::CHAIN,
             "dot(V, V)/2 + dot(g, x)",
             "dot(V, V)/2 - dot(g, x)",
         ),
         // Other beads with the same initial values: the constraint of the second of three links has twice the weight.
         (
-            held::CHAIN,
+            constraints::CHAIN,
             "dot(next(x, i) - x, next(x, i) - x) = a^2",
             "dot(next(x, i) - x, next(x, i) - x)^2 = a^4",
         ),
     ];
     for (source, term, rest) in wrong {
-        beside::another_term_is_seen(&held::all(), source, term, rest);
+        comparison::another_term_is_seen(&constraints::all(), source, term, rest);
     }
 }
 
 #[test]
 fn data_off_a_constraint_are_refused_at_their_site() {
-    let model = LineModel::read(held::CHAIN).expect("is read");
+    let model = LineModel::read(constraints::CHAIN).expect("is read");
     let case = Case::new(50, Some(["pinned", "free"]));
-    let [_, own, _] = held::all();
+    let [_, own, _] = constraints::all();
     let data = (own.data)(&case);
-    let refused = |data: &compiled::Data| beside::refused(&model, held::CHAIN, &case, data);
+    let refused =
+        |data: &compiled::Data| comparison::refused(&model, constraints::CHAIN, &case, data);
     let off = refused(&data.with("a", |a| a[31] *= 1.001));
     assert!(
         off.contains("site 31") && off.contains("violates the constraint"),
@@ -194,12 +195,12 @@ fn data_off_a_constraint_are_refused_at_their_site() {
 
 #[test]
 fn a_site_without_mass_is_told_as_such() {
-    let model = LineModel::read(held::ROD).expect("is read");
+    let model = LineModel::read(constraints::ROD).expect("is read");
     let case = Case::new(50, Some(["free", "free"]));
-    let [own, _, _] = held::all();
+    let [own, _, _] = constraints::all();
     let data = (own.data)(&case);
     let refused = |name: &'static str, change: fn(&mut Vec<f64>)| {
-        beside::refused(&model, held::ROD, &case, &data.with(name, change))
+        comparison::refused(&model, constraints::ROD, &case, &data.with(name, change))
     };
     let told = refused("m", |m| m[31] = 0.0);
     for part in ["site 31", "`φ`", "mass is zero", "positive mass"] {
@@ -212,7 +213,7 @@ fn a_site_without_mass_is_told_as_such() {
 /// one invariant.
 #[test]
 fn the_card_of_a_long_held_line_tells_multipliers_and_constraints() {
-    for (own, multiplier) in held::all().iter().zip(["n", "lambda"]) {
+    for (own, multiplier) in constraints::all().iter().zip(["n", "lambda"]) {
         let chosen = choice(own.source, 60, Some(["pinned", "free"]));
         let (card, _) = clebsch_interpret::card_on_lattice(own.source, &chosen).expect("is read");
         let own = card.observables.iter().map(|f| f.ascii);
@@ -245,7 +246,7 @@ fn data_off_a_sum_are_refused_with_the_equation() {
     let model = LineModel::read(own.source).expect("is read");
     let case = Case::new(50, None);
     let data = (own.data)(&case);
-    let refused = |data: &compiled::Data| beside::refused(&model, own.source, &case, data);
+    let refused = |data: &compiled::Data| comparison::refused(&model, own.source, &case, data);
     let off = refused(&data.with("X", |x| x[0] += 0.1));
     for wanted in [
         "p",

@@ -24,7 +24,7 @@ pub type Numbers<'a> = dyn Fn(&str) -> Option<Vec<f64>> + 'a;
 
 /// The form in which a field is read.
 #[derive(Clone, Debug)]
-enum Read {
+enum FieldForm {
     /// An array of rows and columns.
     Array(usize, usize),
     /// A number.
@@ -36,7 +36,7 @@ enum Read {
     /// A momentum of three components in the body.
     Momentum,
     /// A value of this kind for every site.
-    Sites(Box<Read>),
+    Sites(Box<FieldForm>),
     /// The end conditions.
     Ends,
     /// A number of sites.
@@ -53,9 +53,9 @@ enum Read {
 
 /// A struct of input data.
 #[derive(Clone, Debug)]
-pub struct Given {
+pub struct InputStruct {
     layout: Arc<Layout>,
-    fields: Vec<(String, Read)>,
+    fields: Vec<(String, FieldForm)>,
 }
 
 /// The arguments of a generic type.
@@ -79,32 +79,32 @@ pub fn sizes(ty: &syn::Type) -> Vec<usize> {
     sizes.collect()
 }
 
-fn read(ty: &syn::Type) -> Option<Read> {
+fn read(ty: &syn::Type) -> Option<FieldForm> {
     let none = BTreeMap::new();
     let sizes = sizes(ty);
     if let syn::Type::Array(array) = ty {
         let size = crate::lower::constant(&array.len, &none)?;
         return match type_name(&array.elem)?.as_str() {
-            "f64" => Some(Read::Doubles(size)),
-            "usize" => Some(Read::Cells(size)),
+            "f64" => Some(FieldForm::Doubles(size)),
+            "usize" => Some(FieldForm::Cells(size)),
             _ => None,
         };
     }
     Some(match (type_name(ty)?.as_str(), sizes.as_slice()) {
-        ("Domain", [size]) => Read::Box(*size),
-        ("T" | "f64", _) => Read::Number,
-        ("SMatrix", [rows, cols]) => Read::Array(*rows, *cols),
-        ("SVector", [rows]) => Read::Array(*rows, 1),
-        ("Rotation", _) => Read::Rotation,
-        ("UnitQuaternion", _) => Read::Quaternion,
-        ("BodyMomentum", _) => Read::Momentum,
-        ("usize", _) => Read::Count,
-        ("PhantomData", _) => Read::Marker,
+        ("Domain", [size]) => FieldForm::Box(*size),
+        ("T" | "f64", _) => FieldForm::Number,
+        ("SMatrix", [rows, cols]) => FieldForm::Array(*rows, *cols),
+        ("SVector", [rows]) => FieldForm::Array(*rows, 1),
+        ("Rotation", _) => FieldForm::Rotation,
+        ("UnitQuaternion", _) => FieldForm::Quaternion,
+        ("BodyMomentum", _) => FieldForm::Momentum,
+        ("usize", _) => FieldForm::Count,
+        ("PhantomData", _) => FieldForm::Marker,
         ("Vec", _) => match arguments(ty).first()? {
-            syn::GenericArgument::Type(inner) => Read::Sites(Box::new(read(inner)?)),
+            syn::GenericArgument::Type(inner) => FieldForm::Sites(Box::new(read(inner)?)),
             _ => return None,
         },
-        (name, _) if name.ends_with("Ends") => Read::Ends,
+        (name, _) if name.ends_with("Ends") => FieldForm::Ends,
         _ => return None,
     })
 }
@@ -141,15 +141,15 @@ fn opened<X>(
     }
 }
 
-impl Read {
+impl FieldForm {
     fn count(&self) -> usize {
         match self {
-            Read::Array(rows, cols) => rows * cols,
-            Read::Rotation => 9,
-            Read::Quaternion => 4,
-            Read::Momentum => 3,
-            Read::Doubles(size) | Read::Cells(size) => *size,
-            Read::Box(size) => 2 * size,
+            FieldForm::Array(rows, cols) => rows * cols,
+            FieldForm::Rotation => 9,
+            FieldForm::Quaternion => 4,
+            FieldForm::Momentum => 3,
+            FieldForm::Doubles(size) | FieldForm::Cells(size) => *size,
+            FieldForm::Box(size) => 2 * size,
             _ => 1,
         }
     }
@@ -161,23 +161,25 @@ impl Read {
             Value::of(Dense::from_fn(rows, cols, entry))
         };
         Ok(match self {
-            Read::Array(rows, cols) => matrix(*rows, *cols),
-            Read::Number => Value::Real(list.first().copied().unwrap_or(f64::NAN)),
-            Read::Rotation => opened(name, OfNumbers::of_numbers(name, list), Value::Rotation)?,
-            Read::Quaternion => {
+            FieldForm::Array(rows, cols) => matrix(*rows, *cols),
+            FieldForm::Number => Value::Real(list.first().copied().unwrap_or(f64::NAN)),
+            FieldForm::Rotation => {
+                opened(name, OfNumbers::of_numbers(name, list), Value::Rotation)?
+            }
+            FieldForm::Quaternion => {
                 let read = OfNumbers::of_numbers(name, list);
                 opened(name, read, Value::Quaternion)?
             }
-            Read::Momentum => {
+            FieldForm::Momentum => {
                 let v = nalgebra::Vector3::from_fn(|i, _| list.get(i).copied().unwrap_or(f64::NAN));
                 Value::Momentum(Frame::Body, v)
             }
-            Read::Doubles(_) => Value::List(list.iter().map(|x| Value::Double(*x)).collect()),
-            Read::Cells(_) => {
+            FieldForm::Doubles(_) => Value::List(list.iter().map(|x| Value::Double(*x)).collect()),
+            FieldForm::Cells(_) => {
                 let cells = list.iter().map(|x| Value::Int(*x as i64));
                 Value::List(cells.collect())
             }
-            Read::Box(size) => {
+            FieldForm::Box(size) => {
                 let (lengths, walls) = list.split_at((*size).min(list.len()));
                 let solid: Vec<bool> = walls.iter().map(|x| *x != 0.0).collect();
                 match extent(lengths, &solid) {
@@ -199,7 +201,7 @@ impl Read {
                 found: list.len(),
             }),
         };
-        let Read::Sites(inner) = self else {
+        let FieldForm::Sites(inner) = self else {
             fits(self.count())?;
             let value = self.one(text(name), &list);
             return value.map_err(|e| Unstarted::Line(e.into()));
@@ -208,8 +210,8 @@ impl Read {
         let sites = list.len() / size;
         fits(sites * size)?;
         Ok(Value::Sites(match &**inner {
-            Read::Number => Column::Numbers(list),
-            Read::Array(rows, cols) => Column::of_rows([*rows, *cols], &list),
+            FieldForm::Number => Column::Numbers(list),
+            FieldForm::Array(rows, cols) => Column::of_rows([*rows, *cols], &list),
             inner => {
                 let name = text(name);
                 let mut all = Vec::with_capacity(sites);
@@ -227,7 +229,7 @@ impl Read {
     }
 }
 
-impl Given {
+impl InputStruct {
     /// The struct of this name.
     pub fn named(shared: &mut Shared<'_>, name: &str) -> Result<Self, Refused> {
         let layout = shared.layout(name)?;
@@ -236,7 +238,7 @@ impl Given {
             let unknown = || Refused::Construct(format!("the type of `{field}`"));
             Ok((field.clone(), read(ty).ok_or_else(unknown)?))
         });
-        Ok(Given {
+        Ok(InputStruct {
             layout,
             fields: fields.collect::<Result<_, Refused>>()?,
         })
@@ -245,7 +247,9 @@ impl Given {
     /// The fields that describe the domain of particles, with the number of their components.
     pub fn space(&self) -> impl Iterator<Item = (&str, usize)> {
         self.fields.iter().filter_map(|(name, read)| match read {
-            Read::Doubles(_) | Read::Cells(_) | Read::Box(_) => Some((name.as_str(), read.count())),
+            FieldForm::Doubles(_) | FieldForm::Cells(_) | FieldForm::Box(_) => {
+                Some((name.as_str(), read.count()))
+            }
             _ => None,
         })
     }
@@ -266,8 +270,10 @@ impl Given {
         other: &dyn Fn(&str) -> Option<Value<f64>>,
     ) -> Result<Value<f64>, Unstarted> {
         let values = self.fields.iter().map(|(name, read)| match read {
-            Read::Marker => Ok(Value::Unit),
-            Read::Count | Read::Ends => other(name).ok_or_else(|| Unstarted::Missing(name.clone())),
+            FieldForm::Marker => Ok(Value::Unit),
+            FieldForm::Count | FieldForm::Ends => {
+                other(name).ok_or_else(|| Unstarted::Missing(name.clone()))
+            }
             read => read.of(name, numbers),
         });
         Ok(Value::Struct(Struct {
@@ -281,9 +287,9 @@ impl Given {
 #[derive(Clone, Debug, Default)]
 pub struct Ends {
     /// The variants of both ends, in order.
-    alternatives: [Vec<Given>; 2],
-    open: Option<Given>,
-    ring: Option<Given>,
+    alternatives: [Vec<InputStruct>; 2],
+    open: Option<InputStruct>,
+    ring: Option<InputStruct>,
 }
 
 impl Ends {
@@ -295,7 +301,7 @@ impl Ends {
             let order = shared.program.variants.get(&owner).cloned();
             for variant in order.unwrap_or_default() {
                 // A variant that only marks the scalar type is not an end condition.
-                if let Ok(given) = Given::named(shared, &format!("{owner}::{variant}")) {
+                if let Ok(given) = InputStruct::named(shared, &format!("{owner}::{variant}")) {
                     ends.alternatives[at].push(given);
                 }
             }
@@ -311,14 +317,14 @@ impl Ends {
     }
 
     /// A variant whose fields are ends or numbers.
-    fn whole(shared: &mut Shared<'_>, name: &str) -> Result<Given, Refused> {
+    fn whole(shared: &mut Shared<'_>, name: &str) -> Result<InputStruct, Refused> {
         let layout = shared.layout(name)?;
         let declared = shared.program.structs.get(name);
         let fields = declared.into_iter().flatten().map(|(field, ty)| {
-            let read = read(ty).unwrap_or(Read::Ends);
+            let read = read(ty).unwrap_or(FieldForm::Ends);
             (field.clone(), read)
         });
-        Ok(Given {
+        Ok(InputStruct {
             layout,
             fields: fields.collect(),
         })

@@ -1,7 +1,7 @@
 //! Operations over another scalar: the same operations, with the functions of the runtime for that scalar.
 
 use super::{Arm, Code, Library, Pattern, Routine};
-use crate::over::over;
+use crate::map_scalar::map_scalar;
 use crate::value::Value;
 use clebsch::Real;
 use std::sync::{Arc, OnceLock};
@@ -11,17 +11,17 @@ const DEEPEST: usize = 64;
 
 impl<T: Real> Routine<T> {
     /// The function over another scalar; nothing if it loops or calls what that scalar lacks.
-    pub fn over<U: Library>(&self, change: fn(T) -> U) -> Option<Routine<U>> {
+    pub fn map_scalar<U: Library>(&self, change: fn(T) -> U) -> Option<Routine<U>> {
         Some(Routine {
             places: self.places,
-            body: self.body.over(change)?,
+            body: self.body.map_scalar(change)?,
         })
     }
 }
 
 impl<T: Real> Code<T> {
     /// As [`Routine::over`].
-    pub fn over<U: Library>(&self, change: fn(T) -> U) -> Option<Code<U>> {
+    pub fn map_scalar<U: Library>(&self, change: fn(T) -> U) -> Option<Code<U>> {
         Change { change, depth: 0 }.code(self)
     }
 }
@@ -36,7 +36,7 @@ struct Change<T, U> {
 impl<T: Real, U: Library> Change<T, U> {
     #[inline(never)]
     fn value(self, value: &Value<T>) -> Option<Value<U>> {
-        over(value, &mut |x| (self.change)(x))
+        map_scalar(value, &mut |x| (self.change)(x))
     }
 
     fn boxed(self, code: &Code<T>) -> Option<Box<Code<U>>> {

@@ -1,9 +1,9 @@
 //! The values around a loop over the scalar that records. Each number is an input, noted with the place it came from.
 
 use crate::code::{Code, Places};
-use crate::over::{numbers, over};
+use crate::map_scalar::{map_scalar, numbers};
 use crate::recorded::Traced;
-use crate::sites::{Asked, Column};
+use crate::sites::{Column, TrackedList};
 use crate::value::{Struct, Value};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -19,9 +19,9 @@ pub struct List {
 
 /// A value that was read.
 #[derive(Clone, Debug)]
-pub struct Read {
+pub struct ReadValue {
     /// The source of the value.
-    pub from: From,
+    pub from: InputSource,
     /// Its first input.
     pub first: usize,
     /// How many inputs it has.
@@ -32,7 +32,7 @@ pub struct Read {
 
 /// The source of a value.
 #[derive(Clone, Debug)]
-pub enum From {
+pub enum InputSource {
     /// At a path around the loop.
     Around(Code<f64>),
     /// In a list, at a site. Whether it is the only one.
@@ -41,17 +41,17 @@ pub enum From {
 
 #[derive(Debug, Default)]
 struct Log {
-    reads: Vec<Read>,
+    reads: Vec<ReadValue>,
     inputs: usize,
 }
 
 impl Log {
     /// The numbers of a value as inputs, from the next one on.
-    fn read(&mut self, from: From, value: &Value<f64>) -> Option<Value<Traced>> {
+    fn read(&mut self, from: InputSource, value: &Value<f64>) -> Option<Value<Traced>> {
         let mut own = Vec::new();
         numbers(value, &mut own)?;
-        let made = over(value, &mut Traced::input)?;
-        self.reads.push(Read {
+        let made = map_scalar(value, &mut Traced::input)?;
+        self.reads.push(ReadValue {
             from,
             first: self.inputs,
             count: own.len(),
@@ -76,7 +76,7 @@ struct Leaf {
     log: Arc<Mutex<Log>>,
 }
 
-impl Asked<Traced> for Leaf {
+impl TrackedList<Traced> for Leaf {
     fn len(&self) -> usize {
         self.len
     }
@@ -88,7 +88,10 @@ impl Asked<Traced> for Leaf {
         }
         let value = self.near.get(&site)?;
         let mut log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
-        let made = log.read(From::Of(self.list.clone(), site, self.len == 1), value)?;
+        let made = log.read(
+            InputSource::Of(self.list.clone(), site, self.len == 1),
+            value,
+        )?;
         known.insert(site, made.clone());
         Some(made)
     }
@@ -98,16 +101,16 @@ impl Asked<Traced> for Leaf {
 pub type Fixed = Vec<(Code<f64>, Value<f64>)>;
 
 /// Provides what a body reads at one site.
-pub struct Asker {
+pub struct SiteReader {
     site: usize,
     log: Arc<Mutex<Log>>,
     fixed: Fixed,
 }
 
-impl Asker {
+impl SiteReader {
     /// For this site.
     pub fn new(site: usize) -> Self {
-        Asker {
+        SiteReader {
             site,
             log: Arc::default(),
             fixed: Vec::new(),
@@ -115,13 +118,13 @@ impl Asker {
     }
 
     /// The values that were read, and the values that a tape relies on; for a list, its length.
-    pub fn told(self) -> (Vec<Read>, Fixed) {
+    pub fn into_reads(self) -> (Vec<ReadValue>, Fixed) {
         let mut log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
         (std::mem::take(&mut log.reads), self.fixed)
     }
 
     /// A value that is read, as inputs.
-    pub fn read(&self, from: From, value: &Value<f64>) -> Option<Value<Traced>> {
+    pub fn read(&self, from: InputSource, value: &Value<f64>) -> Option<Value<Traced>> {
         let mut log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
         log.read(from, value)
     }
@@ -145,7 +148,7 @@ impl Asker {
             path: None,
             fields: Vec::new(),
         };
-        self.read(From::Of(list, site, false), &column.get(site)?)
+        self.read(InputSource::Of(list, site, false), &column.get(site)?)
     }
 
     fn value(&mut self, path: &Code<f64>, value: &Value<f64>) -> Option<Value<Traced>> {
@@ -172,7 +175,7 @@ impl Asker {
                 }))
             }
             value => {
-                let made = self.read(From::Around(path.clone()), value)?;
+                let made = self.read(InputSource::Around(path.clone()), value)?;
                 self.fixed.push((path.clone(), value.clone()));
                 Some(made)
             }
@@ -193,7 +196,7 @@ impl Asker {
         let near = self.site.saturating_sub(NEAR)..(self.site + NEAR).min(column.len());
         let sites = near.chain([0, column.len().saturating_sub(1)]);
         let near = sites.filter_map(|site| Some((site, column.get(site)?)));
-        Some(Column::Asked(Arc::new(Leaf {
+        Some(Column::Tracked(Arc::new(Leaf {
             list: list.clone(),
             len: column.len(),
             near: near.collect(),
