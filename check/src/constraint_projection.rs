@@ -1,11 +1,11 @@
 //! Moves a start that was typed with ten digits onto its constraints. Takes the numbers of a node; gives the nearest
 //! configuration that satisfies the constraints to rounding, and how far it is.
 
+use crate::displacement::{Frame, Velocity, moved};
 use crate::group::Group;
 use crate::holds::{Rate, gradients, is_long};
 use crate::judge::LEFT_OF_WHAT_IS_HELD;
 use crate::matrix::Matrix;
-use crate::moved::{Frame, Velocity, moved};
 use crate::number::{Number, UNIT, larger};
 use crate::scene::Scene;
 use crate::setup::Setup;
@@ -25,7 +25,7 @@ const ITERATIONS: usize = 4000;
 
 /// A start that was moved.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Moved {
+pub struct ProjectedStart {
     /// The numbers of the node.
     pub node: Vec<f64>,
     /// The constraint with the largest residual.
@@ -45,7 +45,7 @@ pub fn onto_constraints(
     sizes: &[(String, usize)],
     setup: &Setup,
     node: &[f64],
-) -> Result<Option<Moved>, String> {
+) -> Result<Option<ProjectedStart>, String> {
     let stated = Stated::read(model, sizes)?;
     let mut holds = stated.holds.iter();
     if stated.holds.is_empty() || holds.any(|h| h.of_sums && is_long(&stated, setup, h)) {
@@ -81,7 +81,7 @@ pub fn onto_constraints(
         .zip(node)
         .map(|(x, y)| (x - y).abs())
         .fold(0.0, larger);
-    Ok((left <= 1.0).then(|| Moved {
+    Ok((left <= 1.0).then(|| ProjectedStart {
         node: at,
         name: worst.name.clone(),
         off: worst.value.abs(),
