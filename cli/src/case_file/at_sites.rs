@@ -1,7 +1,7 @@
 //! The sites of a case, if the model has labels: the names that expressions can read there, and the element of
 //! a list or an array for each site.
 
-use super::chosen;
+use super::chain_choice;
 use super::copies::{Base, Copies, Group, base};
 use super::fluid::Fluid;
 use super::location::File;
@@ -35,7 +35,7 @@ impl<'a> AtSites<'a> {
         top: &DeTable<'_>,
         stated: &'a Stated,
     ) -> Result<Self, Failure> {
-        let choice = chosen::of_case(file, top, stated)?;
+        let choice = chain_choice::of_case(file, top, stated)?;
         let copies = choice
             .as_ref()
             .and_then(|choice| Copies::of(stated, choice));

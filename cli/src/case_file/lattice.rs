@@ -8,8 +8,8 @@ use super::sample as fluid;
 use super::space::Space;
 use super::stated::Stated;
 use super::write::{bounds, comment, instead};
+use crate::models::constraints::{CONSTRAINTS_REMARK, has_constraints};
 use crate::models::fields::{is_momentum, sample_entry, turns};
-use crate::models::held::{OF_HELD, has_holds};
 use crate::words::plain::shown;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_core::expr::symbol::ascii;
@@ -20,8 +20,8 @@ use std::fmt::Write as _;
 pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named: &str) -> String {
     let lattice = &stated.lattice;
     let named = shown(named).to_string();
-    let held = match has_holds(&stated.model) {
-        true => format!("# {OF_HELD}\n"),
+    let held = match has_constraints(&stated.model) {
+        true => format!("# {CONSTRAINTS_REMARK}\n"),
         false => String::new(),
     };
     let mut text = format!(
@@ -178,7 +178,7 @@ fn sample(
             _ => {}
         }
     }
-    let at_rest = has_holds(&stated.model) && is_momentum(field);
+    let at_rest = has_constraints(&stated.model) && is_momentum(field);
     let number = |i: usize, j: usize| match at_rest {
         true => 0.0,
         false => sample_entry(field, turned, i, j),

@@ -110,7 +110,7 @@ impl Motion {
                 start.way.add(own, &start.numbers, velocity);
             }
         }
-        let free: BTreeSet<usize> = self.asked().collect();
+        let free: BTreeSet<usize> = self.all_momenta().collect();
         let known: Vec<String> = elements
             .keys()
             .filter(|at| !free.contains(at))
@@ -130,7 +130,7 @@ impl Motion {
     }
 
     /// The momenta that the case does not give.
-    fn asked(&self) -> impl Iterator<Item = usize> {
+    fn all_momenta(&self) -> impl Iterator<Item = usize> {
         let given = self.given.iter().map(|start| start.momentum);
         given.chain(self.resting.iter().copied())
     }
@@ -282,8 +282,8 @@ impl Motion {
     }
 
     /// The lines about momenta that a run prints.
-    pub(crate) fn told(&self, card: &Card, case: &Case) -> Vec<String> {
-        let mut out: Vec<Told<'_>> = Vec::new();
+    pub(crate) fn momentum_lines(&self, card: &Card, case: &Case) -> Vec<String> {
+        let mut out: Vec<QuantityMomenta<'_>> = Vec::new();
         for start in &self.given {
             let Some(field) = card.initial.get(start.momentum) else {
                 continue;
@@ -296,7 +296,7 @@ impl Motion {
                         told.keys.push(key);
                     }
                 }
-                None => out.push(Told {
+                None => out.push(QuantityMomenta {
                     name,
                     keys: vec![key],
                     momenta: BTreeSet::from([start.momentum]),
@@ -404,7 +404,7 @@ fn is_beside(a: Way, b: Way) -> bool {
 }
 
 /// The momenta of one quantity.
-struct Told<'a> {
+struct QuantityMomenta<'a> {
     name: &'a str,
     /// The keys that give its velocities.
     keys: Vec<&'a str>,

@@ -3,9 +3,9 @@
 
 use crate::case_file;
 use crate::case_file::stated::Stated;
+use crate::models::constraints::card_has_constraints;
 use crate::models::fields::{is_momentum, sample_values, turns};
 use crate::models::gallery::{Case, Citations, Entry};
-use crate::models::held::is_held;
 use crate::named::cases::WhichCase;
 use crate::named::sample::onto_constraints;
 use crate::terminal::failure::Failure;
@@ -76,7 +76,7 @@ fn chosen(stated: &Stated, case: Option<(&str, &str)>) -> Result<Option<Choice>,
 /// Values that are admissible for most models, and of no further meaning.
 fn sample(card: &Card, file: &str) -> Case {
     let turned = turns(card);
-    let held = is_held(card);
+    let held = card_has_constraints(card);
     let values = |fields: &[Field]| {
         let sample = |f: &Field| match held && is_momentum(f) {
             true => vec![0.0; f.count()],

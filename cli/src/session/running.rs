@@ -311,7 +311,7 @@ impl Running {
         StepLimits {
             step: known.map(|found| found.step),
             frequency: known.map(clebsch::integrate::LongestStep::frequency),
-            told: limit.told(h),
+            told: limit.summary_line(h),
             warning: limit.warning(h),
         }
     }

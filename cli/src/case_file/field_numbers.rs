@@ -3,10 +3,10 @@
 use super::at_sites::Here;
 use super::copies::Base;
 use super::fields::Fields;
-use super::from_npz::{self, Fault, Wanted};
+use super::from_npz::{self, AcceptedShapes, Fault};
 use super::inertia;
 use super::sites;
-use super::table::Found;
+use super::table::CaseValue;
 use super::taken_as::TakenAs;
 use super::value::{expected, is_element};
 use crate::terminal::failure::Failure;
@@ -55,7 +55,7 @@ impl<'a> Fields<'a> {
     /// The numbers of a field from the value that was found; `written` is its key with its site.
     pub(super) fn valued(
         &self,
-        found: &Found<'_, '_, '_>,
+        found: &CaseValue<'_, '_, '_>,
         (field, base): (&Field, Option<&Base<'_>>),
         taken_as: TakenAs,
         written: &str,
@@ -138,7 +138,7 @@ impl<'a> Fields<'a> {
         let base = base.filter(|b| !b.end);
         let group = base.and_then(|b| self.sites?.group(b.of));
         let may_move = base.is_some_and(|b| b.is_momentum);
-        let wanted = Wanted {
+        let wanted = AcceptedShapes {
             values: &values,
             sites: group.map(|g| &g.sites[..]),
             moving: group.filter(|_| may_move).map(|g| &g.moving[..]),

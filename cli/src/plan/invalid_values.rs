@@ -19,7 +19,7 @@ pub(crate) type Origin = (String, BTreeMap<String, usize>);
 
 /// `rod.toml:16: parameters.s = 0.1 and parameters.A = 0 at i = 5 (given by `1 - 0.2*i`) make s A₅`; `None` if
 /// the formula contains no parameters of the card.
-pub(crate) fn blamed(
+pub(crate) fn parameter_report(
     card: &Card,
     case: &Case,
     origin: Option<&Origin>,

@@ -22,7 +22,7 @@ type Entry = (OsString, u64, Option<SystemTime>);
 /// that folder. Comparing two such lists shows whether the results have changed, since a run never changes a
 /// finished file.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct Standing(Vec<Entry>);
+pub(super) struct EarlierFiles(Vec<Entry>);
 
 /// Whether results may be written to `target`: `None` if it does not exist, else the results to replace.
 ///
@@ -30,7 +30,11 @@ pub(super) struct Standing(Vec<Entry>);
 /// Usage: `target` exists and `force` is not given, or it is not a folder, or it contains a file that is not
 /// `known`.
 /// Failed: no permission to look.
-pub(super) fn at(target: &Path, force: bool, known: &[&str]) -> Result<Option<Standing>, Failure> {
+pub(super) fn at(
+    target: &Path,
+    force: bool,
+    known: &[&str],
+) -> Result<Option<EarlierFiles>, Failure> {
     let wrong = |words: String| Failure::Usage(format!("--out {}: {words}", shown(target)));
     let found = match fs::symlink_metadata(target) {
         Ok(found) => found,
@@ -63,7 +67,7 @@ pub(super) fn at(target: &Path, force: bool, known: &[&str]) -> Result<Option<St
 
 /// The files in `folder`, or the name of a file that no run wrote. A name with a trailing slash means an inner
 /// folder, whose files must have the endings of files for ParaView.
-pub(super) fn look(folder: &Path, known: &[&str]) -> io::Result<Result<Standing, OsString>> {
+pub(super) fn look(folder: &Path, known: &[&str]) -> io::Result<Result<EarlierFiles, OsString>> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder)? {
         let entry: DirEntry = entry?;
@@ -83,7 +87,7 @@ pub(super) fn look(folder: &Path, known: &[&str]) -> io::Result<Result<Standing,
         files.push((name, found.len(), found.modified().ok()));
     }
     files.sort();
-    Ok(Ok(Standing(files)))
+    Ok(Ok(EarlierFiles(files)))
 }
 
 /// The files of an inner folder. Their names start with the name of that folder.
@@ -120,7 +124,7 @@ pub(super) fn remove_folder(path: &Path) -> io::Result<()> {
     fs::remove_dir(path)
 }
 
-impl Standing {
+impl EarlierFiles {
     /// Removes these files from `folder`, and then the folder if it is empty.
     pub(super) fn remove(&self, folder: &Path) -> io::Result<()> {
         for (name, ..) in &self.0 {

@@ -11,7 +11,7 @@ use std::collections::HashSet;
 
 impl Fields<'_> {
     /// Rejects keys without a field.
-    pub(super) fn known(&self, table: &Table<'_, '_>) -> Result<(), Failure> {
+    pub(super) fn reject_unknown_keys(&self, table: &Table<'_, '_>) -> Result<(), Failure> {
         let Some(values) = table.values else {
             return Ok(());
         };

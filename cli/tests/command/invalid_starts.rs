@@ -2,11 +2,11 @@
 //! mistake but are valid.
 
 use crate::common::{Done, Folder, has, process_in, table};
-use crate::ran;
+use crate::text_runs;
 
 /// A run of a model with a case, into `out`.
 fn run(folder: &Folder, model: &str, case: &str) -> Done {
-    ran::run(folder, model, case, "--every 1 --out @out --force")
+    text_runs::run(folder, model, case, "--every 1 --out @out --force")
 }
 
 const PENDULA: &str = "model Pendula {
@@ -95,7 +95,7 @@ fn words_of_other_languages_in_a_case_are_answered() {
             "model = \"spring\"\nh = 0.01\nsteps = 1\n[parameters]\nm = 1\nk = \"{value}\"\n[initial]\nx = 1\n"
         );
         let folder = Folder::new("misstated-words");
-        ran::run(&folder, model, &case, "")
+        text_runs::run(&folder, model, &case, "")
             .refuses("case.toml:6: parameters.k: ")
             .says(said);
     }
@@ -144,7 +144,7 @@ fn an_energy_beyond_the_range_of_numbers_is_named() {
                 if count == 4 { 10 } else { 1 }
             );
             let folder = Folder::new("misstated-overflow");
-            let done = ran::run(&folder, model, &case, "");
+            let done = text_runs::run(&folder, model, &case, "");
             done.never_says("left its domain");
             if done.code != 0 {
                 done.says("`energy` is inf");
@@ -157,7 +157,7 @@ fn an_energy_beyond_the_range_of_numbers_is_named() {
         lagrangian = m*(next(x)-x)^2/(2*h) - h*x^2/2;
     }";
     let case = "model = \"spring\"\nh = 0.01\nsteps = 10\n[parameters]\nm = 1\n[initial]\nx = 1.3e154\nmomentum = 1.3e154\n";
-    let done = ran::run(&Folder::new("misstated-overflow-check"), spring, case, "");
+    let done = text_runs::run(&Folder::new("misstated-overflow-check"), spring, case, "");
     let both = format!("{}{}", done.out, done.err);
     assert!(
         both.contains("`energy` is inf") && !both.contains("does NOT hold"),
