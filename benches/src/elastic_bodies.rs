@@ -2,8 +2,8 @@
 //! initial state of the model's case. `interpret/tests/elastic/against_hand.rs` compares the hand-written steppers with the model
 //! files; here each statement is compared with the hand-written stepper.
 
-use crate::counted::Block;
 use crate::loops::{generated, written};
+use crate::operation_counts::Block;
 use clebsch::nalgebra::Matrix3;
 use clebsch::{Additive, BodyMomentumMatrix, FieldMomentum, Linear};
 use clebsch_oracle::handwritten;

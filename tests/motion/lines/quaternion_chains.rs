@@ -1,7 +1,7 @@
 //! Chains in unit quaternions: the symplectic form, momenta, comparison with the rod in rotations, and the choice of quaternion
 //! signs.
 
-use super::models::{Held, QRod, Random, Rod, Spins, TwistedSpinsOf, turn};
+use super::models::{EndCondition, QRod, Random, Rod, Spins, TwistedSpinsOf, turn};
 use clebsch::nalgebra::{DMatrix, Matrix3, Vector3};
 use clebsch::{BodyMomentum, Dual, Real, Rotation, UnitQuaternion};
 use clebsch_models::lattices::coupled_tops::*;
@@ -155,9 +155,9 @@ fn a_free_rod_keeps_its_momenta_and_its_energy() {
 fn the_rod_in_quaternions_is_the_one_in_rotations() {
     let second = |m: Matrix3<f64>| Matrix3::identity() * (m.trace() / 2.0) - m;
     for (ends, held) in [
-        (0, [Held::Free, Held::Free]),
-        (4, [Held::Pinned, Held::Pinned]),
-        (8, [Held::Clamped, Held::Load]),
+        (0, [EndCondition::Free, EndCondition::Free]),
+        (4, [EndCondition::Pinned, EndCondition::Pinned]),
+        (8, [EndCondition::Clamped, EndCondition::Load]),
     ] {
         let (one, other) = (QRod { n: 12, ends }, Rod::new(12, Some(held)));
         let (q, r) = (one.parameters(&|x| x), other.parameters());

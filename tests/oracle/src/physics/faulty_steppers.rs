@@ -3,7 +3,7 @@
 //! fault.
 
 use super::motion::Motion;
-use super::truth::inverse_inertia;
+use super::taylor_reference::inverse_inertia;
 use crate::handwritten::attitude::{
     Matrix, Quaternion, Vector, add_scaled, apply, apply_transposed, cross, dot,
 };

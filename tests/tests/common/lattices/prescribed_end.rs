@@ -5,7 +5,7 @@ use super::Ends;
 use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, fixed, number, turn};
 use clebsch_oracle::oracle::dual::Number;
-use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::points::{NamedValue, Source};
 use clebsch_oracle::oracle::square::{Square, cross, dot};
 
 const TEXT: &str = "model HeldTops {
@@ -77,36 +77,36 @@ impl Typed for Tops {
         &self.bodies
     }
 
-    fn parameters(&self) -> Vec<Given> {
+    fn parameters(&self) -> Vec<NamedValue> {
         let mut all = vec![
-            Given::scalar("h", self.h),
-            Given::scalar("s", self.s),
-            Given::scalar("eps", self.eps),
-            Given::column("g", 0, &self.g),
-            Given::column("d", 0, &self.d),
-            Given::column("z", 0, &self.z),
+            NamedValue::scalar("h", self.h),
+            NamedValue::scalar("s", self.s),
+            NamedValue::scalar("eps", self.eps),
+            NamedValue::column("g", 0, &self.g),
+            NamedValue::column("d", 0, &self.d),
+            NamedValue::column("z", 0, &self.z),
         ];
         for (i, top) in self.tops.iter().enumerate() {
-            all.push(Given::square(&format!("J_{i}"), 0, &self.j[i]));
+            all.push(NamedValue::square(&format!("J_{i}"), 0, &self.j[i]));
             if let Err(held) = top {
                 let b = held.transpose().apply(&self.carried[i]);
-                all.push(Given::square(&format!("Λ_{i}"), 0, held));
-                all.push(Given::column(&format!("b_{i}"), 0, &b));
+                all.push(NamedValue::square(&format!("Λ_{i}"), 0, held));
+                all.push(NamedValue::column(&format!("b_{i}"), 0, &b));
             }
         }
         for i in 0..self.segments {
-            all.push(Given::square(&format!("C_{i}"), 0, &self.c[i]));
+            all.push(NamedValue::square(&format!("C_{i}"), 0, &self.c[i]));
         }
         all
     }
 
-    fn advected(&self, shift: i8, x: &[f64]) -> Vec<Given> {
+    fn advected(&self, shift: i8, x: &[f64]) -> Vec<NamedValue> {
         let mut all = Vec::new();
         for (i, top) in self.tops.iter().enumerate() {
             if let Ok(at) = top {
                 let seen = |v: &[f64; 3]| turn(x, *at).transpose().apply(v);
-                all.push(Given::column(&format!("Γ_{i}"), shift, &seen(&self.z)));
-                all.push(Given::column(
+                all.push(NamedValue::column(&format!("Γ_{i}"), shift, &seen(&self.z)));
+                all.push(NamedValue::column(
                     &format!("b_{i}"),
                     shift,
                     &seen(&self.carried[i]),

@@ -5,7 +5,7 @@ use super::common::lattices::compare::agrees;
 use super::common::lattices::sum::{Bodies, Kind, Sum, Typed, around, number};
 use super::common::lattices::{FREE, derived};
 use clebsch_oracle::oracle::dual::Number;
-use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::points::{NamedValue, Source};
 
 /// A factor in front of a sum in which one term contains only neighbours.
 const FACTORED: &str = "model Factored {
@@ -61,14 +61,14 @@ impl Typed for Line {
         (0..self.nodes).map(|_| source.between(-1.0, 1.0)).collect()
     }
 
-    fn parameters(&self) -> Vec<Given> {
+    fn parameters(&self) -> Vec<NamedValue> {
         let mut all = vec![
-            Given::scalar("h", self.h),
-            Given::scalar("a", self.a[0]),
-            Given::scalar("b", self.b),
+            NamedValue::scalar("h", self.h),
+            NamedValue::scalar("a", self.a[0]),
+            NamedValue::scalar("b", self.b),
         ];
         for (i, a) in self.a.iter().enumerate() {
-            all.push(Given::scalar(&format!("a_{i}"), *a));
+            all.push(NamedValue::scalar(&format!("a_{i}"), *a));
         }
         all
     }
