@@ -47,6 +47,6 @@ pub use functions::named as function;
 pub use judge::{Judge, Judged, Part};
 pub use legendre::{Legendre, Momentum, NoMomentum, Velocities};
 pub use number::{Number, Slope, UNIT};
-pub use run::{Chosen, Verdict, Which};
+pub use run::{Chosen, StepSelection, Verdict};
 pub use setup::{Field, Setup};
 pub use undefined::Undefined;

@@ -28,7 +28,7 @@ use clap::ArgMatches;
 use clebsch::card::{Card, Trajectory as _};
 use clebsch::integrate::{self, Halved, RunError, Watch};
 use clebsch::record::Record;
-use clebsch_check::Which;
+use clebsch_check::StepSelection;
 use complete::already;
 use follow::{End, Run, RunOutput};
 use listener::Listener;
@@ -177,7 +177,7 @@ pub fn run(
     let halvings = following.trajectory.halvings();
     // Steps before an interruption may have been judged.
     let stated = trajectory.verdict();
-    let stated = (which != Which::None || stated.judged > 0).then(|| stated.clone());
+    let stated = (which != StepSelection::None || stated.judged > 0).then(|| stated.clone());
     let why = match &end {
         End::Whole => None,
         // Without a step there are no results.
@@ -299,11 +299,11 @@ pub fn run(
 }
 
 /// The steps to judge by the action as stated.
-fn judged_steps(matches: &ArgMatches) -> Which {
+fn judged_steps(matches: &ArgMatches) -> StepSelection {
     match matches.get_one::<String>("check").map(String::as_str) {
-        Some("all") => Which::All,
-        Some("none") => Which::None,
-        _ => Which::Sample,
+        Some("all") => StepSelection::All,
+        Some("none") => StepSelection::None,
+        _ => StepSelection::Sample,
     }
 }
 
