@@ -8,7 +8,7 @@ use crate::sites::Column;
 use crate::value::Value;
 use clebsch::ParameterError;
 use clebsch::mesh::{self, Functional, MeshError, Nodes, Setting, deposit, deposit_quintic};
-use clebsch_core::lattice::{Known, Lattice, Mesh, Source};
+use clebsch_core::lattice::{FunctionalKind, Lattice, Mesh, Source};
 use core::fmt;
 use nalgebra::SVector;
 
@@ -138,7 +138,7 @@ pub fn at_particles(
 /// The name of a functional that the runtime supplies.
 fn named(mesh: &Mesh) -> Result<&str, Unvalued> {
     let name = mesh.path.strip_prefix("clebsch::mesh::");
-    let known = name.filter(|_| mesh.kind != Known::Path);
+    let known = name.filter(|_| mesh.kind != FunctionalKind::Path);
     known.ok_or_else(|| Unvalued::Path(mesh.path.clone()))
 }
 

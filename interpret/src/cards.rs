@@ -8,7 +8,7 @@ use crate::signs::Agreement;
 use clebsch::card::{Card, Invariant, OpenError, Settings};
 use clebsch_core::derive::warnings::Warning;
 use clebsch_core::document::{self, InvariantWords};
-use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::lattice::{ChainConfig, Lattice};
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::{Model, Statement};
 use std::cell::RefCell;
@@ -90,7 +90,10 @@ pub fn card_and_warnings(source: &str) -> Result<(Card, Vec<Warning>), Refused> 
 ///
 /// # Errors
 /// As [`card`].
-pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warning>), Refused> {
+pub fn card_on_lattice(
+    source: &str,
+    choice: &ChainConfig,
+) -> Result<(Card, Vec<Warning>), Refused> {
     once(format!("{choice:?}\n{source}"), |known| {
         on_lattice(source, choice, known)
     })
@@ -98,7 +101,7 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
 
 fn on_lattice(
     source: &str,
-    choice: &Choice,
+    choice: &ChainConfig,
     known: Option<Card>,
 ) -> Result<CardWithWarnings, Refused> {
     let model = pipeline::parse_source(source).map_err(Refused::Model)?;
@@ -162,7 +165,10 @@ fn on_lattice(
 ///
 /// # Errors
 /// As [`card`].
-pub fn card_body_by_body(source: &str, choice: &Choice) -> Result<(Card, Vec<Warning>), Refused> {
+pub fn card_body_by_body(
+    source: &str,
+    choice: &ChainConfig,
+) -> Result<(Card, Vec<Warning>), Refused> {
     once(format!("body by body, {choice:?}\n{source}"), |known| {
         let model = pipeline::parse_source(source).map_err(Refused::Model)?;
         let lattice = Lattice::read(&model).map_err(Refused::Model)?;
@@ -173,14 +179,14 @@ pub fn card_body_by_body(source: &str, choice: &Choice) -> Result<(Card, Vec<War
 /// The card of an expanded chain. If loops over sites were wanted, `written_out` says why they are not used.
 fn body_by_body(
     (model, lattice): (&Model, &Lattice),
-    choice: &Choice,
+    choice: &ChainConfig,
     source: &str,
     written_out: Option<String>,
     known: Option<Card>,
 ) -> Result<CardWithWarnings, Refused> {
     let derived = pipeline::derive_lattice(model, lattice, choice);
     let (unfolded, d) = derived.map_err(Refused::Model)?;
-    let warnings = unfolded.told(choice, &d.warnings);
+    let warnings = unfolded.declared_warnings(choice, &d.warnings);
     if let Some(card) = known {
         return Ok((card, warnings));
     }
@@ -229,7 +235,7 @@ pub(crate) fn named(own: &[Invariant], words: Vec<InvariantWords>) -> Vec<Invari
 /// The card of a chain that runs with loops over sites.
 fn card_of_line(
     stated: (&Model, &Lattice),
-    choice: &Choice,
+    choice: &ChainConfig,
     line: Arc<LineModel>,
     source: &str,
     known: Option<Card>,

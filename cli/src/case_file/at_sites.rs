@@ -11,7 +11,7 @@ use super::sites::Site;
 use super::stated::Stated;
 use crate::terminal::failure::Failure;
 use clebsch::card::Field;
-use clebsch_core::lattice::Choice;
+use clebsch_core::lattice::ChainConfig;
 use clebsch_core::lattice::value::SiteData;
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -21,7 +21,7 @@ use toml::de::DeTable;
 /// The sites of a case.
 pub(super) struct AtSites<'a> {
     pub stated: &'a Stated,
-    pub choice: Choice,
+    pub choice: ChainConfig,
     pub fluid: Option<Fluid>,
     copies: Copies,
     /// Expressions by their texts, each read once for all sites.

@@ -8,7 +8,7 @@ use super::stated::Stated;
 use crate::terminal::failure::Failure;
 use crate::words::plain::shown;
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::lattice::{ChainConfig, Lattice};
 use clebsch_core::{document, pipeline};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -20,7 +20,7 @@ const SITES: usize = 8;
 const PARTICLES: usize = 64;
 
 /// The choice that applies if a case sets nothing.
-pub(crate) fn default_choice(stated: &Stated) -> Option<Choice> {
+pub(crate) fn default_choice(stated: &Stated) -> Option<ChainConfig> {
     let shortest = pipeline::representative(&stated.model, &stated.lattice).ok()?;
     let mut choice = document::default_choice(&stated.lattice, shortest);
     for count in &mut choice.counts {
@@ -39,7 +39,11 @@ pub(crate) fn default_choice(stated: &Stated) -> Option<Choice> {
 ///
 /// # Errors
 /// Usage: the text is not TOML, a label or an end condition is unknown, or a number of sites is invalid.
-pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Option<Choice>, Failure> {
+pub(crate) fn choice(
+    name: &str,
+    text: &str,
+    stated: &Stated,
+) -> Result<Option<ChainConfig>, Failure> {
     let file = File::new(name, text);
     let document = file.document()?;
     of_case(&file, document.get_ref(), stated)
@@ -50,7 +54,7 @@ pub(super) fn of_case(
     file: &File<'_>,
     top: &DeTable<'_>,
     stated: &Stated,
-) -> Result<Option<Choice>, Failure> {
+) -> Result<Option<ChainConfig>, Failure> {
     let lattice = &stated.lattice;
     let Some(mut choice) = default_choice(stated) else {
         return Ok(None);
@@ -114,7 +118,7 @@ pub(super) fn of_case(
 fn ends_unchosen(
     file: &File<'_>,
     stated: &Stated,
-    choice: &Choice,
+    choice: &ChainConfig,
     parameters: Option<&DeTable<'_>>,
 ) -> Result<(), Failure> {
     let lattice = &stated.lattice;
@@ -182,10 +186,10 @@ fn ends_unchosen(
 fn ended(
     file: &File<'_>,
     lattice: &Lattice,
-    choice: Choice,
+    choice: ChainConfig,
     key: &str,
     value: &Spanned<DeValue<'_>>,
-) -> Result<Choice, Failure> {
+) -> Result<ChainConfig, Failure> {
     let wrong = |message: &str| {
         file.wrong(
             Some(&value.span()),

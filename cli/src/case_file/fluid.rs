@@ -16,7 +16,7 @@ use crate::terminal::failure::Failure;
 use clebsch::mesh::{Domain, Voronoi};
 use clebsch::nalgebra::SVector;
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{Choice, Kind, Quantity};
+use clebsch_core::lattice::{ChainConfig, Kind, Quantity};
 use clebsch_interpret::AtParticles;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -50,7 +50,7 @@ pub(super) struct Fluid {
 struct Reader<'a> {
     file: &'a File<'a>,
     stated: &'a Stated,
-    choice: &'a Choice,
+    choice: &'a ChainConfig,
     space: &'a Space,
     scope: Scope,
     /// The positions of the nodes of the grid, and their weights.
@@ -90,7 +90,7 @@ impl Fluid {
         file: &File<'_>,
         top: &DeTable<'_>,
         stated: &Stated,
-        choice: &Choice,
+        choice: &ChainConfig,
     ) -> Result<Option<Fluid>, Failure> {
         let Some(space) = Space::read(file, top, stated)? else {
             return Ok(None);

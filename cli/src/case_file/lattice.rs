@@ -13,11 +13,16 @@ use crate::models::fields::{is_momentum, sample_entry, turns};
 use crate::words::plain::shown;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::Choice;
+use clebsch_core::lattice::ChainConfig;
 use std::fmt::Write as _;
 
 /// The text of the sample case.
-pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named: &str) -> String {
+pub(crate) fn write_lattice(
+    card: &Card,
+    stated: &Stated,
+    choice: &ChainConfig,
+    named: &str,
+) -> String {
     let lattice = &stated.lattice;
     let named = shown(named).to_string();
     let held = match has_constraints(&stated.model) {
@@ -103,7 +108,7 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
 }
 
 /// Writes the possible end conditions.
-fn ends(text: &mut String, stated: &Stated, choice: &Choice) {
+fn ends(text: &mut String, stated: &Stated, choice: &ChainConfig) {
     let lattice = &stated.lattice;
     let Some(line) = lattice.line_label() else {
         return;

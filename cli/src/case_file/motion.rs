@@ -9,7 +9,7 @@ use clebsch::card::{Card, Field, Kind};
 use clebsch_check::{
     Legendre, NoMomentum, Setup, Undefined, Velocities, Velocity, onto_constraints,
 };
-use clebsch_core::lattice::Choice;
+use clebsch_core::lattice::ChainConfig;
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::Model;
 use std::cell::RefCell;
@@ -58,7 +58,7 @@ impl Motion {
     pub(crate) fn put(
         &mut self,
         card: &Card,
-        choice: Option<&Choice>,
+        choice: Option<&ChainConfig>,
         case: &mut Case,
     ) -> Result<(), Wrong> {
         if let Some(told) = onto(card, choice, case) {
@@ -95,7 +95,7 @@ impl Motion {
     fn momenta(
         &self,
         card: &Card,
-        choice: Option<&Choice>,
+        choice: Option<&ChainConfig>,
         case: &Case,
     ) -> Result<Vec<(usize, Vec<f64>)>, NoMomentum> {
         let elements = elements(card.initial);
@@ -139,7 +139,7 @@ impl Motion {
     fn zero(
         &self,
         card: &Card,
-        choice: Option<&Choice>,
+        choice: Option<&ChainConfig>,
         case: &Case,
         lost: &str,
     ) -> Option<&'static str> {
@@ -458,7 +458,7 @@ pub(crate) type Statement = (Model, Vec<(String, usize)>, Setup);
 /// unavailable.
 pub(crate) fn statement(
     card: &Card,
-    choice: Option<&Choice>,
+    choice: Option<&ChainConfig>,
     case: &Case,
     state: &[Field],
 ) -> Option<Statement> {
@@ -498,7 +498,7 @@ fn parsed(source: &'static str) -> Option<Model> {
 }
 
 /// The Legendre transform of a case, which evaluates its action.
-fn legendre(card: &Card, choice: Option<&Choice>, case: &Case) -> Result<Legendre, String> {
+fn legendre(card: &Card, choice: Option<&ChainConfig>, case: &Case) -> Result<Legendre, String> {
     let found = statement(card, choice, case, card.initial);
     let (model, sizes, setup) = found.ok_or_else(|| "its text is not available".to_owned())?;
     Legendre::new(&model, &sizes, setup)
@@ -506,7 +506,7 @@ fn legendre(card: &Card, choice: Option<&Choice>, case: &Case) -> Result<Legendr
 
 /// Moves a configuration onto its constraints if its digits were rounded too far to satisfy them. Returns the
 /// report.
-fn onto(card: &Card, choice: Option<&Choice>, case: &mut Case) -> Option<String> {
+fn onto(card: &Card, choice: Option<&ChainConfig>, case: &mut Case) -> Option<String> {
     // Cases of models without constraints are not evaluated.
     if !card.source.contains("hold") {
         return None;
@@ -527,7 +527,11 @@ fn onto(card: &Card, choice: Option<&Choice>, case: &mut Case) -> Option<String>
 }
 
 /// The part of the action that is undefined at the start, if it can be found.
-pub(crate) fn undefined(card: &Card, choice: Option<&Choice>, case: &Case) -> Option<Undefined> {
+pub(crate) fn undefined(
+    card: &Card,
+    choice: Option<&ChainConfig>,
+    case: &Case,
+) -> Option<Undefined> {
     let (model, sizes, setup) = statement(card, choice, case, card.initial)?;
     let node: Vec<f64> = case.initial.iter().flatten().copied().collect();
     Undefined::find(&model, &sizes, &setup, &node).ok()?

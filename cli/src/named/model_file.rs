@@ -11,7 +11,7 @@ use crate::named::sample::onto_constraints;
 use crate::terminal::failure::Failure;
 use crate::words::plain::shown;
 use clebsch::card::{Card, Field};
-use clebsch_core::lattice::Choice;
+use clebsch_core::lattice::ChainConfig;
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::{Model, Statement};
 use clebsch_interpret::Refused;
@@ -66,7 +66,7 @@ pub(crate) fn read(
 }
 
 /// The number of sites and the ends of the chain, from the case file if there is one.
-fn chosen(stated: &Stated, case: Option<(&str, &str)>) -> Result<Option<Choice>, Failure> {
+fn chosen(stated: &Stated, case: Option<(&str, &str)>) -> Result<Option<ChainConfig>, Failure> {
     match case {
         None => Ok(case_file::default_choice(stated)),
         Some((file, text)) => case_file::choice(file, text, stated),

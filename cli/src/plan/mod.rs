@@ -17,7 +17,7 @@ use clebsch::card::{Card, Field, OpenError, Settings, Trajectory};
 use clebsch::integrate::Halved;
 use clebsch::solvers::Method;
 use clebsch::{ParameterError, StartError};
-use clebsch_core::lattice::Choice;
+use clebsch_core::lattice::ChainConfig;
 use serde_json::{Value, json};
 
 /// By default, the largest number of nodes written: a plot shows no more, and the files stay at a few
@@ -52,7 +52,7 @@ pub struct Plan {
     /// Whether samples are written as text however many they are.
     pub csv: bool,
     /// How many sites a model with labels has, and how its line ends.
-    pub choice: Option<Choice>,
+    pub choice: Option<ChainConfig>,
     /// Whether another step size keeps the end time of the case, rather than the number of steps.
     pub keeps_time: bool,
     /// The names of the quantities that `--set` set.
@@ -331,7 +331,7 @@ impl Plan {
 fn start(
     motion: &mut Motion,
     card: &Card,
-    choice: Option<&Choice>,
+    choice: Option<&ChainConfig>,
     case: &mut Case,
 ) -> Result<(), Failure> {
     let put = motion.put(card, choice, case);

@@ -14,7 +14,7 @@ use clebsch::line::{LineError, Place};
 use clebsch::mesh::{Domain, Wall};
 use clebsch::of_numbers::OfNumbers;
 use clebsch::{ParameterError, StartError};
-use clebsch_core::lattice::Choice;
+use clebsch_core::lattice::ChainConfig;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -331,7 +331,11 @@ impl Ends {
     }
 
     /// The chosen end conditions as a value.
-    pub fn value(&self, choice: &Choice, numbers: &Numbers<'_>) -> Result<Value<f64>, Unstarted> {
+    pub fn value(
+        &self,
+        choice: &ChainConfig,
+        numbers: &Numbers<'_>,
+    ) -> Result<Value<f64>, Unstarted> {
         let missing = |what: &str| Unstarted::Missing(what.to_owned());
         if choice.periodic {
             let ring = self.ring.as_ref().ok_or_else(|| missing("periodic"))?;
@@ -364,7 +368,7 @@ impl Ends {
 }
 
 /// The numbers of sites by the names of their fields.
-pub fn counts(names: &[String], choice: &Choice, field: &str) -> Option<Value<f64>> {
+pub fn counts(names: &[String], choice: &ChainConfig, field: &str) -> Option<Value<f64>> {
     let at = names.iter().position(|name| name == field)?;
     Some(Value::Int(i64::try_from(choice.count(at)).ok()?))
 }

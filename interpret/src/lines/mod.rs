@@ -27,7 +27,7 @@ use crate::value::Value;
 use clebsch::StepCause;
 use clebsch::line::LineError;
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::Choice;
+use clebsch_core::lattice::ChainConfig;
 use clebsch_core::line::{self as core_line, Coordinates};
 use clebsch_core::{emit, pipeline};
 use core::fmt;
@@ -379,7 +379,7 @@ impl LineModel {
     /// As [`LineModel::start`].
     pub fn momenta(
         &self,
-        choice: &Choice,
+        choice: &ChainConfig,
         numbers: &Numbers<'_>,
         field: &str,
         velocities: &[f64],
@@ -403,7 +403,7 @@ impl LineModel {
     /// The model with its parameters.
     fn built(
         &self,
-        choice: &Choice,
+        choice: &ChainConfig,
         numbers: &Numbers<'_>,
         places: &mut Places<f64>,
     ) -> Result<Value<f64>, Unstarted> {
@@ -433,7 +433,7 @@ impl LineModel {
     /// [`Unstarted`] names the missing quantity, or the quantity and the site of a value that is not valid.
     pub fn start(
         self: &Arc<Self>,
-        choice: &Choice,
+        choice: &ChainConfig,
         h: f64,
         numbers: &Numbers<'_>,
     ) -> Result<LineTrajectory, Unstarted> {
@@ -446,7 +446,7 @@ impl LineModel {
     /// As [`LineModel::start`].
     pub fn start_projected(
         self: &Arc<Self>,
-        choice: &Choice,
+        choice: &ChainConfig,
         h: f64,
         numbers: &Numbers<'_>,
     ) -> Result<LineTrajectory, Unstarted> {
@@ -457,7 +457,7 @@ impl LineModel {
     fn start_by(
         self: &Arc<Self>,
         start: &Routine<f64>,
-        choice: &Choice,
+        choice: &ChainConfig,
         h: f64,
         numbers: &Numbers<'_>,
     ) -> Result<LineTrajectory, Unstarted> {

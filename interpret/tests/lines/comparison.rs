@@ -4,15 +4,15 @@ use crate::compiled::{Case, Compiled, Data, Line};
 use clebsch::card::{Card, Field, Settings, Trajectory};
 use clebsch::saved::{Saved, Words};
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::lattice::{ChainConfig, Lattice};
 use clebsch_core::pipeline;
 use clebsch_interpret::lines::{LineModel, LineTrajectory};
 use std::sync::Arc;
 
-pub fn choice(source: &str, n: usize, ends: Option<[&str; 2]>) -> Choice {
+pub fn choice(source: &str, n: usize, ends: Option<[&str; 2]>) -> ChainConfig {
     let model = pipeline::parse_source(source).expect("is a model");
     let lattice = Lattice::read(&model).expect("has labels");
-    let choice = Choice::representative(&lattice, 1);
+    let choice = ChainConfig::representative(&lattice, 1);
     let choice = choice.with_count(&lattice, "i", n).expect("has sites");
     match ends {
         None => choice.with_ring(&lattice).expect("closes"),

@@ -6,13 +6,13 @@ use crate::derive::Derivation;
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
-use crate::lattice::{Choice, ExpandedModel, Lattice};
+use crate::lattice::{ChainConfig, ExpandedModel, Lattice};
 use crate::print::formula::Formula;
 use std::collections::BTreeMap;
 
 /// One choice of sites and end conditions, expanded and derived.
 pub(super) struct Part {
-    pub choice: Choice,
+    pub choice: ChainConfig,
     pub unfolded: ExpandedModel,
     pub d: Derivation,
     /// This choice with more sites. Comparing the two shows which formulas hold for every number of sites.

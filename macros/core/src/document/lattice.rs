@@ -15,7 +15,7 @@ use super::indexed_notation::{IndexOrigin, IndexedNotation, Part};
 use crate::derive::warnings::Warning;
 use crate::diagnostic::Errors;
 use crate::expr::{self, Expr, Node, Shift};
-use crate::lattice::{Choice, Lattice, Range, Sites};
+use crate::lattice::{ChainConfig, Lattice, Range, Sites};
 use crate::pipeline;
 use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::Formula;
@@ -75,7 +75,7 @@ pub fn printed_lattice(
 
 /// Completes the choice of a case that sets no ends: a ring if the model declares `periodic` and no end conditions,
 /// otherwise the first alternative of each end.
-pub fn default_choice(lattice: &Lattice, choice: Choice) -> Choice {
+pub fn default_choice(lattice: &Lattice, choice: ChainConfig) -> ChainConfig {
     let ends = lattice.ends.iter().any(|e| !e.is_empty());
     match lattice.periodic.is_some() && !ends {
         true => choice.as_ring(lattice),
@@ -117,7 +117,7 @@ fn parts(model: &Model, lattice: &Lattice) -> Result<Vec<Part>, Errors> {
         .collect()
 }
 
-fn written_out(model: &Model, lattice: &Lattice, choice: Choice) -> Result<Part, Errors> {
+fn written_out(model: &Model, lattice: &Lattice, choice: ChainConfig) -> Result<Part, Errors> {
     let (unfolded, d) = pipeline::derive_lattice(model, lattice, &choice)?;
     Ok(Part {
         choice,
@@ -141,7 +141,7 @@ fn warnings(parts: &[Part], doc: &mut Document) -> Vec<Warning> {
     let mut out: Vec<Warning> = Vec::new();
     for w in parts
         .iter()
-        .flat_map(|p| p.unfolded.told(&p.choice, &p.d.warnings))
+        .flat_map(|p| p.unfolded.declared_warnings(&p.choice, &p.d.warnings))
     {
         let place = |w: &Warning| format!("{:?}", w.diagnostic.place);
         let known = |o: &Warning| o.topic == w.topic && place(o) == place(&w);

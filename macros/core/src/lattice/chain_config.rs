@@ -5,7 +5,7 @@ use core::fmt;
 
 /// The numbers of sites and the end conditions of one chain.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub struct Choice {
+pub struct ChainConfig {
     /// For each label: the number of segments of an open chain, or of sites of a ring or a set.
     pub counts: Vec<usize>,
     /// Whether the chain is a ring.
@@ -87,18 +87,18 @@ fn listed(names: &[String]) -> String {
     quoted.join(", ")
 }
 
-impl Choice {
+impl ChainConfig {
     /// The shortest chain on which the middle site and each end have all the neighbours in their equations: its results
     /// hold for every longer chain. A ring has an odd number of sites, so that its even and odd sites are not two
     /// separate chains.
-    pub fn representative(lattice: &Lattice, reach: usize) -> Choice {
+    pub fn representative(lattice: &Lattice, reach: usize) -> ChainConfig {
         let count = |l: &Label| match l.set {
             // If there are functionals of all sites, one site represents all of them.
             true if !lattice.meshes.is_empty() => 1,
             true => 2,
             false => 2 * reach.max(1) + 2,
         };
-        Choice {
+        ChainConfig {
             counts: lattice.labels.iter().map(count).collect(),
             periodic: false,
             ends: [0, 0],
@@ -107,7 +107,7 @@ impl Choice {
 
     /// The ring of this choice, with an odd number of sites.
     #[must_use]
-    pub fn as_ring(mut self, lattice: &Lattice) -> Choice {
+    pub fn as_ring(mut self, lattice: &Lattice) -> ChainConfig {
         self.periodic = true;
         if let Some(count) = lattice.line.and_then(|i| self.counts.get_mut(i)) {
             *count |= 1;
@@ -124,7 +124,7 @@ impl Choice {
         lattice: &Lattice,
         label: &str,
         count: usize,
-    ) -> Result<Choice, Refusal> {
+    ) -> Result<ChainConfig, Refusal> {
         let place = lattice.labels.iter().position(|l| l.index.text == label);
         let Some(i) = place else {
             return Err(Refusal::Label {
@@ -151,7 +151,7 @@ impl Choice {
     ///
     /// # Errors
     /// The model does not declare `periodic;`.
-    pub fn with_ring(mut self, lattice: &Lattice) -> Result<Choice, Refusal> {
+    pub fn with_ring(mut self, lattice: &Lattice) -> Result<ChainConfig, Refusal> {
         if lattice.periodic.is_none() {
             let line = lattice.line.and_then(|i| lattice.labels.get(i));
             let label = line.map_or_else(String::new, |l| l.index.text.clone());
@@ -170,7 +170,7 @@ impl Choice {
         lattice: &Lattice,
         last: bool,
         name: &str,
-    ) -> Result<Choice, Refusal> {
+    ) -> Result<ChainConfig, Refusal> {
         let known = lattice.alternatives(last);
         match known.iter().position(|k| k == name) {
             Some(i) => {

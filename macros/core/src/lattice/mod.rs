@@ -16,9 +16,9 @@ mod tests;
 mod unfold;
 pub mod value;
 
-pub use chain_config::{Choice, Refusal};
+pub use chain_config::{ChainConfig, Refusal};
 pub use declared::{Kind, Label, Lattice, Quantity, Sites};
-pub use mesh::{Known, Mesh, Source};
+pub use mesh::{FunctionalKind, Mesh, Source};
 pub use names::{Copied, copy_name};
 pub(crate) use parts::holds_sums;
 pub use range::Range;

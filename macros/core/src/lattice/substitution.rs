@@ -1,12 +1,12 @@
 //! Substitutes the copies at one site into an expression: each quantity of the chain becomes its copy. Across the
 //! seam of a ring the copy is shifted by the offset of its field; prescribed quantities do not move.
 
-use super::chain_config::Choice;
+use super::chain_config::ChainConfig;
 use super::declared::{Lattice, Quantity, Sites};
 use super::names::copy_name;
 use crate::algebra::Rational;
 use crate::diagnostic::Diagnostic;
-use crate::syntax::ast::{Expression, Kind, Kindred, Name, Size};
+use crate::syntax::ast::{Expression, Kind, Name, Size, SizedName};
 use std::collections::BTreeMap;
 
 /// The replacement of a copy that does not move.
@@ -28,7 +28,7 @@ pub(super) struct SiteSubstitution<'a> {
     /// The labels, with their quantities and ends.
     pub lattice: &'a Lattice,
     /// The chosen sites and ends.
-    pub choice: &'a Choice,
+    pub choice: &'a ChainConfig,
     /// The copies that do not move.
     pub pinned: &'a PrescribedCopies,
     /// Names of an end condition, with their names in the expanded model.
@@ -212,7 +212,7 @@ fn still(q: &Quantity, e: &Expression) -> Expression {
     if q.shape.name.text != "SE" {
         return identity;
     }
-    let shape = Kindred {
+    let shape = SizedName {
         name: Name {
             text: "Mat".to_owned(),
             place: e.place,

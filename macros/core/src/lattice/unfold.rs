@@ -14,7 +14,7 @@ mod warnings;
 #[cfg(test)]
 mod warnings_tests;
 
-use super::chain_config::Choice;
+use super::chain_config::ChainConfig;
 use super::declared::{Lattice, Quantity, Sites};
 use super::names::{Copied, copy, copy_name};
 use super::range::{Range, reach};
@@ -23,7 +23,9 @@ use crate::check::circular_definitions;
 use crate::derive::warnings::Warning;
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::expr::symbol::ascii;
-use crate::syntax::ast::{Alternative, Expression, Extent, Kind, Kindred, Model, Name, Statement};
+use crate::syntax::ast::{
+    Alternative, Expression, Extent, Kind, Model, Name, SizedName, Statement,
+};
 pub(crate) use definitions::{definitions, inlined};
 use std::collections::BTreeMap;
 pub use totals::{StatedTotal, Summed};
@@ -94,7 +96,11 @@ pub struct ExpandedModel {
 ///
 /// # Errors
 /// Mistakes in the model, with the tokens where they occur.
-pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<ExpandedModel, Errors> {
+pub fn unfold(
+    model: &Model,
+    lattice: &Lattice,
+    choice: &ChainConfig,
+) -> Result<ExpandedModel, Errors> {
     let mut errors = Errors::new();
     circular_definitions(model, &mut errors);
     errors.propagate()?;
@@ -155,7 +161,7 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Expan
 
 struct Writer<'a> {
     lattice: &'a Lattice,
-    choice: &'a Choice,
+    choice: &'a ChainConfig,
     lets: &'a BTreeMap<String, Expression>,
     pinned: PrescribedCopies,
     errors: Errors,
@@ -292,13 +298,13 @@ impl<'a> Writer<'a> {
     }
 
     fn declare_number(&mut self, name: &Name, docs: &[String]) {
-        let shape = Kindred::number(name.place);
+        let shape = SizedName::number(name.place);
         let names = vec![name.clone()];
         let at = None;
         self.push(Statement::Param { names, shape, at }, docs);
     }
 
-    fn declare(&mut self, name: &Name, shape: &Kindred) {
+    fn declare(&mut self, name: &Name, shape: &SizedName) {
         let known = |s: &Statement| match s {
             Statement::Param { names, .. } => names.iter().any(|n| n.text == name.text),
             _ => false,

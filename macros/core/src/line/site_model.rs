@@ -16,7 +16,7 @@ use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter};
 use crate::groups::{self, ElementStorage};
 use crate::lattice::{Kind as QuantityKind, Lattice, Sites, definitions, inlined};
-use crate::syntax::ast::{Expression, Kind, Kindred, Model, Name, Statement};
+use crate::syntax::ast::{Expression, Kind, Model, Name, SizedName, Statement};
 
 /// The model of one site.
 pub struct SiteModel {
@@ -325,7 +325,7 @@ fn is_empty(statement: &Statement) -> bool {
 fn number(name: &Name) -> Statement {
     Statement::Param {
         names: vec![name.clone()],
-        shape: Kindred::number(name.place),
+        shape: SizedName::number(name.place),
         at: None,
     }
 }

@@ -8,7 +8,7 @@ use crate::derive::invariants::{Invariant, Kind as InvariantKind};
 use crate::document::indexed_notation::{IndexOrigin, IndexedNotation, Part};
 use crate::document::riccati_words;
 use crate::expr::{self, Expr, Node};
-use crate::lattice::{Choice, ExpandedModel, Lattice};
+use crate::lattice::{ChainConfig, ExpandedModel, Lattice};
 use crate::print::formula::Formula;
 use crate::print::{Format, Style, expression, formula};
 
@@ -35,7 +35,7 @@ pub struct InvariantWords {
 /// The description of a derived lattice; `solver` names the solvers of its copies.
 pub fn card_words(
     lattice: &Lattice,
-    choice: &Choice,
+    choice: &ChainConfig,
     unfolded: ExpandedModel,
     d: &Derivation,
     solver: &str,

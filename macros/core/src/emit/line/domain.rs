@@ -7,7 +7,7 @@ use crate::derive::{Derivation, Outline};
 use crate::emit::domain::{Tested, tested};
 use crate::emit::expression::Bindings;
 use crate::expr::Expr;
-use crate::line::{By, EndTerm, Line, SiteModel};
+use crate::line::{CoordinateKind, EndTerm, Line, SiteModel};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -160,7 +160,7 @@ pub(super) fn domain(l: &Lines) -> (TokenStream, TokenStream) {
         }});
     }
     for c in &l.line.coordinates {
-        if let By::Entries(_) = c.by {
+        if let CoordinateKind::Entries(_) = c.by {
             calls.extend(invertible(l, &c.name));
         }
     }

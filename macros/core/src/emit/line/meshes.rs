@@ -10,7 +10,7 @@ use crate::emit::functional::path;
 use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Node, Reach};
-use crate::lattice::{Known, Mesh, Sites, Source};
+use crate::lattice::{FunctionalKind, Mesh, Sites, Source};
 use crate::line::FunctionalForce;
 use crate::syntax::ast::Extent;
 use proc_macro2::{Ident, TokenStream};
@@ -483,8 +483,8 @@ fn written(
 fn type_of(mesh: &Mesh, directions: &proc_macro2::Literal) -> TokenStream {
     let path = path(&mesh.path).unwrap_or_default();
     match mesh.kind {
-        Known::Grid => quote!(#path<T, #directions>),
-        Known::Cells | Known::Path => quote!(#path<T>),
+        FunctionalKind::Grid => quote!(#path<T, #directions>),
+        FunctionalKind::Cells | FunctionalKind::Path => quote!(#path<T>),
     }
 }
 

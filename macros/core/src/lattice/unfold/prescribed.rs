@@ -8,7 +8,7 @@ use crate::lattice::declared::Kind as Role;
 use crate::lattice::names::copy_name;
 use crate::lattice::parts::names;
 use crate::lattice::substitution::{FixedCopy, any_name};
-use crate::syntax::ast::{Expression, Kind, Kindred, Model, Name, Statement};
+use crate::syntax::ast::{Expression, Kind, Model, Name, SizedName, Statement};
 use std::collections::BTreeSet;
 
 impl Writer<'_> {
@@ -119,7 +119,7 @@ impl Writer<'_> {
             out.statements.push(statement);
             out.remarks.push(Vec::new());
         };
-        let parameter = |name: Name, shape: Kindred| Statement::Param {
+        let parameter = |name: Name, shape: SizedName| Statement::Param {
             names: vec![name],
             shape,
             at: None,
@@ -128,7 +128,7 @@ impl Writer<'_> {
             match statement {
                 Statement::Label {
                     step: Some(step), ..
-                } => declare(parameter(step.clone(), Kindred::number(step.place))),
+                } => declare(parameter(step.clone(), SizedName::number(step.place))),
                 Statement::Param { at: None, .. }
                 | Statement::Time { .. }
                 | Statement::Dim { .. }

@@ -2,7 +2,7 @@
 //! themselves do.
 
 use super::unfold;
-use crate::lattice::{Choice, Lattice};
+use crate::lattice::{ChainConfig, Lattice};
 use crate::pipeline::parse_source;
 
 /// The prescribed names on a chain of three nodes whose first end prescribes its configurations, without these
@@ -19,7 +19,7 @@ fn given(statements: &str) -> Vec<String> {
     );
     let model = parse_source(&source).unwrap();
     let lattice = Lattice::read(&model).unwrap();
-    let choice = Choice::representative(&lattice, 1);
+    let choice = ChainConfig::representative(&lattice, 1);
     let choice = choice.with_count(&lattice, "i", 2).unwrap();
     let found = unfold(&model, &lattice, &choice).unwrap().given;
     let besides = found.into_iter().filter(|n| n != "Λ_0" && n != "x_0");

@@ -3,7 +3,7 @@
 use super::ExpandedModel;
 use crate::derive::warnings::{Topic, Warning, unused_let};
 use crate::diagnostic::Diagnostic;
-use crate::lattice::{Choice, any_name};
+use crate::lattice::{ChainConfig, any_name};
 use crate::syntax::ast::{Expression, Extent, Model, Name, Statement};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -43,7 +43,7 @@ pub(super) fn without_a_ring(offset: &Name) -> Warning {
 impl ExpandedModel {
     /// The warnings in the words of the declared model: about terms first, then from the derivation. On a short
     /// chain, or with prescribed ends, a quantity may be unused or constant although it is neither on other chains.
-    pub fn told(&self, choice: &Choice, found: &[Warning]) -> Vec<Warning> {
+    pub fn declared_warnings(&self, choice: &ChainConfig, found: &[Warning]) -> Vec<Warning> {
         let shortest = 2 * self.width() + 2;
         // Without neighbours, one site represents all sites.
         let short = self.width() > 0 && choice.counts.iter().all(|n| *n < shortest);

@@ -1,7 +1,7 @@
 //! Warnings about chains: the sign of kinetic energies with neighbour coupling, terms of ends, unused parameters.
 
 use crate::derive::warnings::{Topic, Warning};
-use crate::lattice::{Choice, Lattice};
+use crate::lattice::{ChainConfig, Lattice};
 use crate::pipeline::{derive_lattice, parse_source, representative};
 
 /// The warnings for a chain with these ends, or for the ring.
@@ -11,7 +11,7 @@ fn warnings_of(source: &str, count: Option<usize>, ends: Option<[&str; 2]>) -> V
     let choice = representative(&model, &lattice).unwrap();
     let count = count.unwrap_or_else(|| choice.count(0));
     let choice = choice.with_count(&lattice, "i", count).unwrap();
-    let choice: Choice = match ends {
+    let choice: ChainConfig = match ends {
         None => choice.with_ring(&lattice).unwrap(),
         Some([first, last]) => {
             let choice = choice.with_end(&lattice, false, first).unwrap();
@@ -19,7 +19,7 @@ fn warnings_of(source: &str, count: Option<usize>, ends: Option<[&str; 2]>) -> V
         }
     };
     let (unfolded, d) = derive_lattice(&model, &lattice, &choice).unwrap();
-    unfolded.told(&choice, &d.warnings)
+    unfolded.declared_warnings(&choice, &d.warnings)
 }
 
 #[test]
