@@ -1,8 +1,8 @@
 //! Blocks of work for elastic ellipsoids in three dimensions and for four configurations coupled by springs: the same steps from
 //! the initial state of a gallery case. Each step is a fallible call, and initialisation is outside the measured time.
 
-use crate::counted::Block;
 use crate::loops::{generated, written};
+use crate::operation_counts::Block;
 use clebsch::nalgebra::{Matrix3, Vector3, Vector6};
 use clebsch::{
     Additive, BodyImpulse, BodyMomentum, BodyMomentumMatrix, FieldMomentum, Linear, RigidMotion,

@@ -2,8 +2,8 @@
 //! spring and stepped in turn, with the same inertia.
 
 use crate::blocks::STEPS;
-use crate::counted::Block;
 use crate::loops::generated;
+use crate::operation_counts::Block;
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Rotation};
 use clebsch_oracle::physics::cases::generic_top;

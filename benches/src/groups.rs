@@ -1,8 +1,8 @@
 //! Blocks of work for models on SU(2) and SE(3), in unit quaternions and in a fluid: the same steps from the same initial state.
 //! Each step is a fallible call, and initialisation is outside the measured time.
 
-use crate::counted::Block;
 use crate::loops::{generated, written};
+use crate::operation_counts::Block;
 use clebsch::nalgebra::{Matrix3, Vector3, Vector4, Vector6};
 use clebsch::{BodyImpulse, BodyMomentum, RigidMotion, Rotation, SpatialMomentum, UnitQuaternion};
 use clebsch_models::cayley_klein::{CayleyKlein, CayleyKleinInitial, CayleyKleinParameters};

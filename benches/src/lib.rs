@@ -6,4 +6,4 @@
 pub mod blocks;
 pub mod body;
 pub mod python;
-pub mod truth;
+pub mod reference_motion;

@@ -10,7 +10,7 @@ macro_rules! generated {
         let model = $model.expect("parameters");
         let start = model.start($initial, $h);
         let (state, workspace) = start.expect("solvable");
-        let counted = $crate::counted::work_of(&model, &state, $h);
+        let counted = $crate::operation_counts::work_of(&model, &state, $h);
         let work = counted.expect("solvable");
         let run = move || {
             let whole = std::hint::black_box((model, state, workspace));
@@ -20,7 +20,7 @@ macro_rules! generated {
             }
             std::hint::black_box((&state, &workspace));
         };
-        $crate::counted::Block { work, run }
+        $crate::operation_counts::Block { work, run }
     }};
 }
 

@@ -5,37 +5,37 @@
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables)]
 
-mod bodies_of_files;
-mod counted;
 mod elastic;
+mod elastic_bodies;
 mod frames;
 mod groups;
 mod loops;
+mod operation_counts;
 mod points;
 mod processes;
 mod steppers;
 mod systems;
 
-use bodies_of_files::{
-    generated_fluid, generated_hooke, generated_mooney, written_fluid, written_hooke,
-    written_mooney,
-};
 use clebsch_benches::blocks;
 use clebsch_benches::blocks::compare;
 use clebsch_oracle::physics::cases::{
     Start, asymmetric_body, generic_top, lagrange_top, symmetric_body,
 };
 use clebsch_oracle::physics::systems::{generic_pair, reference_pair};
-use counted::Block;
 use elastic::{
     generated_convective, generated_four, generated_spatial, written_convective, written_four,
     written_spatial,
+};
+use elastic_bodies::{
+    generated_fluid, generated_hooke, generated_mooney, written_fluid, written_hooke,
+    written_mooney,
 };
 use frames::{generated_frames, generated_single_frames};
 use groups::{
     generated_cayley_klein, generated_cayley_klein_spatial, generated_kirchhoff_body,
     written_cayley_klein, written_kirchhoff_body,
 };
+use operation_counts::Block;
 use points::{generated_charge, generated_kepler, written_charge, written_kepler};
 use processes::Row;
 use steppers::{generated_body, generated_top, written_body, written_top};

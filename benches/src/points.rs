@@ -1,8 +1,8 @@
 //! Blocks of work for points in space, a planet and a charge: the same steps from the same initial state. Each step is a fallible
 //! call, and initialisation is outside the measured time.
 
-use crate::counted::Block;
 use crate::loops::{generated, written};
+use crate::operation_counts::Block;
 use clebsch::nalgebra::Vector3;
 use clebsch::{Additive, FieldMomentum};
 use clebsch_models::charged_particle::{

@@ -1,7 +1,7 @@
 //! Runs every case in several processes, each with a shifted stack and heap, because on some processors the memory layout
 //! determines up to two thirds of the time of a short step. Takes the rows of each process; gives medians and the worst.
 
-use crate::counted::Work;
+use crate::operation_counts::Work;
 use std::process::{Command, exit};
 
 /// The number of processes, and the extra bytes in the environment of each, which shift its stack.

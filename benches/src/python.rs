@@ -9,7 +9,7 @@ use std::process::Command;
 ///
 /// # Errors
 /// A message if Python cannot run or the script failed to measure.
-pub fn told(script: &str, result: &str, arguments: &[&str]) -> Result<Value, String> {
+pub fn run_script(script: &str, result: &str, arguments: &[&str]) -> Result<Value, String> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let (script, made) = (here.join("python").join(script), here.join("target/python"));
     std::fs::create_dir_all(&made).map_err(|e| e.to_string())?;

@@ -2,8 +2,8 @@
 //! is outside the measured time.
 
 use crate::blocks::STEPS;
-use crate::counted::Block;
 use crate::loops::generated;
+use crate::operation_counts::Block;
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Rotation};
 use clebsch_models::free_body::{FreeBody, FreeBodyInitial, FreeBodyParameters};

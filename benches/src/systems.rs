@@ -2,8 +2,8 @@
 //! is a fallible call, and initialisation is outside the measured time.
 
 use crate::blocks::STEPS;
-use crate::counted::Block;
 use crate::loops::{generated, written};
+use crate::operation_counts::Block;
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Rotation, SpatialMomentum};
 use clebsch_models::body_in_quadratic_field::{

@@ -8,7 +8,7 @@ use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::sites::{Moving, indices};
 use crate::stated::{Hold, Stated};
-use crate::terms::Lives;
+use crate::terms::TermTime;
 use crate::value::Value;
 
 /// If a constraint sums over more sites than this, the sum is not evaluated. Its gradients at the judged sites come
@@ -138,7 +138,7 @@ fn values(
 ) -> Result<Indexed, String> {
     let time = i32::try_from(node).unwrap_or(1);
     let level = match hold.value.lives {
-        Lives::Node(level) => level,
+        TermTime::Node(level) => level,
         _ => 0,
     };
     let at = |index: i64| Here::at(index).later(time - level);

@@ -7,7 +7,7 @@ use crate::scene::{Scene, Varied};
 use crate::setup::Setup;
 use crate::sites::{Moving, indices};
 use crate::stated::Stated;
-use crate::terms::{Lives, Term};
+use crate::terms::{Term, TermTime};
 use clebsch_core::syntax::ast::NodeRule;
 
 /// The derivative by one variable.
@@ -98,9 +98,9 @@ fn add(
         }
         Ok(())
     };
-    let Lives::Node(level) = term.lives else {
+    let TermTime::Node(level) = term.lives else {
         return match term.lives {
-            Lives::Nowhere => Ok(()),
+            TermTime::Nowhere => Ok(()),
             _ => one(here, 1.0),
         };
     };

@@ -9,12 +9,12 @@
 mod determined;
 mod step;
 
+use crate::displacement::{Frame, Velocity, along};
 use crate::group::Group;
-use crate::moved::{Frame, Velocity, along};
-use crate::refined::{Block, limit};
 use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::sites::{Moving, all_moving, varied};
+use crate::small_step_limit::{Block, limit};
 use crate::stated::{Role, Stated};
 use clebsch_core::syntax::ast::Model;
 use std::collections::{BTreeMap, BTreeSet};

@@ -17,7 +17,7 @@ const FAR_BELOW: f64 = 1e-3;
 
 /// The selection of judged steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Which {
+pub enum StepSelection {
     /// A hundred at random, and the last.
     Sample,
     /// Every step.
@@ -30,16 +30,16 @@ pub enum Which {
 /// resumed run judges the same steps.
 #[derive(Clone, Debug)]
 pub struct Chosen {
-    which: Which,
+    which: StepSelection,
     steps: BTreeSet<u64>,
 }
 
 impl Chosen {
     /// Chooses from a run with `total` steps.
     #[must_use]
-    pub fn new(which: Which, total: u64) -> Self {
+    pub fn new(which: StepSelection, total: u64) -> Self {
         let mut steps = BTreeSet::new();
-        if which == Which::Sample && total > 0 {
+        if which == StepSelection::Sample && total > 0 {
             if total <= SAMPLE as u64 + 1 {
                 steps.extend(1..=total);
             } else {
@@ -57,9 +57,9 @@ impl Chosen {
     #[must_use]
     pub fn contains(&self, step: u64) -> bool {
         match self.which {
-            Which::All => true,
-            Which::None => false,
-            Which::Sample => self.steps.contains(&step),
+            StepSelection::All => true,
+            StepSelection::None => false,
+            StepSelection::Sample => self.steps.contains(&step),
         }
     }
 }

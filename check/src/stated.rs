@@ -6,7 +6,7 @@ use crate::group::Group;
 use crate::lets::Lets;
 pub use crate::records::{End, Hold, Layout, Quantity, Role, Side, Sites, Stated};
 use crate::terms::Terms;
-use clebsch_core::syntax::ast::{At, Kindred, Model, NodeRule, Site, Size, Statement};
+use clebsch_core::syntax::ast::{At, Model, NodeRule, Site, Size, SizedName, Statement};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Stated {
@@ -172,7 +172,7 @@ impl Stated {
     }
 
     /// The size of a shape with one size.
-    fn size(&self, shape: &Kindred) -> Result<usize, String> {
+    fn size(&self, shape: &SizedName) -> Result<usize, String> {
         match shape.sizes.first() {
             Some(Size::Number(n, _)) => usize::try_from(*n).map_err(|e| e.to_string()),
             Some(Size::Name(name)) => {
@@ -273,7 +273,7 @@ fn labels(model: &Model) -> Vec<String> {
 }
 
 /// Whether a shape is a number, and whether it is a quaternion.
-fn kind(shape: &Kindred) -> (bool, bool) {
+fn kind(shape: &SizedName) -> (bool, bool) {
     let name = shape.name.text.as_str();
     (name == "Real", name == "SU")
 }

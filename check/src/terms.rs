@@ -7,7 +7,7 @@ use crate::words::{flat, of_kind, quotient, with_sign, without_sign, words};
 
 /// The place of a term in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lives {
+pub enum TermTime {
     /// Nothing in it moves.
     Nowhere,
     /// At one node, this number of steps after the first node of the edge.
@@ -31,7 +31,7 @@ pub struct Term {
     /// The term.
     pub value: Expression,
     /// Its place in time.
-    pub lives: Lives,
+    pub lives: TermTime,
     /// The label along which it is summed.
     pub label: Option<usize>,
     /// Its letters along that label, including the letters of the term that it was split from.
@@ -47,7 +47,7 @@ pub struct Terms<'a>(&'a Stated);
 
 /// The result of a walk through an expression.
 #[derive(Default)]
-struct Found {
+struct TermScan {
     label: Option<usize>,
     letters: Vec<Letter>,
     over: Option<Sites>,
@@ -104,16 +104,16 @@ impl<'a> Terms<'a> {
     /// # Errors
     /// It cannot be judged.
     pub fn whole(&self, value: Expression) -> Result<Term, String> {
-        let mut found = Found::default();
+        let mut found = TermScan::default();
         self.walk(&value, 0, 0, &mut found)?;
         found.letters.sort_unstable();
         found.letters.dedup();
         let first = found.times.first().copied();
         let lives = match (found.velocity, first) {
-            (true, _) => Lives::Edge,
-            (false, None) => Lives::Nowhere,
-            (false, Some(t)) if found.times.iter().all(|o| *o == t) => Lives::Node(t),
-            (false, Some(_)) => Lives::Edge,
+            (true, _) => TermTime::Edge,
+            (false, None) => TermTime::Nowhere,
+            (false, Some(t)) if found.times.iter().all(|o| *o == t) => TermTime::Node(t),
+            (false, Some(_)) => TermTime::Edge,
         };
         Ok(Term {
             value,
@@ -125,7 +125,7 @@ impl<'a> Terms<'a> {
         })
     }
 
-    fn walk(&self, e: &Expression, time: i32, by: i64, found: &mut Found) -> Result<(), String> {
+    fn walk(&self, e: &Expression, time: i32, by: i64, found: &mut TermScan) -> Result<(), String> {
         match &e.kind {
             Kind::Name(n) => self.name(n, time, by, found),
             Kind::Call(f, arguments) => match (f.as_str(), arguments.as_slice()) {
@@ -152,7 +152,7 @@ impl<'a> Terms<'a> {
         }
     }
 
-    fn name(&self, n: &str, time: i32, by: i64, found: &mut Found) -> Result<(), String> {
+    fn name(&self, n: &str, time: i32, by: i64, found: &mut TermScan) -> Result<(), String> {
         let of = self.0.velocities.get(n);
         let Some(q) = self.0.quantities.get(of.map_or(n, String::as_str)) else {
             return Ok(());
@@ -298,7 +298,7 @@ impl<'a> Terms<'a> {
     /// Whether something in it moves.
     fn moves(&self, e: &Expression) -> bool {
         let term = self.whole(e.clone());
-        term.is_ok_and(|term| !matches!(term.lives, Lives::Nowhere))
+        term.is_ok_and(|term| !matches!(term.lives, TermTime::Nowhere))
     }
 
     /// Summands, with constant summands added to the first summand that lives on the edge. In `q^2*(3 - tr(O))`, the
@@ -306,7 +306,7 @@ impl<'a> Terms<'a> {
     fn with_constants(&self, terms: &[Expression]) -> Vec<Expression> {
         let on_edge = |t: &Expression| {
             let term = self.whole(t.clone());
-            term.is_ok_and(|term| matches!(term.lives, Lives::Edge))
+            term.is_ok_and(|term| matches!(term.lives, TermTime::Edge))
         };
         if !terms.iter().any(on_edge) {
             return terms.to_vec();
@@ -352,7 +352,7 @@ impl<'a> Terms<'a> {
     fn steps(&self, e: &Expression) -> Option<(i32, String)> {
         let term = self.whole(without_sign(e).1.clone()).ok()?;
         match term.lives {
-            Lives::Node(level) => Some((level, words(&term.value))),
+            TermTime::Node(level) => Some((level, words(&term.value))),
             _ => None,
         }
     }

@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::sites::{all_moving, range, varied};
 use crate::stated::{Role, Stated};
-use crate::terms::{Lives, Term};
+use crate::terms::{Term, TermTime};
 use crate::value::Value;
 use clebsch_core::syntax::ast::Model;
 use std::fmt;
@@ -72,7 +72,7 @@ impl Undefined {
         let by = varied(&moving);
         let scene = Scene::new(&stated, setup, [node, node], &by);
         // A root of zero is a reason only where nothing is infinite.
-        let kinds: [Wanted; 2] = [&|scene, e, here| fault(scene, e, here), &root_of_zero];
+        let kinds: [FaultTest; 2] = [&|scene, e, here| fault(scene, e, here), &root_of_zero];
         for wanted in kinds {
             let mut first: Option<(i64, Undefined)> = None;
             for term in &stated.terms {
@@ -98,7 +98,7 @@ impl Undefined {
 fn at(term: &Term, index: i64) -> Here {
     let here = Here::at(index);
     match term.lives {
-        Lives::Node(level) => here.later(-level),
+        TermTime::Node(level) => here.later(-level),
         _ => here,
     }
 }
@@ -111,7 +111,7 @@ enum Fault {
 }
 
 /// A test for the faults that a search looks for.
-type Wanted<'w> = &'w dyn Fn(&Scene<'_>, &Expression, Here) -> Option<Fault>;
+type FaultTest<'w> = &'w dyn Fn(&Scene<'_>, &Expression, Here) -> Option<Fault>;
 
 /// The fault of an expression, if its value or derivative is not finite. Expressions that this crate does not evaluate,
 /// such as functionals of all sites, are left to the error of the step.
@@ -153,7 +153,7 @@ fn innermost(
     scene: &Scene<'_>,
     e: &Expression,
     here: Here,
-    wanted: Wanted<'_>,
+    wanted: FaultTest<'_>,
 ) -> Option<Undefined> {
     let inner = here.within(e);
     let mut parts = e.parts().into_iter();

@@ -2,13 +2,13 @@
 //! particles and the data of the case. Gives the value at each particle. If a functional lives on a grid, the splines
 //! of its deposit interpolate it and give its slopes.
 
-use crate::functional::{Around, Held, made};
+use crate::functional::{AnyFunctional, FunctionalSetting, made};
 use crate::lines::{Numbers, extent};
 use crate::sites::Column;
 use crate::value::Value;
 use clebsch::ParameterError;
 use clebsch::mesh::{self, Functional, MeshError, Nodes, Setting, deposit, deposit_quintic};
-use clebsch_core::lattice::{Known, Lattice, Mesh, Source};
+use clebsch_core::lattice::{FunctionalKind, Lattice, Mesh, Source};
 use core::fmt;
 use nalgebra::SVector;
 
@@ -89,8 +89,8 @@ pub fn at_particles(
     numbers: &Numbers<'_>,
 ) -> Result<AtParticles, Unvalued> {
     let count = placed.at.len() / placed.lengths.len().max(1);
-    let around =
-        extent(placed.lengths, placed.walls).and_then(|e| Around::new(e, placed.cells, count));
+    let around = extent(placed.lengths, placed.walls)
+        .and_then(|e| FunctionalSetting::new(e, placed.cells, count));
     let around = around.ok_or(Unvalued::Unfit)?;
     let (column, root) = values(lattice, mesh, &around, placed, numbers)?;
     let Column::Numbers(values) = column else {
@@ -117,17 +117,17 @@ pub fn at_particles(
             .map(|x| SVector::from(*x))
     };
     match (named(root)?, &around) {
-        ("deposit", Around::Line(s)) => {
+        ("deposit", FunctionalSetting::Line(s)) => {
             interpolated::<deposit<f64, 1>, f64, 1>(s, placed.at, &values)
         }
-        ("deposit", Around::Plane(s)) => {
+        ("deposit", FunctionalSetting::Plane(s)) => {
             let at: Vec<SVector<f64, 2>> = places().collect();
             interpolated::<deposit<f64, 2>, _, 2>(s, &at, &values)
         }
-        ("deposit_quintic", Around::Line(s)) => {
+        ("deposit_quintic", FunctionalSetting::Line(s)) => {
             interpolated::<deposit_quintic<f64, 1>, f64, 1>(s, placed.at, &values)
         }
-        ("deposit_quintic", Around::Plane(s)) => {
+        ("deposit_quintic", FunctionalSetting::Plane(s)) => {
             let at: Vec<SVector<f64, 2>> = places().collect();
             interpolated::<deposit_quintic<f64, 2>, _, 2>(s, &at, &values)
         }
@@ -138,7 +138,7 @@ pub fn at_particles(
 /// The name of a functional that the runtime supplies.
 fn named(mesh: &Mesh) -> Result<&str, Unvalued> {
     let name = mesh.path.strip_prefix("clebsch::mesh::");
-    let known = name.filter(|_| mesh.kind != Known::Path);
+    let known = name.filter(|_| mesh.kind != FunctionalKind::Path);
     known.ok_or_else(|| Unvalued::Path(mesh.path.clone()))
 }
 
@@ -146,7 +146,7 @@ fn named(mesh: &Mesh) -> Result<&str, Unvalued> {
 fn values(
     lattice: &Lattice,
     at: usize,
-    around: &Around,
+    around: &FunctionalSetting,
     placed: &Placed<'_>,
     numbers: &Numbers<'_>,
 ) -> Result<(Column<f64>, usize), Unvalued> {
@@ -174,7 +174,7 @@ fn values(
     });
     let data: Vec<Value<f64>> = data.collect::<Result<_, Unvalued>>()?;
     let made = made::<f64>(named(mesh)?, around, &data).ok_or(Unvalued::Unfit)?;
-    let mut functional: Held<f64> = made?;
+    let mut functional: AnyFunctional<f64> = made?;
     let own = lattice.find(&mesh.name.text).ok_or(Unvalued::Unfit)?;
     let count = match lattice.is_grid(own.label) {
         true => around.nodes(),

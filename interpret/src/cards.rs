@@ -8,7 +8,7 @@ use crate::signs::Agreement;
 use clebsch::card::{Card, Invariant, OpenError, Settings};
 use clebsch_core::derive::warnings::Warning;
 use clebsch_core::document::{self, InvariantWords};
-use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::lattice::{ChainConfig, Lattice};
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::{Model, Statement};
 use std::cell::RefCell;
@@ -17,7 +17,7 @@ use std::rc::Rc;
 use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 
 /// A card, and the warnings of its text.
-type Told = (Card, Vec<Warning>);
+type CardWithWarnings = (Card, Vec<Warning>);
 
 /// Cards by their texts and the chosen sizes or sites, and whether the text has warnings.
 static KNOWN: RwLock<BTreeMap<String, (Card, bool)>> = RwLock::new(BTreeMap::new());
@@ -26,8 +26,8 @@ static KNOWN: RwLock<BTreeMap<String, (Card, bool)>> = RwLock::new(BTreeMap::new
 /// derived again for them.
 fn once(
     key: String,
-    make: impl FnOnce(Option<Card>) -> Result<Told, Refused>,
-) -> Result<Told, Refused> {
+    make: impl FnOnce(Option<Card>) -> Result<CardWithWarnings, Refused>,
+) -> Result<CardWithWarnings, Refused> {
     let all = KNOWN.read().unwrap_or_else(PoisonError::into_inner);
     let known = all.get(&key).copied();
     drop(all);
@@ -90,13 +90,20 @@ pub fn card_and_warnings(source: &str) -> Result<(Card, Vec<Warning>), Refused> 
 ///
 /// # Errors
 /// As [`card`].
-pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warning>), Refused> {
+pub fn card_on_lattice(
+    source: &str,
+    choice: &ChainConfig,
+) -> Result<(Card, Vec<Warning>), Refused> {
     once(format!("{choice:?}\n{source}"), |known| {
         on_lattice(source, choice, known)
     })
 }
 
-fn on_lattice(source: &str, choice: &Choice, known: Option<Card>) -> Result<Told, Refused> {
+fn on_lattice(
+    source: &str,
+    choice: &ChainConfig,
+    known: Option<Card>,
+) -> Result<CardWithWarnings, Refused> {
     let model = pipeline::parse_source(source).map_err(Refused::Model)?;
     let lattice = Lattice::read(&model).map_err(Refused::Model)?;
     let mut written_out = None;
@@ -158,7 +165,10 @@ fn on_lattice(source: &str, choice: &Choice, known: Option<Card>) -> Result<Told
 ///
 /// # Errors
 /// As [`card`].
-pub fn card_body_by_body(source: &str, choice: &Choice) -> Result<(Card, Vec<Warning>), Refused> {
+pub fn card_body_by_body(
+    source: &str,
+    choice: &ChainConfig,
+) -> Result<(Card, Vec<Warning>), Refused> {
     once(format!("body by body, {choice:?}\n{source}"), |known| {
         let model = pipeline::parse_source(source).map_err(Refused::Model)?;
         let lattice = Lattice::read(&model).map_err(Refused::Model)?;
@@ -169,14 +179,14 @@ pub fn card_body_by_body(source: &str, choice: &Choice) -> Result<(Card, Vec<War
 /// The card of an expanded chain. If loops over sites were wanted, `written_out` says why they are not used.
 fn body_by_body(
     (model, lattice): (&Model, &Lattice),
-    choice: &Choice,
+    choice: &ChainConfig,
     source: &str,
     written_out: Option<String>,
     known: Option<Card>,
-) -> Result<Told, Refused> {
+) -> Result<CardWithWarnings, Refused> {
     let derived = pipeline::derive_lattice(model, lattice, choice);
     let (unfolded, d) = derived.map_err(Refused::Model)?;
-    let warnings = unfolded.told(choice, &d.warnings);
+    let warnings = unfolded.declared_warnings(choice, &d.warnings);
     if let Some(card) = known {
         return Ok((card, warnings));
     }
@@ -225,11 +235,11 @@ pub(crate) fn named(own: &[Invariant], words: Vec<InvariantWords>) -> Vec<Invari
 /// The card of a chain that runs with loops over sites.
 fn card_of_line(
     stated: (&Model, &Lattice),
-    choice: &Choice,
+    choice: &ChainConfig,
     line: Arc<LineModel>,
     source: &str,
     known: Option<Card>,
-) -> Result<Told, Refused> {
+) -> Result<CardWithWarnings, Refused> {
     let (mut carded, warnings) = Carded::of(stated, choice, line, source)?;
     if let Some(card) = known {
         return Ok((card, warnings));
@@ -244,7 +254,7 @@ fn card_of_line(
 }
 
 /// The card at given sizes.
-fn at_sizes(source: &str, sizes: Option<&[usize]>) -> Result<Told, Refused> {
+fn at_sizes(source: &str, sizes: Option<&[usize]>) -> Result<CardWithWarnings, Refused> {
     once(format!("{sizes:?}\n{source}"), |known| {
         let text = derived(source)?;
         let warnings = text.derivation.warnings.clone();
@@ -280,7 +290,10 @@ fn derived(source: &str) -> Result<Rc<Text>, Refused> {
 const NOT_OPEN: OpenError = OpenError::Solver { offered: &[] };
 
 /// Opens a model and returns its card; `resize` returns its cards of other sizes.
-fn kept(mut model: Opened, resize: impl Fn(&[usize]) -> Option<Told> + Sync + 'static) -> Card {
+fn kept(
+    mut model: Opened,
+    resize: impl Fn(&[usize]) -> Option<CardWithWarnings> + Sync + 'static,
+) -> Card {
     let place: &'static OnceLock<Opened> = Box::leak(Box::default());
     let open = move |parameters: &[Vec<f64>], initial: &[Vec<f64>], settings: Settings| {
         let model = place.get().ok_or(NOT_OPEN)?;

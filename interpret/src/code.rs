@@ -1,7 +1,7 @@
 //! The operations of a function, read once: a tree over numbered places. Execution needs no look-up of names.
 
 mod apply;
-mod over;
+mod map_scalar;
 mod parts;
 mod sweep;
 

@@ -21,23 +21,23 @@ pub enum Extent {
 
 /// The setting that a functional is built for.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Around {
+pub enum FunctionalSetting {
     /// On an interval.
     Line(Setting<1>),
     /// On a rectangle.
     Plane(Setting<2>),
 }
 
-impl Around {
+impl FunctionalSetting {
     /// A domain, with a grid if there is one, and the number of particles.
     pub fn new(extent: Extent, grid: Option<&[usize]>, particles: usize) -> Option<Self> {
         Some(match extent {
-            Extent::Line(domain) => Around::Line(Setting {
+            Extent::Line(domain) => FunctionalSetting::Line(Setting {
                 domain,
                 grid: grid.map(<[usize; 1]>::try_from).transpose().ok()?,
                 particles,
             }),
-            Extent::Plane(domain) => Around::Plane(Setting {
+            Extent::Plane(domain) => FunctionalSetting::Plane(Setting {
                 domain,
                 grid: grid.map(<[usize; 2]>::try_from).transpose().ok()?,
                 particles,
@@ -48,16 +48,16 @@ impl Around {
     /// The number of nodes of the grid.
     pub fn nodes(&self) -> usize {
         match self {
-            Around::Line(setting) => setting.nodes(),
-            Around::Plane(setting) => setting.nodes(),
+            FunctionalSetting::Line(setting) => setting.nodes(),
+            FunctionalSetting::Plane(setting) => setting.nodes(),
         }
     }
 
     /// Lengths of a cell along each direction.
     pub fn cell(&self) -> Vec<f64> {
         match self {
-            Around::Line(setting) => setting.cell().to_vec(),
-            Around::Plane(setting) => setting.cell().to_vec(),
+            FunctionalSetting::Line(setting) => setting.cell().to_vec(),
+            FunctionalSetting::Plane(setting) => setting.cell().to_vec(),
         }
     }
 }
@@ -173,21 +173,21 @@ where
 }
 
 /// A functional of any type.
-pub struct Held<T: Real>(Box<dyn Computes<T>>);
+pub struct AnyFunctional<T: Real>(Box<dyn Computes<T>>);
 
-impl<T: Real> Clone for Held<T> {
+impl<T: Real> Clone for AnyFunctional<T> {
     fn clone(&self) -> Self {
-        Held(self.0.copied())
+        AnyFunctional(self.0.copied())
     }
 }
 
-impl<T: Real> fmt::Debug for Held<T> {
+impl<T: Real> fmt::Debug for AnyFunctional<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Held").finish_non_exhaustive()
+        f.debug_struct("AnyFunctional").finish_non_exhaustive()
     }
 }
 
-impl<T: Real> Held<T> {
+impl<T: Real> AnyFunctional<T> {
     /// Its values at positions, or at the values of another functional.
     pub fn value(&mut self, at: &Column<T>, out: &mut [T]) -> Option<Result<(), MeshError>> {
         self.0.value(at, out)
@@ -203,15 +203,15 @@ impl<T: Real> Held<T> {
     }
 }
 
-impl Saved for Held<f64> {
+impl Saved for AnyFunctional<f64> {
     fn words(&mut self, words: &mut Words) {
         self.0.words(words);
     }
 }
 
-type Made<T> = Option<Result<Held<T>, ParameterError>>;
+type NewFunctional<T> = Option<Result<AnyFunctional<T>, ParameterError>>;
 
-fn held<T, F, A, const D: usize>(setting: &Setting<D>, data: F::Data<'_>) -> Made<T>
+fn held<T, F, A, const D: usize>(setting: &Setting<D>, data: F::Data<'_>) -> NewFunctional<T>
 where
     T: Real,
     A: Element<T>,
@@ -224,14 +224,18 @@ where
             at,
             back,
         };
-        Held(Box::new(In::<F, A, D>(with)) as Box<dyn Computes<T>>)
+        AnyFunctional(Box::new(In::<F, A, D>(with)) as Box<dyn Computes<T>>)
     });
     Some(made)
 }
 
 /// The functional of this name. Returns nothing if the name is unknown or the functional takes other constants.
-pub fn made<T: Real>(name: &str, around: &Around, data: &[Value<T>]) -> Made<T> {
-    use Around::{Line, Plane};
+pub fn made<T: Real>(
+    name: &str,
+    around: &FunctionalSetting,
+    data: &[Value<T>],
+) -> NewFunctional<T> {
+    use FunctionalSetting::{Line, Plane};
     let numbers = |value: &Value<T>| match value {
         Value::Sites(Column::Numbers(list)) => Some(list.clone()),
         _ => None,

@@ -33,7 +33,7 @@ pub mod at {
 
 /// How an initial value is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Read {
+pub enum InitialForm {
     /// A number.
     Number,
     /// A vector or a matrix.
@@ -81,9 +81,9 @@ pub struct Opened {
     /// The functions.
     pub functions: Functions,
     /// The struct of the parameters.
-    pub parameters: (Arc<Layout>, Vec<Read>),
+    pub parameters: (Arc<Layout>, Vec<InitialForm>),
     /// The struct of the initial values.
-    pub initial: (Arc<Layout>, Vec<Read>),
+    pub initial: (Arc<Layout>, Vec<InitialForm>),
     /// Quantities whose signs must agree along a chain, if the model is an expanded chain.
     pub signs: Vec<Agreement>,
     /// The number of the name of a state's node.
@@ -232,14 +232,14 @@ fn chosen_sizes(program: &Program, name: &str, sizes: Option<&[usize]>) -> Resul
 }
 
 /// The struct of an input, and how each field is read.
-fn given(shared: &mut Shared<'_>, name: &str) -> Result<(Arc<Layout>, Vec<Read>), Refused> {
+fn given(shared: &mut Shared<'_>, name: &str) -> Result<(Arc<Layout>, Vec<InitialForm>), Refused> {
     let layout = shared.layout(name)?;
     let fields = shared.program.structs.get(name);
     let reads = fields.into_iter().flatten().map(|(_, ty)| {
         match type_name(ty).unwrap_or_default().as_str() {
-            "T" | "f64" => Read::Number,
-            "SMatrix" | "SVector" => Read::Matrix,
-            other => Read::Of(crate::text(other)),
+            "T" | "f64" => InitialForm::Number,
+            "SMatrix" | "SVector" => InitialForm::Matrix,
+            other => InitialForm::Of(crate::text(other)),
         }
     });
     Ok((layout, reads.collect()))

@@ -1,6 +1,6 @@
 //! A state as plain numbers, for compositions, which copy states.
 
-use crate::over::{fill, numbers};
+use crate::map_scalar::{fill, numbers};
 use crate::value::Value;
 
 /// How many numbers a state may have.

@@ -60,26 +60,26 @@ impl Parse for Forced {
 }
 
 /// An observable: its path and its shape.
-struct Shown {
+struct ObservableShape {
     path: Vec<Ident>,
     shape: Option<Ident>,
 }
 
-impl Parse for Shown {
+impl Parse for ObservableShape {
     fn parse(input: ParseStream) -> syn::Result<Self> {
         let path = Punctuated::<Ident, Token![.]>::parse_separated_nonempty(input)?;
         let shape = match input.parse::<Option<Token![as]>>()? {
             Some(_) => Some(input.parse()?),
             None => None,
         };
-        Ok(Shown {
+        Ok(ObservableShape {
             path: path.into_iter().collect(),
             shape,
         })
     }
 }
 
-impl Shown {
+impl ObservableShape {
     /// Its numbers, of the model, a state, the step and the workspace.
     fn numbers(&self) -> TokenStream {
         let path: Vec<String> = self.path.iter().map(ToString::to_string).collect();
@@ -144,8 +144,8 @@ pub struct Protocol {
     choice: Ident,
     coordinates: Option<syn::Expr>,
     start: Option<(Vec<Start>, Vec<Ident>)>,
-    observables: Vec<Shown>,
-    invariants: Vec<Shown>,
+    observables: Vec<ObservableShape>,
+    invariants: Vec<ObservableShape>,
 }
 
 impl Parse for Protocol {
@@ -208,7 +208,7 @@ impl Parse for Protocol {
             let _what: Ident = input.parse()?;
             let inside;
             braced!(inside in input);
-            let all = Punctuated::<Shown, Token![,]>::parse_terminated(&inside)?;
+            let all = Punctuated::<ObservableShape, Token![,]>::parse_terminated(&inside)?;
             syn::Result::Ok(all.into_iter().collect())
         };
         Ok(Protocol {
@@ -413,7 +413,7 @@ impl Protocol {
 
     fn observe(&self) -> syn::ImplItemFn {
         let (state, shown) = (&self.state.name, &self.observables);
-        let shown = shown.iter().map(Shown::numbers);
+        let shown = shown.iter().map(ObservableShape::numbers);
         syn::parse_quote! {
             fn observe(&self, state: &#state, out: &mut [f64]) {
                 #(let out = put(out, #shown);)*
@@ -423,7 +423,7 @@ impl Protocol {
 
     fn invariants(&self) -> syn::ImplItemFn {
         let (state, work, shown) = (&self.state.name, &self.work, &self.invariants);
-        let shown = shown.iter().map(Shown::numbers);
+        let shown = shown.iter().map(ObservableShape::numbers);
         syn::parse_quote! {
             fn invariants(&self, state: &#state, h: f64, work: Option<&#work>, out: &mut [f64]) {
                 #(let out = put(out, #shown);)*

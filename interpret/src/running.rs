@@ -3,10 +3,10 @@
 use crate::code::{Exit, Places, Routine};
 use crate::composed::Model;
 use crate::failure::Failure;
-use crate::opened::{Opened, Read, at};
+use crate::opened::{InitialForm, Opened, at};
 use crate::packed::Packed;
 use crate::recorded::{Fixed, Recordable, Recorded, Watched};
-use crate::value::{Frame, Kept, Layout, Struct, Value};
+use crate::value::{Frame, Layout, MatrixGroup, Struct, Value};
 use clebsch::card::{Card, Field, OpenError, PartSeen, Settings, Trajectory, chosen_solver};
 use clebsch::integrate::{Composition, Offer, Way, counted};
 use clebsch::kinetic::KineticWarning;
@@ -97,7 +97,7 @@ impl Opened {
         Ok(Box::new(Running {
             opened: self,
             card,
-            held: RefCell::new(Held { places, recorded }),
+            held: RefCell::new(TrajectoryStorage { places, recorded }),
             steps,
             h: settings.h,
             kinetic,
@@ -210,7 +210,7 @@ fn only_try(work: &mut Value<f64>) {
 
 /// The values of a struct from lists of numbers.
 fn collected(
-    (layout, reads): &(Arc<Layout>, Vec<Read>),
+    (layout, reads): &(Arc<Layout>, Vec<InitialForm>),
     fields: &'static [Field],
     lists: &[Vec<f64>],
 ) -> Result<Value<f64>, OpenError> {
@@ -226,7 +226,7 @@ fn collected(
 }
 
 /// A value of a field, read as its type asks.
-fn one(read: Read, field: &'static Field, list: &[f64]) -> Result<Value<f64>, OpenError> {
+fn one(read: InitialForm, field: &'static Field, list: &[f64]) -> Result<Value<f64>, OpenError> {
     use clebsch::groups::{invertible_map, nearest_rotation};
     use clebsch::linalg::Dense;
     let (name, rows, cols) = (field.name, field.rows, field.cols);
@@ -251,9 +251,9 @@ fn one(read: Read, field: &'static Field, list: &[f64]) -> Result<Value<f64>, Op
         Value::momentum(frame, &Value::of(matrix()?)).ok_or_else(wide)
     };
     Ok(match read {
-        Read::Number => Value::Real(f64::of_numbers(name, list)?),
-        Read::Matrix => Value::of(matrix()?),
-        Read::Of(kind) => match kind {
+        InitialForm::Number => Value::Real(f64::of_numbers(name, list)?),
+        InitialForm::Matrix => Value::of(matrix()?),
+        InitialForm::Of(kind) => match kind {
             "Rotation" => Value::Rotation(OfNumbers::of_numbers(name, list)?),
             "UnitQuaternion" => Value::Quaternion(OfNumbers::of_numbers(name, list)?),
             "RigidMotion" => Value::Motion(Box::new(OfNumbers::of_numbers(name, list)?)),
@@ -261,14 +261,14 @@ fn one(read: Read, field: &'static Field, list: &[f64]) -> Result<Value<f64>, Op
             "Orthogonal" => {
                 let nearest = nearest_rotation(&matrix()?);
                 let nearest = nearest.map_err(|e| initial(e.in_field(name)))?;
-                Value::Element(Kept::Orthogonal, nearest)
+                Value::Element(MatrixGroup::Orthogonal, nearest)
             }
             "Linear" => {
                 let given = matrix()?;
                 invertible_map(&given).map_err(|e| initial(e.in_field(name)))?;
-                Value::Element(Kept::Linear, given)
+                Value::Element(MatrixGroup::Linear, given)
             }
-            "Additive" => Value::Element(Kept::Field, matrix()?),
+            "Additive" => Value::Element(MatrixGroup::Field, matrix()?),
             "BodyMomentum" | "BodyMomentumMatrix" | "BodyImpulse" | "BodyPlaneImpulse" => {
                 momentum(Frame::Body)?
             }
@@ -289,12 +289,12 @@ enum Steps {
 }
 
 /// State and workspace, as values at places and as the numbers of tapes.
-struct Held {
+struct TrajectoryStorage {
     places: Places<f64>,
     recorded: Option<Recorded>,
 }
 
-impl Held {
+impl TrajectoryStorage {
     /// The places, with what the tapes computed.
     fn places(&mut self) -> &mut Places<f64> {
         if let Some(recorded) = &mut self.recorded {
@@ -351,7 +351,7 @@ impl Held {
 struct Running {
     opened: &'static Opened,
     card: &'static Card,
-    held: RefCell<Held>,
+    held: RefCell<TrajectoryStorage>,
     steps: Steps,
     h: f64,
     kinetic: Option<KineticWarning>,
@@ -371,11 +371,11 @@ impl Opened {
 
 impl Running {
     /// One step. After each of the model's own steps, calls `seen` with its share of the whole step and the state.
-    fn made(&mut self, seen: &mut dyn FnMut(f64, &mut Held)) -> Result<(), StepError> {
+    fn made(&mut self, seen: &mut dyn FnMut(f64, &mut TrajectoryStorage)) -> Result<(), StepError> {
         let held = self.held.get_mut();
         match &mut self.steps {
             Steps::Plain | Steps::Modified => {
-                let Held { places, recorded } = held;
+                let TrajectoryStorage { places, recorded } = held;
                 if !recorded.as_mut().is_some_and(|all| all.step(places)) {
                     let places = held.places();
                     let node = self.opened.node_of(places.get(at::STATE));

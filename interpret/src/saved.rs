@@ -50,7 +50,7 @@ impl Saved for Value<f64> {
             // Begun anew in every step.
             Value::Multipliers(_) | Value::Band(_) => {}
             // Made of the parameters.
-            Value::Extent(_) | Value::Around(_) => {}
+            Value::Extent(_) | Value::FunctionalSetting(_) => {}
             Value::Functional(held) => held.words(words),
             // No state or workspace holds these.
             Value::Turned(_)
@@ -101,7 +101,7 @@ impl Saved for Column<f64> {
             Column::Attitudes(list) => list.iter_mut().for_each(|x| x.words(words)),
             Column::Structs(_, fields, _) => fields.iter_mut().for_each(|f| f.words(words)),
             Column::Values(list) => list.iter_mut().for_each(|x| x.words(words)),
-            Column::Asked(_) => words.refuse(),
+            Column::Tracked(_) => words.refuse(),
         }
     }
 }

@@ -5,7 +5,7 @@ use clebsch::card::Card;
 use clebsch::line::{self, Attitude, Attitudes};
 use clebsch::{ParameterError, UnitQuaternion};
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::lattice::{ChainConfig, Lattice};
 use clebsch_core::line::Signs;
 use nalgebra::Matrix4;
 
@@ -25,7 +25,12 @@ pub struct Agreement {
 
 impl Agreement {
     /// The quantities of a card whose signs must agree. Fields of the card are copies of quantities.
-    pub fn of(signs: Vec<Signs>, lattice: &Lattice, choice: &Choice, card: &Card) -> Vec<Self> {
+    pub fn of(
+        signs: Vec<Signs>,
+        lattice: &Lattice,
+        choice: &ChainConfig,
+        card: &Card,
+    ) -> Vec<Self> {
         let each = signs.into_iter().filter_map(|signs| {
             let count = choice.sites_of(lattice, lattice.find(&signs.of)?);
             let of = ascii(&signs.of);

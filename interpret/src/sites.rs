@@ -22,11 +22,11 @@ pub enum Column<T: Real> {
     /// Any others.
     Values(Vec<Value<T>>),
     /// A list elsewhere that notes which of its values are read.
-    Asked(Arc<dyn Asked<T>>),
+    Tracked(Arc<dyn TrackedList<T>>),
 }
 
 /// A list that notes which of its sites are read.
-pub trait Asked<T: Real>: std::fmt::Debug + Send + Sync {
+pub trait TrackedList<T: Real>: std::fmt::Debug + Send + Sync {
     /// How many sites there are.
     fn len(&self) -> usize;
 
@@ -34,7 +34,7 @@ pub trait Asked<T: Real>: std::fmt::Debug + Send + Sync {
     fn at(&self, site: usize) -> Option<Value<T>>;
 }
 
-impl<T: Real> PartialEq for dyn Asked<T> {
+impl<T: Real> PartialEq for dyn TrackedList<T> {
     /// Never: the values are elsewhere.
     fn eq(&self, _: &Self) -> bool {
         false
@@ -93,7 +93,7 @@ impl<T: Real> Column<T> {
             Column::Attitudes(all) => all.len(),
             Column::Structs(_, _, count) => *count,
             Column::Values(all) => all.len(),
-            Column::Asked(list) => list.len(),
+            Column::Tracked(list) => list.len(),
         }
     }
 
@@ -109,7 +109,7 @@ impl<T: Real> Column<T> {
                 values: fields.iter().map(|f| f.get(site)).collect::<Option<_>>()?,
             }),
             Column::Values(all) => all.get(site)?.clone(),
-            Column::Asked(list) => list.at(site)?,
+            Column::Tracked(list) => list.at(site)?,
         })
     }
 
@@ -188,7 +188,7 @@ impl<T: Real> Column<T> {
                 *count = (*count).min(to);
             }
             Column::Values(all) => all.truncate(to),
-            Column::Asked(_) => {}
+            Column::Tracked(_) => {}
         }
     }
 
@@ -211,7 +211,7 @@ impl<T: Real> Column<T> {
                 )
             }
             Column::Values(all) => Column::Values(all.get(range)?.to_vec()),
-            Column::Asked(_) => return None,
+            Column::Tracked(_) => return None,
         })
     }
 

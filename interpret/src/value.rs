@@ -30,7 +30,7 @@ pub enum Frame {
 
 /// A group whose elements are kept as their matrices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kept {
+pub enum MatrixGroup {
     /// Rotations of n-dimensional space.
     Orthogonal,
     /// Invertible maps.
@@ -126,7 +126,7 @@ pub enum Value<T: Real> {
     /// A rigid motion of the plane.
     Plane(Box<PlaneMotion<T>>),
     /// An element kept as its matrix.
-    Element(Kept, Dense<T>),
+    Element(MatrixGroup, Dense<T>),
     /// A momentum of three components.
     Momentum(Frame, Vector3<T>),
     /// A momentum of any other shape.
@@ -170,15 +170,15 @@ pub enum Value<T: Real> {
     /// A search for the velocities of all sites together.
     Band(Box<line::AnyBand<T>>),
     /// A search for velocities.
-    Search(crate::newton::Held),
+    Search(crate::newton::SearchValue),
     /// Part of an array, from an offset on: the place of the array.
     Part(usize, usize),
     /// A domain of particles.
     Extent(functional::Extent),
     /// The setting of functionals of all sites.
-    Around(Box<functional::Around>),
+    FunctionalSetting(Box<functional::FunctionalSetting>),
     /// A functional of all sites.
-    Functional(functional::Held<T>),
+    Functional(functional::AnyFunctional<T>),
     /// An error.
     Failed(Box<Failure>),
 }

@@ -13,7 +13,7 @@ mod models;
 use clebsch::card::Settings;
 use clebsch::scalar::largest;
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::lattice::{ChainConfig, Lattice};
 use clebsch_core::pipeline;
 use clebsch_interpret::lines::{LineModel, LineTrajectory, NoLine};
 use matrix::{A, D};
@@ -21,10 +21,10 @@ use models::{Chain, H};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
-fn choice(chain: &Chain, n: usize) -> Choice {
+fn choice(chain: &Chain, n: usize) -> ChainConfig {
     let model = pipeline::parse_source(chain.source).expect("is a model");
     let lattice = Lattice::read(&model).expect("has labels");
-    let choice = Choice::representative(&lattice, 1);
+    let choice = ChainConfig::representative(&lattice, 1);
     let choice = choice.with_count(&lattice, "i", n).expect("has sites");
     match chain.ends {
         None => choice.with_ring(&lattice).expect("closes"),

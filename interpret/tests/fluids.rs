@@ -7,7 +7,7 @@ use clebsch::mesh::placement::{self, Jitter};
 use clebsch::mesh::{Domain, Nodes, Setting, Wall};
 use clebsch::nalgebra::{SMatrix, Vector2};
 use clebsch::saved::{Saved, Words};
-use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::lattice::{ChainConfig, Lattice};
 use clebsch_core::pipeline;
 use clebsch_interpret::lines::{LineModel, LineTrajectory};
 use clebsch_models::fluids::STATEMENTS;
@@ -28,10 +28,10 @@ fn source(file: usize) -> &'static str {
 }
 
 /// The number of particles, and of nodes if there is a grid.
-fn choice(source: &str, particles: usize, nodes: usize) -> Choice {
+fn choice(source: &str, particles: usize, nodes: usize) -> ChainConfig {
     let model = pipeline::parse_source(source).expect("is a model");
     let lattice = Lattice::read(&model).expect("has labels");
-    let mut choice = Choice::representative(&lattice, 1);
+    let mut choice = ChainConfig::representative(&lattice, 1);
     for label in &lattice.labels {
         let count = if label.grid { nodes } else { particles };
         choice = choice

@@ -9,7 +9,7 @@ mod steps;
 
 use clebsch::scalar::largest;
 use clebsch::{Dual, Real};
-use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::lattice::{ChainConfig, Lattice};
 use clebsch_core::pipeline;
 use clebsch_interpret::lines::{LineModel, LineTrajectory};
 use nalgebra::{Matrix3, Vector3};
@@ -24,7 +24,7 @@ fn ring(source: &str, numbers: &dyn Fn(&str) -> Option<Vec<f64>>) -> LineTraject
     let model = LineModel::read(source).expect("loops over sites take it");
     let statement = pipeline::parse_source(source).expect("is a model");
     let lattice = Lattice::read(&statement).expect("has labels");
-    let choice = Choice::representative(&lattice, 1);
+    let choice = ChainConfig::representative(&lattice, 1);
     let choice = choice.with_count(&lattice, "i", N).expect("has sites");
     let choice = choice.with_ring(&lattice).expect("closes");
     model.start(&choice, H, numbers).expect("starts")

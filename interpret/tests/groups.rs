@@ -6,22 +6,22 @@ mod steps;
 
 use steps::judged;
 
+#[path = "steps/rows/constraints.rs"]
+mod constraints;
 #[path = "steps/rows/fields.rs"]
 mod fields;
-#[path = "steps/rows/held.rs"]
-mod held;
 #[path = "steps/rows/maps.rs"]
 mod maps;
 #[path = "steps/rows/motions.rs"]
 mod motions;
 #[path = "steps/rows/quaternions.rs"]
 mod quaternions;
-#[path = "steps/rows/turns.rs"]
-mod turns;
+#[path = "steps/rows/rotations.rs"]
+mod rotations;
 
 #[test]
 fn rotations_of_the_plane_and_of_four_dimensions() {
-    judged(turns::ROWS);
+    judged(rotations::ROWS);
 }
 
 #[test]
@@ -46,5 +46,5 @@ fn numbers_vectors_and_matrices() {
 
 #[test]
 fn constraints_that_are_held() {
-    judged(held::ROWS);
+    judged(constraints::ROWS);
 }

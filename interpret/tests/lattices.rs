@@ -10,7 +10,7 @@ mod prescribed;
 mod side_by_side;
 
 use clebsch::card::{Card, Settings, Trajectory};
-use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::lattice::{ChainConfig, Lattice};
 use clebsch_core::pipeline;
 use clebsch_models::Case;
 use side_by_side::compare;
@@ -32,10 +32,10 @@ clebsch::model! {
     }
 }
 
-fn choice(source: &str, count: usize, ring: bool, ends: [&str; 2]) -> Choice {
+fn choice(source: &str, count: usize, ring: bool, ends: [&str; 2]) -> ChainConfig {
     let model = pipeline::parse_source(source).unwrap();
     let lattice = Lattice::read(&model).unwrap();
-    let choice = Choice::representative(&lattice, 1);
+    let choice = ChainConfig::representative(&lattice, 1);
     let choice = choice.with_count(&lattice, "i", count).unwrap();
     match ring {
         true => choice.with_ring(&lattice).unwrap(),
@@ -318,7 +318,7 @@ fn what_every_site_keeps_is_one_invariant_with_a_row_for_each_and_of_a_line_thei
 fn more_sites_than_fit_into_memory_are_refused_at_once() {
     let model = pipeline::parse_source(TODA).unwrap();
     let lattice = Lattice::read(&model).unwrap();
-    let choice = Choice::representative(&lattice, 1);
+    let choice = ChainConfig::representative(&lattice, 1);
     let choice = choice.with_count(&lattice, "i", 1_000_000_000_000).unwrap();
     let told = clebsch_interpret::card_on_lattice(TODA, &choice).expect_err("is refused");
     assert!(told.to_string().contains("`i = 1000000000000`"), "{told}");

@@ -11,7 +11,7 @@ mod steps;
 
 use clebsch::card::{Card, Field, Settings, Trajectory};
 use clebsch::scalar::largest;
-use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::lattice::{ChainConfig, Lattice};
 use clebsch_core::pipeline;
 use clebsch_interpret::lines::LineModel;
 use clebsch_oracle::oracle::dual::{Dual, Number};
@@ -306,7 +306,7 @@ fn on_a_line_of_sites_it_is_one_term_too() {
         let source = format!("model Ln {{ {LINE} {term}; }}");
         let model = pipeline::parse_source(&source).expect("is a model");
         let lattice = Lattice::read(&model).expect("has labels");
-        let choice = Choice::representative(&lattice, 1);
+        let choice = ChainConfig::representative(&lattice, 1);
         let choice = choice.with_count(&lattice, "i", 6).expect("has sites");
         let mut random = Source::seeded(8);
         let mut list = || -> Vec<f64> { (0..7).map(|_| random.between(-1.0, 1.0)).collect() };

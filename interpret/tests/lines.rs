@@ -5,21 +5,21 @@
 
 // Constraints and Newton's method have tests of their own.
 #[allow(dead_code)]
-#[path = "lines/beside.rs"]
-mod beside;
+#[path = "lines/comparison.rs"]
+mod comparison;
 #[allow(dead_code)]
 #[path = "lines/compiled.rs"]
 mod compiled;
 
-use beside::{choice, same, split, start};
 use clebsch::card::{Field, Invariant};
 use clebsch_core::expr::symbol::ascii;
 use clebsch_interpret::lines::{LineModel, NoLine};
-use compiled::{Case, Data, Line, TodaLine, WaterLine, newton, together};
+use comparison::{choice, same, split, start};
+use compiled::{Case, Data, Line, TodaLine, WaterLine, coupled_velocities, newton};
 
 #[test]
 fn every_line_of_the_gallery_equals_the_compiled_one_to_the_last_bit() {
-    beside::equal_to_the_last_bit(compiled::all().into_iter().chain(newton::all()));
+    comparison::equal_to_the_last_bit(compiled::all().into_iter().chain(newton::all()));
 }
 
 #[test]
@@ -28,7 +28,7 @@ fn the_site_of_a_wrong_value_is_named() {
     let model = LineModel::read(source).expect("is read");
     let case = Case::new(50, None);
     let numbers = compiled::toda(&case);
-    let started = |data: &Data| beside::refused(&model, source, &case, data);
+    let started = |data: &Data| comparison::refused(&model, source, &case, data);
     let compiled = |data: &Data| TodaLine::of(&case, data).err().unwrap_or_default();
     let wrong = numbers.with("q", |q| q[37] = f64::NAN);
     assert_eq!(started(&wrong), compiled(&wrong), "a number at site 37");
@@ -77,7 +77,7 @@ fn a_step_beyond_a_fold_is_refused_alike_and_names_its_site() {
     let wild = calm.with("q", |q| q[7] = 40.0).with("k", |k| k[0] = -0.8);
     let told = newton::SteepLine::of(&case, &wild).map(|_| ());
     let told = told.expect_err("is refused");
-    assert_eq!(beside::refused(&model, source, &case, &wild), told);
+    assert_eq!(comparison::refused(&model, source, &case, &wild), told);
     assert!(
         told.contains("site 7") && told.contains("percent"),
         "{told}"
@@ -87,7 +87,7 @@ fn a_step_beyond_a_fold_is_refused_alike_and_names_its_site() {
 /// Long, since every line is derived body by body.
 #[test]
 fn every_line_moves_as_its_bodies_do() {
-    beside::move_as_bodies_do(compiled::all(), 5);
+    comparison::move_as_bodies_do(compiled::all(), 5);
 }
 
 #[test]
@@ -103,23 +103,23 @@ fn a_term_that_is_left_out_is_seen() {
         ),
     ];
     for (source, term, rest) in without {
-        beside::another_term_is_seen(&compiled::all(), source, term, rest);
+        comparison::another_term_is_seen(&compiled::all(), source, term, rest);
     }
 }
 
 #[test]
 fn velocities_of_all_sites_are_found_together_to_the_last_bit_and_as_those_of_bodies() {
-    beside::equal_to_the_last_bit(together::all());
-    beside::move_as_bodies_do(together::all(), 5);
-    beside::go_on(together::all());
+    comparison::equal_to_the_last_bit(coupled_velocities::all());
+    comparison::move_as_bodies_do(coupled_velocities::all(), 5);
+    comparison::go_on(coupled_velocities::all());
 }
 
 #[test]
 fn bodies_whose_velocities_are_joined_run_with_sixty_segments() {
-    let own = together::all().remove(0);
+    let own = coupled_velocities::all().remove(0);
     let case = Case::new(60, None);
     let settings = clebsch::card::Settings::step(case.h);
-    let (card, mut line) = beside::opened(own.source, &case, &(own.data)(&case), settings);
+    let (card, mut line) = comparison::opened(own.source, &case, &(own.data)(&case), settings);
     let told = "one for any number of sites";
     assert!(card.summary.contains(told), "{}", card.summary);
     line.step().expect("steps");
@@ -130,7 +130,7 @@ fn bodies_whose_velocities_are_joined_run_with_sixty_segments() {
 
 #[test]
 fn a_line_is_written_down_and_goes_on_to_the_last_bit() {
-    beside::go_on(compiled::all());
+    comparison::go_on(compiled::all());
 }
 
 #[test]

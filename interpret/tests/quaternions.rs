@@ -4,31 +4,31 @@
 #![allow(missing_docs, mixed_script_confusables)]
 
 #[allow(dead_code)]
-#[path = "lines/beside.rs"]
-mod beside;
+#[path = "lines/comparison.rs"]
+mod comparison;
 #[allow(dead_code)]
 #[path = "lines/compiled.rs"]
 mod compiled;
 
-use beside::{choice, values};
 use clebsch::card::Settings;
 use clebsch_interpret::lines::LineModel;
+use comparison::{choice, values};
 use compiled::{Case, quaternions};
 
 #[test]
 fn lines_in_quaternions_equal_the_compiled_ones_to_the_last_bit() {
-    beside::equal_to_the_last_bit(quaternions::all());
+    comparison::equal_to_the_last_bit(quaternions::all());
 }
 
 /// Long, since every line is derived body by body.
 #[test]
 fn lines_in_quaternions_move_as_their_bodies_do() {
-    beside::move_as_bodies_do(quaternions::all(), 5);
+    comparison::move_as_bodies_do(quaternions::all(), 5);
 }
 
 #[test]
 fn a_line_in_quaternions_is_written_down_and_goes_on_to_the_last_bit() {
-    beside::go_on(quaternions::all());
+    comparison::go_on(quaternions::all());
 }
 
 #[test]
@@ -37,7 +37,7 @@ fn a_term_that_is_left_out_is_seen() {
     let rod = (quaternions::ROD, "\n        - (2*h/s)*dot(U, K*U)", "");
     let spins = (all[1].source, "(4*c*h/s)*re(U)", "0");
     for (source, term, rest) in [rod, spins] {
-        beside::another_term_is_seen(&all, source, term, rest);
+        comparison::another_term_is_seen(&all, source, term, rest);
     }
 }
 

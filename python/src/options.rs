@@ -1,7 +1,7 @@
 //! The options of a run: converts the dictionary of the Python code to a request.
 
 use crate::errors::exception;
-use clebsch_check::Which;
+use clebsch_check::StepSelection;
 use clebsch_cli::session::Request;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -24,12 +24,12 @@ where
 }
 
 /// The steps to check against the action as stated.
-fn judged(options: &Bound<'_, PyDict>) -> PyResult<Which> {
+fn judged(options: &Bound<'_, PyDict>) -> PyResult<StepSelection> {
     let asked: Option<String> = option(options, "judge", "None, \"sample\" or \"all\"")?;
     match asked.as_deref() {
-        None => Ok(Which::None),
-        Some("sample") => Ok(Which::Sample),
-        Some("all") => Ok(Which::All),
+        None => Ok(StepSelection::None),
+        Some("sample") => Ok(StepSelection::Sample),
+        Some("all") => Ok(StepSelection::All),
         Some(other) => {
             let text = format!("judge: expected None, \"sample\" or \"all\", found {other:?}");
             Err(exception(options.py(), "DataError", &text, &[]))

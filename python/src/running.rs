@@ -3,7 +3,7 @@
 use crate::errors::failed;
 use crate::guarded::guarded;
 use crate::results::{arrays, fields, outcomes, row};
-use clebsch_check::Which;
+use clebsch_check::StepSelection;
 use clebsch_cli::session::{self, Planned};
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
@@ -31,7 +31,7 @@ impl Running {
     pub(crate) fn start(
         py: Python<'_>,
         planned: Planned,
-        which: Which,
+        which: StepSelection,
         sampled: bool,
         file: &str,
     ) -> PyResult<Self> {

@@ -5,7 +5,7 @@ mod segment;
 
 use crate::groups::{Additive, Group, Linear};
 use crate::linalg::{Dense, determinant, singular_ratio, singular_ratio_of};
-use crate::said::Plain;
+use crate::number_format::Plain;
 use crate::scalar::Real;
 use crate::solvers::largest_step::search_of;
 use core::fmt;

@@ -5,7 +5,7 @@ use crate::domain::{Contact, Domain, Function};
 use crate::groups::{NotARigidMotion, NotARotation, NotInvertible};
 use crate::line::{NoReaction, NoRoot, Place};
 use crate::mesh::MeshError;
-use crate::said::{self, place};
+use crate::number_format::{self, place};
 use crate::solvers::left_factor::{LeftFactorError, Unsolved};
 use crate::solvers::moser_veselov::{MoserVeselovError, PoinsotError};
 use crate::solvers::newton::NewtonError;
@@ -523,7 +523,7 @@ impl fmt::Display for StepCause {
             ),
             Self::AtSite { at, cause, works } => {
                 write!(f, "{at}: {cause}")?;
-                said::works(f, *works)
+                number_format::works(f, *works)
             }
             Self::Functional {
                 quantity,
@@ -531,7 +531,7 @@ impl fmt::Display for StepCause {
                 works,
             } => {
                 write!(f, "`{quantity}`: {cause}")?;
-                said::works(f, *works)
+                number_format::works(f, *works)
             }
             Self::Unread { what } => write!(
                 f,

@@ -33,11 +33,11 @@ pub mod language;
 pub mod linalg;
 pub mod line;
 pub mod mesh;
+mod number_format;
 #[doc(hidden)]
 pub mod of_numbers;
 pub mod prelude;
 pub mod record;
-mod said;
 pub mod saved;
 pub mod scalar;
 mod snapshot;

@@ -34,12 +34,12 @@ pub fn put(value: impl Shown, out: &mut [f64]) -> &mut [f64] {
 }
 
 /// The numbers of several fields, taken one field after the other.
-pub struct Given<'a> {
+pub struct FieldNumbers<'a> {
     fields: core::slice::Iter<'a, Field>,
     values: core::slice::Iter<'a, Vec<f64>>,
 }
 
-impl<'a> Given<'a> {
+impl<'a> FieldNumbers<'a> {
     /// The fields of a card, and the numbers of each.
     #[must_use]
     pub fn new(fields: &'a [Field], values: &'a [Vec<f64>]) -> Self {

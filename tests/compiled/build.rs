@@ -63,11 +63,11 @@ fn write_model(out: &mut String, model: &Model, seed: u64) -> std::fmt::Result {
         out,
         "#![allow(missing_docs, non_snake_case, deprecated, clippy::all)]"
     )?;
-    writeln!(out, "use crate::Given;")?;
+    writeln!(out, "use crate::NamedValues;")?;
     writeln!(out, "clebsch::model! {{ pub {} }}", model.text())?;
     writeln!(
         out,
-        "pub fn residual(h: f64, given: &Given) -> Result<Vec<f64>, String> {{\n\
+        "pub fn residual(h: f64, given: &NamedValues) -> Result<Vec<f64>, String> {{\n\
          let model = {name}::<f64>::new({name}Parameters {{ {parameters} }}).map_err(|e| e.to_string())?;\n\
          let at = |level: i8| -> Result<{name}Configuration<f64>, String> {{ Ok({name}Configuration {{ {configuration} }}) }};\n\
          Ok(model.balance(h, &at(-1)?, &at(0)?, &at(1)?).iter().copied().collect())\n}}"

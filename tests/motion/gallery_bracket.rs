@@ -18,8 +18,8 @@ use clebsch_core::expr::shape::Structure;
 use clebsch_core::interpret::{Assignment, Matrix};
 use clebsch_core::{Derivation, derive_source};
 use clebsch_models::Case;
-use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::physics::random_states::Draws;
 
 /// Tolerance relative to the largest entry, well above the rounding error of a product of three matrices with up to twelve rows and
 /// entries of order one to ten.

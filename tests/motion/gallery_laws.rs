@@ -4,9 +4,9 @@
 
 use clebsch::card::{Card, Conserved, Field, OpenError, Settings, Trajectory};
 use clebsch_models::Case;
+use clebsch_oracle::physics::drift_detection::trend;
 use clebsch_oracle::physics::measure::worse;
 use clebsch_oracle::physics::order::orders;
-use clebsch_oracle::physics::trend::trend;
 use rand_xoshiro::Xoshiro256StarStar;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 

@@ -15,17 +15,17 @@ fn first_step(card: &Card, case: &Case, h: f64, order: Option<u32>) -> Result<()
     };
     let mut trajectory = match (card.open)(&case.parameters, &case.initial, settings) {
         Ok(trajectory) => trajectory,
-        Err(OpenError::Start(StartError::Refused(cause))) => return Err(told(&cause)),
+        Err(OpenError::Start(StartError::Refused(cause))) => return Err(message(&cause)),
         Err(other) => panic!("{}: {other}", card.kebab),
     };
     step(trajectory.as_mut())
 }
 
 fn step(trajectory: &mut dyn Trajectory) -> Result<(), String> {
-    trajectory.step().map_err(|e| told(&e.cause))
+    trajectory.step().map_err(|e| message(&e.cause))
 }
 
-fn told(cause: &StepCause) -> String {
+fn message(cause: &StepCause) -> String {
     cause.to_string()
 }
 

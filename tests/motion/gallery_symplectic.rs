@@ -14,8 +14,8 @@ use clebsch::{
 };
 use clebsch_models::Case;
 use clebsch_oracle::handwritten::attitude::Vector;
-use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::physics::random_states::Draws;
 use clebsch_oracle::physics::symplectic::{
     defect_of_motion, defect_of_product, defect_of_rotations,
 };

@@ -5,10 +5,10 @@ use super::generated_motion::{GeneratedBody, GeneratedTop};
 use clebsch_oracle::handwritten::free_body::FreeBody;
 use clebsch_oracle::handwritten::heavy_top::HeavyTop;
 use clebsch_oracle::physics::cases::{Start, hanging_top, lagrange_top, symmetric_body};
-use clebsch_oracle::physics::draws::Draws;
-use clebsch_oracle::physics::faults::{Fault, FaultyTop};
+use clebsch_oracle::physics::faulty_steppers::{Fault, FaultyTop};
 use clebsch_oracle::physics::measure::{apart, worse};
 use clebsch_oracle::physics::motion::Motion;
+use clebsch_oracle::physics::random_states::Draws;
 
 /// About twenty rounding errors of numbers of order one. Momenta are compared relative to |mu|.
 const ONE_STEP: f64 = 1e-14;

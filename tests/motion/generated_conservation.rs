@@ -7,11 +7,11 @@ use clebsch_oracle::physics::cases::Start;
 use clebsch_oracle::physics::cases::{
     asymmetric_body, flat_body, generic_top, hanging_top, lagrange_top, steady_body, symmetric_body,
 };
+use clebsch_oracle::physics::drift_detection::trend;
 use clebsch_oracle::physics::measure::worse;
 use clebsch_oracle::physics::measure::{energies, free_drift, top_drift};
 use clebsch_oracle::physics::motion::Motion;
-use clebsch_oracle::physics::trend::trend;
-use clebsch_oracle::physics::truth::inverse_inertia;
+use clebsch_oracle::physics::taylor_reference::inverse_inertia;
 
 const MILLION: u64 = 1_000_000;
 

@@ -5,7 +5,7 @@ use super::generated_motion::{GeneratedBody, GeneratedTop};
 use clebsch_oracle::physics::cases::{Start, asymmetric_body, generic_top, lagrange_top};
 use clebsch_oracle::physics::motion::Motion;
 use clebsch_oracle::physics::order::{confirms, errors, orders};
-use clebsch_oracle::physics::truth::{Phase, flow};
+use clebsch_oracle::physics::taylor_reference::{Phase, flow};
 use clebsch_oracle::reference::asymmetric_body_errors;
 
 /// Rounding error of the least accurate numbers in an error: a few thousand steps of the motion and the series.

@@ -9,8 +9,8 @@ use clebsch_models::free_body::{FreeBody, FreeBodyInitial, FreeBodyParameters};
 use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters};
 use clebsch_oracle::handwritten::attitude::Vector;
 use clebsch_oracle::physics::cases::Start;
-use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::physics::random_states::Draws;
 use clebsch_oracle::physics::symplectic::{Jacobian, defect};
 
 /// Tolerance well above the rounding error of a product of three 6 x 6 matrices with entries of order one to ten.

@@ -9,13 +9,13 @@ use clebsch_oracle::handwritten::principal_axes::PrincipalAxes;
 use clebsch_oracle::physics::cases::{
     Start, asymmetric_body, flat_body, generic_top, hanging_top, lagrange_top, symmetric_body,
 };
-use clebsch_oracle::physics::draws::Draws;
-use clebsch_oracle::physics::faults::{Fault, FaultyTop};
+use clebsch_oracle::physics::drift_detection::trend;
+use clebsch_oracle::physics::faulty_steppers::{Fault, FaultyTop};
 use clebsch_oracle::physics::measure::{apart, energies, free_drift, top_drift};
 use clebsch_oracle::physics::motion::Motion;
 use clebsch_oracle::physics::order::{confirms, errors, orders};
-use clebsch_oracle::physics::trend::trend;
-use clebsch_oracle::physics::truth::{Phase, flow, inverse_inertia};
+use clebsch_oracle::physics::random_states::Draws;
+use clebsch_oracle::physics::taylor_reference::{Phase, flow, inverse_inertia};
 use clebsch_oracle::physics::{against_reference, measure};
 use clebsch_oracle::reference::{TOLERANCE, asymmetric_body_errors, body_sym};
 

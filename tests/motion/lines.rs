@@ -15,24 +15,24 @@ mod action;
 mod against_hand;
 #[path = "lines/banded_by_hand.rs"]
 mod banded_by_hand;
+#[path = "lines/constraints.rs"]
+mod constraints;
 #[path = "lines/experiments.rs"]
 mod experiments;
 #[path = "lines/flaschka.rs"]
 mod flaschka;
-#[path = "lines/held.rs"]
-mod held;
 #[path = "lines/laws.rs"]
 mod laws;
 #[path = "lines/models/mod.rs"]
 mod models;
+#[path = "lines/quaternion_chains.rs"]
+mod quaternion_chains;
+#[path = "lines/reflection.rs"]
+mod reflection;
 #[path = "lines/rossby.rs"]
 mod rossby;
 #[path = "lines/shear.rs"]
 mod shear;
-#[path = "lines/turns.rs"]
-mod turns;
-#[path = "lines/walls.rs"]
-mod walls;
 
 use action::{stationarity, stationarity_weighed};
 use clebsch::line::LineError;

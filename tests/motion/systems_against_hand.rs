@@ -27,8 +27,8 @@ use clebsch_oracle::handwritten::coupled_bodies::Pair;
 use clebsch_oracle::handwritten::free_body_spatial::seen_from_space;
 use clebsch_oracle::handwritten::heavy_top_spatial::SpatialTop;
 use clebsch_oracle::physics::cases::Start;
-use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::physics::random_states::Draws;
 
 /// About thirty rounding errors of numbers of order one, for data without amplification.
 const ONE_STEP: f64 = 1e-14;

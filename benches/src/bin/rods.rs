@@ -90,7 +90,7 @@ fn generated(n: usize, h: f64) -> Run {
 /// The run with PyElastica, or an error message.
 fn elastica(segments: usize) -> Result<Run, String> {
     let (result, count) = (format!("rod-{segments}.json"), segments.to_string());
-    let read = python::told("rod.py", &result, &["--segments", &count])?;
+    let read = python::run_script("rod.py", &result, &["--segments", &count])?;
     let path = read["path"].as_array().into_iter().flatten();
     Ok(Run {
         path: path.filter_map(Value::as_f64).collect(),

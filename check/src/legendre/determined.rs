@@ -2,7 +2,7 @@
 //! lost. Takes the momenta; compares them with the momenta at rest.
 
 use super::{Legendre, Momentum, NoMomentum, Velocities, copy, mean};
-use crate::moved::Velocity;
+use crate::displacement::Velocity;
 use crate::number::larger;
 use crate::sites::Moving;
 

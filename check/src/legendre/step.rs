@@ -2,14 +2,14 @@
 //! the step; gives `-D1 L` by the components of each configuration.
 
 use super::{Legendre, NoMomentum, Velocities, copy, most};
+use crate::displacement::moved;
 use crate::evaluate::Here;
 use crate::lagrangian::derivatives;
-use crate::moved::moved;
 use crate::number::UNIT;
-use crate::refined::Block;
 use crate::scene::{Scene, Varied};
 use crate::setup::{Numbers, Setup};
 use crate::sites::{Moving, varied};
+use crate::small_step_limit::Block;
 use crate::stated::Role;
 
 /// Configurations whose derivatives are taken together.

@@ -1,7 +1,7 @@
 //! The sites of a case, if the model has labels: the names that expressions can read there, and the element of
 //! a list or an array for each site.
 
-use super::chosen;
+use super::chain_choice;
 use super::copies::{Base, Copies, Group, base};
 use super::fluid::Fluid;
 use super::location::File;
@@ -11,7 +11,7 @@ use super::sites::Site;
 use super::stated::Stated;
 use crate::terminal::failure::Failure;
 use clebsch::card::Field;
-use clebsch_core::lattice::Choice;
+use clebsch_core::lattice::ChainConfig;
 use clebsch_core::lattice::value::SiteData;
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -21,7 +21,7 @@ use toml::de::DeTable;
 /// The sites of a case.
 pub(super) struct AtSites<'a> {
     pub stated: &'a Stated,
-    pub choice: Choice,
+    pub choice: ChainConfig,
     pub fluid: Option<Fluid>,
     copies: Copies,
     /// Expressions by their texts, each read once for all sites.
@@ -35,7 +35,7 @@ impl<'a> AtSites<'a> {
         top: &DeTable<'_>,
         stated: &'a Stated,
     ) -> Result<Self, Failure> {
-        let choice = chosen::of_case(file, top, stated)?;
+        let choice = chain_choice::of_case(file, top, stated)?;
         let copies = choice
             .as_ref()
             .and_then(|choice| Copies::of(stated, choice));

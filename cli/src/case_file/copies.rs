@@ -4,7 +4,7 @@
 use super::stated::Stated;
 use clebsch::card::Field;
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{Choice, ExpandedModel, Kind, Lattice, unfold};
+use clebsch_core::lattice::{ChainConfig, ExpandedModel, Kind, Lattice, unfold};
 use clebsch_core::syntax::ast::Statement;
 use std::borrow::Cow;
 use std::collections::HashSet;
@@ -41,7 +41,7 @@ pub(crate) struct Copies {
 
 impl Copies {
     /// The copies for a choice; `None` if the model cannot be expanded.
-    pub(crate) fn of(stated: &Stated, choice: &Choice) -> Option<Self> {
+    pub(crate) fn of(stated: &Stated, choice: &ChainConfig) -> Option<Self> {
         let lattice = &stated.lattice;
         let counts = lattice.quantities.iter();
         let counts = counts.map(|q| choice.sites_of(lattice, q));
@@ -96,7 +96,7 @@ impl Copies {
     }
 
     /// The copies without expanding the model.
-    fn counted(lattice: &Lattice, choice: &Choice) -> Self {
+    fn counted(lattice: &Lattice, choice: &ChainConfig) -> Self {
         let mut of_ends = Vec::new();
         let mut held: Vec<(&str, bool)> = Vec::new();
         for (last, list) in lattice.ends.iter().enumerate() {

@@ -8,7 +8,7 @@ use super::keys::quantity_of;
 use super::location::File;
 use super::motion::{Motion, Start};
 use super::scope::Scope;
-use super::table::{Found, Table};
+use super::table::{CaseValue, Table};
 use super::taken_as::TakenAs;
 use super::value::expected;
 use super::velocity::Way;
@@ -62,7 +62,7 @@ impl Fields<'_> {
                 let message = format!("missing table [{}] with keys {keys}", table.name);
                 return Err(self.file.wrong(None, &message));
             }
-            self.known(table)?;
+            self.reject_unknown_keys(table)?;
         }
         let sites = self.sites;
         let mut all = Vec::with_capacity(table.fields.len());
@@ -71,7 +71,7 @@ impl Fields<'_> {
             all.push(self.field(table, index, field, base.as_ref())?);
         }
         if self.sites.is_some() {
-            self.known(table)?;
+            self.reject_unknown_keys(table)?;
         }
         Ok(all)
     }
@@ -97,7 +97,7 @@ impl Fields<'_> {
             }
             // A misspelt key is reported first.
             if base.is_none() {
-                self.known(table)?;
+                self.reject_unknown_keys(table)?;
             }
             return Err(self.missing(table, field, base));
         };
@@ -125,7 +125,7 @@ impl Fields<'_> {
     fn second(
         &self,
         table: &Table<'_, '_>,
-        found: &Found<'_, '_, '_>,
+        found: &CaseValue<'_, '_, '_>,
         (index, field): (usize, &Field),
         base: Option<&Base<'_>>,
     ) -> Option<Failure> {
@@ -235,7 +235,7 @@ impl Fields<'_> {
         self.file.wrong(None, &message)
     }
 
-    fn see(&mut self, found: &Found<'_, '_, '_>) {
+    fn see(&mut self, found: &CaseValue<'_, '_, '_>) {
         let seen = self.seen.entry(found.table).or_default();
         if !seen.contains(&*found.key.name) {
             seen.insert(found.key.name.to_string());

@@ -16,7 +16,7 @@ use crate::terminal::failure::Failure;
 use clebsch::mesh::{Domain, Voronoi};
 use clebsch::nalgebra::SVector;
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{Choice, Kind, Quantity};
+use clebsch_core::lattice::{ChainConfig, Kind, Quantity};
 use clebsch_interpret::AtParticles;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -50,7 +50,7 @@ pub(super) struct Fluid {
 struct Reader<'a> {
     file: &'a File<'a>,
     stated: &'a Stated,
-    choice: &'a Choice,
+    choice: &'a ChainConfig,
     space: &'a Space,
     scope: Scope,
     /// The positions of the nodes of the grid, and their weights.
@@ -82,7 +82,7 @@ impl From<Fault> for Wrong {
     }
 }
 
-type Given<'a, 'i> = Option<&'a Spanned<DeValue<'i>>>;
+type OptionalValue<'a, 'i> = Option<&'a Spanned<DeValue<'i>>>;
 
 impl Fluid {
     /// Reads the fluid of a case; `None` if the model is not a fluid.
@@ -90,7 +90,7 @@ impl Fluid {
         file: &File<'_>,
         top: &DeTable<'_>,
         stated: &Stated,
-        choice: &Choice,
+        choice: &ChainConfig,
     ) -> Result<Option<Fluid>, Failure> {
         let Some(space) = Space::read(file, top, stated)? else {
             return Ok(None);
@@ -181,7 +181,7 @@ impl Reader<'_> {
         self.stated.lattice.is_grid(q.label)
     }
 
-    fn keep(&mut self, key: &str, numbers: Vec<f64>, size: usize, value: Given<'_, '_>) {
+    fn keep(&mut self, key: &str, numbers: Vec<f64>, size: usize, value: OptionalValue<'_, '_>) {
         let line = value.map_or(0, |v| self.file.line(&v.span()));
         let column = Column {
             numbers,
@@ -192,13 +192,13 @@ impl Reader<'_> {
         self.fluid.used.insert(key.to_owned());
     }
 
-    fn wrong(&self, key: &str, value: Given<'_, '_>, message: &str) -> Failure {
+    fn wrong(&self, key: &str, value: OptionalValue<'_, '_>, message: &str) -> Failure {
         let span = value.map(|v| v.span());
         self.file.wrong(span.as_ref(), &format!("{key}: {message}"))
     }
 
     /// The failure for a mistake in a part of a value.
-    fn wrong_part(&self, key: &str, value: Given<'_, '_>, wrong: &Wrong) -> Failure {
+    fn wrong_part(&self, key: &str, value: OptionalValue<'_, '_>, wrong: &Wrong) -> Failure {
         match &wrong.at {
             Some(span) => self
                 .file
@@ -208,7 +208,7 @@ impl Reader<'_> {
     }
 
     /// Where particles are.
-    fn places(&mut self, q: &Quantity, value: Given<'_, '_>) -> Result<(), Failure> {
+    fn places(&mut self, q: &Quantity, value: OptionalValue<'_, '_>) -> Result<(), Failure> {
         let key = ascii(&q.name.text);
         let named = format!("initial.{key}");
         let Some(given) = value else {
@@ -265,7 +265,7 @@ impl Reader<'_> {
 
     /// Reads a field other than the positions of particles. A missing field is reported later, when the card is
     /// filled.
-    fn beside_places(&mut self, q: &Quantity, value: Given<'_, '_>) -> Result<(), Failure> {
+    fn beside_places(&mut self, q: &Quantity, value: OptionalValue<'_, '_>) -> Result<(), Failure> {
         let (Some(given), Some(_)) = (value, q.shape.components()) else {
             return Ok(());
         };
@@ -279,7 +279,7 @@ impl Reader<'_> {
 
     /// A parameter at particles or at nodes.
     #[allow(clippy::cast_precision_loss)]
-    fn parameter(&mut self, q: &Quantity, value: Given<'_, '_>) -> Result<(), Failure> {
+    fn parameter(&mut self, q: &Quantity, value: OptionalValue<'_, '_>) -> Result<(), Failure> {
         let key = ascii(&q.name.text);
         let named = format!("parameters.{key}");
         let read = match value {

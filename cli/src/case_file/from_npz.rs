@@ -25,7 +25,7 @@ pub(super) fn is_meant(value: &DeValue<'_>) -> bool {
 
 /// The shapes and sites that a quantity accepts from an array.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Wanted<'a> {
+pub(super) struct AcceptedShapes<'a> {
     /// The accepted shapes of a value.
     pub values: &'a [Vec<usize>],
     /// The sites of the quantity, if it has sites.
@@ -46,12 +46,12 @@ pub(super) struct Fault {
 pub(super) struct Arrays {
     folder: PathBuf,
     files: RefCell<BTreeMap<PathBuf, Rc<Archive>>>,
-    taken: RefCell<BTreeMap<usize, Rc<Taken>>>,
+    taken: RefCell<BTreeMap<usize, Rc<ArrayValues>>>,
 }
 
 /// The values of a quantity.
 #[derive(Clone, Debug)]
-pub(super) struct Taken {
+pub(super) struct ArrayValues {
     numbers: Vec<f64>,
     /// The shape of a value.
     shape: Vec<usize>,
@@ -77,8 +77,8 @@ impl Arrays {
         &self,
         value: &Spanned<DeValue<'_>>,
         named: &str,
-        wanted: Wanted<'_>,
-    ) -> Result<Rc<Taken>, Fault> {
+        wanted: AcceptedShapes<'_>,
+    ) -> Result<Rc<ArrayValues>, Fault> {
         let start = value.span().start;
         if let Some(known) = self.taken.borrow().get(&start) {
             return Ok(known.clone());
@@ -92,8 +92,8 @@ impl Arrays {
         &self,
         value: &Spanned<DeValue<'_>>,
         named: &str,
-        wanted: Wanted<'_>,
-    ) -> Result<Taken, Fault> {
+        wanted: AcceptedShapes<'_>,
+    ) -> Result<ArrayValues, Fault> {
         let whole = |why: String| Fault {
             why,
             at: value.span(),
@@ -183,7 +183,7 @@ impl Arrays {
                 numbers.get(at).copied().unwrap_or_default()
             )));
         }
-        Ok(Taken {
+        Ok(ArrayValues {
             numbers,
             shape: fit.value,
             places: rows.map(|r| r.iter().enumerate().map(|(at, site)| (*site, at)).collect()),
@@ -202,7 +202,7 @@ impl Arrays {
     }
 }
 
-impl Taken {
+impl ArrayValues {
     /// The numbers of a site. If the quantity has no sites, all its numbers.
     pub(super) fn at(&self, site: usize) -> Result<&[f64], String> {
         let Some(places) = &self.places else {
@@ -251,7 +251,12 @@ struct Fit {
 
 /// The way to read an array of a shape. Unless samples are requested, it tries to read the array without
 /// samples first.
-fn fit(shape: &[usize], wanted: Wanted<'_>, told: Option<&[usize]>, sampled: bool) -> Option<Fit> {
+fn fit(
+    shape: &[usize],
+    wanted: AcceptedShapes<'_>,
+    told: Option<&[usize]>,
+    sampled: bool,
+) -> Option<Fit> {
     let plain = |shape: &[usize], samples: Option<usize>| {
         wanted.values.iter().find_map(|value| {
             let before = shape.strip_suffix(value.as_slice())?;
@@ -285,7 +290,12 @@ fn fit(shape: &[usize], wanted: Wanted<'_>, told: Option<&[usize]>, sampled: boo
 }
 
 /// The message for an array with none of the accepted shapes.
-fn misshapen(name: &str, array: &Array, wanted: Wanted<'_>, told: Option<&[usize]>) -> String {
+fn misshapen(
+    name: &str,
+    array: &Array,
+    wanted: AcceptedShapes<'_>,
+    told: Option<&[usize]>,
+) -> String {
     let mut counts: Vec<Option<usize>> = match (told, wanted.sites) {
         (Some(sites), _) | (None, Some(sites)) => vec![Some(sites.len())],
         (None, None) => vec![None],

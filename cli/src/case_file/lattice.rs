@@ -8,20 +8,25 @@ use super::sample as fluid;
 use super::space::Space;
 use super::stated::Stated;
 use super::write::{bounds, comment, instead};
+use crate::models::constraints::{CONSTRAINTS_REMARK, has_constraints};
 use crate::models::fields::{is_momentum, sample_entry, turns};
-use crate::models::held::{OF_HELD, has_holds};
 use crate::words::plain::shown;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::Choice;
+use clebsch_core::lattice::ChainConfig;
 use std::fmt::Write as _;
 
 /// The text of the sample case.
-pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named: &str) -> String {
+pub(crate) fn write_lattice(
+    card: &Card,
+    stated: &Stated,
+    choice: &ChainConfig,
+    named: &str,
+) -> String {
     let lattice = &stated.lattice;
     let named = shown(named).to_string();
-    let held = match has_holds(&stated.model) {
-        true => format!("# {OF_HELD}\n"),
+    let held = match has_constraints(&stated.model) {
+        true => format!("# {CONSTRAINTS_REMARK}\n"),
         false => String::new(),
     };
     let mut text = format!(
@@ -103,7 +108,7 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
 }
 
 /// Writes the possible end conditions.
-fn ends(text: &mut String, stated: &Stated, choice: &Choice) {
+fn ends(text: &mut String, stated: &Stated, choice: &ChainConfig) {
     let lattice = &stated.lattice;
     let Some(line) = lattice.line_label() else {
         return;
@@ -178,7 +183,7 @@ fn sample(
             _ => {}
         }
     }
-    let at_rest = has_holds(&stated.model) && is_momentum(field);
+    let at_rest = has_constraints(&stated.model) && is_momentum(field);
     let number = |i: usize, j: usize| match at_rest {
         true => 0.0,
         false => sample_entry(field, turned, i, j),

@@ -7,7 +7,7 @@ use crate::models::gallery::Case;
 use crate::terminal::failure::Failure;
 use crate::words::plain::shown;
 use crate::words::suggestion::did_you_mean;
-use clebsch_core::lattice::Choice;
+use clebsch_core::lattice::ChainConfig;
 use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
 use toml::Spanned;
@@ -25,7 +25,7 @@ pub struct Located {
     /// The velocities of the start, and the configurations at rest.
     pub(crate) motion: Motion,
     /// How many sites a model with labels has, and how its line ends.
-    pub(crate) choice: Option<Choice>,
+    pub(crate) choice: Option<ChainConfig>,
 }
 
 /// A file being read.

@@ -2,18 +2,19 @@
 //! `model`, `name`, `doc`, `h`, `steps`, tables `[parameters]`, `[initial]`, `[bounds]`, and for models with
 //! labels `[labels]` and `[ends]`.
 
+mod allowed_keys;
 pub(crate) mod archive;
 mod at_sites;
 mod attitude;
-mod chosen;
+mod chain_choice;
 mod copies;
+mod field_numbers;
 mod fields;
 mod fluid;
 mod from_npz;
 pub(crate) mod functions;
 mod inertia;
 mod keys;
-mod known;
 mod lattice;
 mod location;
 mod motion;
@@ -30,12 +31,11 @@ pub(crate) mod stated;
 mod table;
 mod taken_as;
 mod value;
-mod valued;
 mod velocity;
 mod write;
 
 pub(crate) use attitude::is_key_of_rotation;
-pub(crate) use chosen::{choice, default_choice};
+pub(crate) use chain_choice::{choice, default_choice};
 pub(crate) use keys::{at_site, line_of, quantity_of};
 pub(crate) use lattice::write_lattice;
 pub use location::Located;

@@ -9,7 +9,7 @@ use clebsch::card::{Card, Field, Kind};
 use clebsch_check::{
     Legendre, NoMomentum, Setup, Undefined, Velocities, Velocity, onto_constraints,
 };
-use clebsch_core::lattice::Choice;
+use clebsch_core::lattice::ChainConfig;
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::Model;
 use std::cell::RefCell;
@@ -58,7 +58,7 @@ impl Motion {
     pub(crate) fn put(
         &mut self,
         card: &Card,
-        choice: Option<&Choice>,
+        choice: Option<&ChainConfig>,
         case: &mut Case,
     ) -> Result<(), Wrong> {
         if let Some(told) = onto(card, choice, case) {
@@ -95,7 +95,7 @@ impl Motion {
     fn momenta(
         &self,
         card: &Card,
-        choice: Option<&Choice>,
+        choice: Option<&ChainConfig>,
         case: &Case,
     ) -> Result<Vec<(usize, Vec<f64>)>, NoMomentum> {
         let elements = elements(card.initial);
@@ -110,7 +110,7 @@ impl Motion {
                 start.way.add(own, &start.numbers, velocity);
             }
         }
-        let free: BTreeSet<usize> = self.asked().collect();
+        let free: BTreeSet<usize> = self.all_momenta().collect();
         let known: Vec<String> = elements
             .keys()
             .filter(|at| !free.contains(at))
@@ -130,7 +130,7 @@ impl Motion {
     }
 
     /// The momenta that the case does not give.
-    fn asked(&self) -> impl Iterator<Item = usize> {
+    fn all_momenta(&self) -> impl Iterator<Item = usize> {
         let given = self.given.iter().map(|start| start.momentum);
         given.chain(self.resting.iter().copied())
     }
@@ -139,7 +139,7 @@ impl Motion {
     fn zero(
         &self,
         card: &Card,
-        choice: Option<&Choice>,
+        choice: Option<&ChainConfig>,
         case: &Case,
         lost: &str,
     ) -> Option<&'static str> {
@@ -282,8 +282,8 @@ impl Motion {
     }
 
     /// The lines about momenta that a run prints.
-    pub(crate) fn told(&self, card: &Card, case: &Case) -> Vec<String> {
-        let mut out: Vec<Told<'_>> = Vec::new();
+    pub(crate) fn momentum_lines(&self, card: &Card, case: &Case) -> Vec<String> {
+        let mut out: Vec<QuantityMomenta<'_>> = Vec::new();
         for start in &self.given {
             let Some(field) = card.initial.get(start.momentum) else {
                 continue;
@@ -296,7 +296,7 @@ impl Motion {
                         told.keys.push(key);
                     }
                 }
-                None => out.push(Told {
+                None => out.push(QuantityMomenta {
                     name,
                     keys: vec![key],
                     momenta: BTreeSet::from([start.momentum]),
@@ -404,7 +404,7 @@ fn is_beside(a: Way, b: Way) -> bool {
 }
 
 /// The momenta of one quantity.
-struct Told<'a> {
+struct QuantityMomenta<'a> {
     name: &'a str,
     /// The keys that give its velocities.
     keys: Vec<&'a str>,
@@ -458,7 +458,7 @@ pub(crate) type Statement = (Model, Vec<(String, usize)>, Setup);
 /// unavailable.
 pub(crate) fn statement(
     card: &Card,
-    choice: Option<&Choice>,
+    choice: Option<&ChainConfig>,
     case: &Case,
     state: &[Field],
 ) -> Option<Statement> {
@@ -498,7 +498,7 @@ fn parsed(source: &'static str) -> Option<Model> {
 }
 
 /// The Legendre transform of a case, which evaluates its action.
-fn legendre(card: &Card, choice: Option<&Choice>, case: &Case) -> Result<Legendre, String> {
+fn legendre(card: &Card, choice: Option<&ChainConfig>, case: &Case) -> Result<Legendre, String> {
     let found = statement(card, choice, case, card.initial);
     let (model, sizes, setup) = found.ok_or_else(|| "its text is not available".to_owned())?;
     Legendre::new(&model, &sizes, setup)
@@ -506,7 +506,7 @@ fn legendre(card: &Card, choice: Option<&Choice>, case: &Case) -> Result<Legendr
 
 /// Moves a configuration onto its constraints if its digits were rounded too far to satisfy them. Returns the
 /// report.
-fn onto(card: &Card, choice: Option<&Choice>, case: &mut Case) -> Option<String> {
+fn onto(card: &Card, choice: Option<&ChainConfig>, case: &mut Case) -> Option<String> {
     // Cases of models without constraints are not evaluated.
     if !card.source.contains("hold") {
         return None;
@@ -527,7 +527,11 @@ fn onto(card: &Card, choice: Option<&Choice>, case: &mut Case) -> Option<String>
 }
 
 /// The part of the action that is undefined at the start, if it can be found.
-pub(crate) fn undefined(card: &Card, choice: Option<&Choice>, case: &Case) -> Option<Undefined> {
+pub(crate) fn undefined(
+    card: &Card,
+    choice: Option<&ChainConfig>,
+    case: &Case,
+) -> Option<Undefined> {
     let (model, sizes, setup) = statement(card, choice, case, card.initial)?;
     let node: Vec<f64> = case.initial.iter().flatten().copied().collect();
     Undefined::find(&model, &sizes, &setup, &node).ok()?

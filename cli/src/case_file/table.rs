@@ -41,7 +41,7 @@ pub(super) struct Key<'k> {
 }
 
 /// A value that the case gives.
-pub(super) struct Found<'k, 't, 'i> {
+pub(super) struct CaseValue<'k, 't, 'i> {
     pub key: Key<'k>,
     /// The table that has it.
     pub table: &'static str,
@@ -93,10 +93,10 @@ impl<'t, 'i> Table<'t, 'i> {
         &self,
         mut keys: impl Iterator<Item = Key<'k>>,
         held: bool,
-    ) -> Option<Found<'k, 't, 'i>> {
+    ) -> Option<CaseValue<'k, 't, 'i>> {
         keys.find_map(|key| {
             let (table, value) = self.get(&key.name, held)?;
-            Some(Found { key, table, value })
+            Some(CaseValue { key, table, value })
         })
     }
 

@@ -3,8 +3,8 @@
 
 use super::motion::elements;
 use super::velocity::Way;
+use crate::models::constraints::{CONSTRAINTS_REMARK, has_constraints};
 use crate::models::gallery::Case;
-use crate::models::held::{OF_HELD, has_holds};
 use crate::words::plain::shown;
 use clebsch::card::{Card, Conserved, Field, Kind};
 use clebsch_core::pipeline;
@@ -31,8 +31,8 @@ pub fn write(card: &Card, case: &Case, named: &str) -> String {
         "Units: any consistent system. The model fixes none.",
     );
     let model = pipeline::parse_source(card.source).ok();
-    if model.as_ref().is_some_and(has_holds) {
-        comment(&mut text, OF_HELD);
+    if model.as_ref().is_some_and(has_constraints) {
+        comment(&mut text, CONSTRAINTS_REMARK);
     }
     let mut line = |key: &str, value: String| {
         // Writing to a String cannot fail.

@@ -3,7 +3,7 @@
 
 use crate::models::gallery::Gallery;
 use crate::named::cases::WhichCase;
-use crate::named::resolve::{Named, asked, case_of, entry, resolved};
+use crate::named::resolve::{NamedModel, case_of, entry, resolve_model, resolved};
 use crate::plan::Plan;
 use crate::terminal::Streams;
 use crate::terminal::failure::Failure;
@@ -22,7 +22,7 @@ pub(crate) fn check(
     matches: &ArgMatches,
     streams: &mut Streams<'_>,
 ) -> Result<(), Failure> {
-    if let (Named::Text(text), case) = asked(gallery, matches)?
+    if let (NamedModel::Text(text), case) = resolve_model(gallery, matches)?
         && let Err(no_case) = case_of(&text, case)
     {
         let entry = entry(&text, &WhichCase::First, streams)?;

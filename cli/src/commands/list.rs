@@ -3,14 +3,14 @@
 
 use crate::models::gallery::{Case, Entry, Family, Gallery, declared, family};
 use crate::named::cases::NamedCases;
-use crate::named::resolve::{Named, named};
+use crate::named::resolve::{NamedModel, named};
 use crate::terminal::Streams;
 use crate::terminal::failure::Failure;
 use crate::words::columns::aligned;
 use crate::words::lines::first_line;
 use crate::words::plain::shown;
+use crate::words::step_method::step_method;
 use crate::words::suggestion::slip;
-use crate::words::way::way_of;
 use clap::ArgMatches;
 use clebsch::card::Conserved;
 use clebsch_core::pipeline;
@@ -105,19 +105,19 @@ fn cases(
         other => other,
     })?;
     let (name, doc, runs, cases, json) = match &named {
-        Named::Compiled(entry) => {
+        NamedModel::Compiled(entry) => {
             let cases = entry.cases.iter();
             let cases: Vec<_> = cases.map(|c| (c.name.clone(), c.doc.clone())).collect();
             let row = compiled(entry);
             (
                 row.name,
                 entry.card.doc.trim().to_owned(),
-                way_of(true),
+                step_method(true),
                 cases,
                 row.json,
             )
         }
-        Named::Text(text) => {
+        NamedModel::Text(text) => {
             let family = gallery.files.iter().find(|file| file.name == text.name);
             let family = family.map_or(Family::Particle, |file| file.family);
             let row = text_row(family, &text.name, &text.text, &text.cases);
@@ -125,7 +125,7 @@ fn cases(
             (
                 row.name,
                 doc,
-                way_of(false),
+                step_method(false),
                 text.cases.described(),
                 row.json,
             )
@@ -178,7 +178,7 @@ fn text_row(family: Family, name: &str, text: &str, cases: &NamedCases) -> Row {
             "model": name,
             "name": declared(text),
             "family": family.name(),
-            "runs": way_of(false),
+            "runs": step_method(false),
             "doc": doc,
             "cases": described,
         }),
@@ -193,7 +193,7 @@ fn compiled_json(entry: &Entry) -> Value {
         "model": card.kebab,
         "name": card.name,
         "family": family(card).name(),
-        "runs": way_of(true),
+        "runs": step_method(true),
         "doc": card.doc.trim(),
         "solver": card.solver,
         "order": card.order,

@@ -4,7 +4,7 @@
 use crate::case_file::{self, stated::Stated};
 use crate::models::gallery::{self, Gallery};
 use crate::named::cases::WhichCase;
-use crate::named::resolve::{ModelText, Named, asked, case_of, entry};
+use crate::named::resolve::{ModelText, NamedModel, case_of, entry, resolve_model};
 use crate::terminal::Streams;
 use crate::terminal::failure::Failure;
 use clap::ArgMatches;
@@ -18,7 +18,7 @@ pub(crate) fn case(
     matches: &ArgMatches,
     streams: &mut Streams<'_>,
 ) -> Result<(), Failure> {
-    let (named, case) = asked(gallery, matches)?;
+    let (named, case) = resolve_model(gallery, matches)?;
     let toml = case_text(&named, case, streams)?;
     streams.out.write_all(toml.as_bytes())?;
     Ok(())
@@ -33,17 +33,17 @@ pub(crate) fn show(
     matches: &ArgMatches,
     streams: &mut Streams<'_>,
 ) -> Result<(), Failure> {
-    let (named, case) = asked(gallery, matches)?;
+    let (named, case) = resolve_model(gallery, matches)?;
     let toml = case_text(&named, case, streams)?;
     write!(streams.out, "{}\n\n{toml}", statement(&named).trim_end())?;
     Ok(())
 }
 
 /// The statement of a model.
-pub(crate) fn statement<'n>(named: &'n Named<'_>) -> &'n str {
+pub(crate) fn statement<'n>(named: &'n NamedModel<'_>) -> &'n str {
     match named {
-        Named::Compiled(entry) => entry.card.source,
-        Named::Text(text) => &text.text,
+        NamedModel::Compiled(entry) => entry.card.source,
+        NamedModel::Text(text) => &text.text,
     }
 }
 
@@ -53,12 +53,12 @@ pub(crate) fn statement<'n>(named: &'n Named<'_>) -> &'n str {
 /// # Errors
 /// Usage: the case is unknown, or the text does not derive.
 pub(crate) fn case_text(
-    named: &Named<'_>,
+    named: &NamedModel<'_>,
     case: Option<&str>,
     streams: &mut Streams<'_>,
 ) -> Result<String, Failure> {
     match named {
-        Named::Compiled(entry) => {
+        NamedModel::Compiled(entry) => {
             let case = gallery::case(entry, case)?;
             Ok(case_file::write(
                 &entry.card_of(case),
@@ -66,8 +66,8 @@ pub(crate) fn case_text(
                 entry.card.kebab,
             ))
         }
-        Named::Text(text) if text.is_path && case.is_none() => placeholder(text, streams),
-        Named::Text(text) => match case_of(text, case)? {
+        NamedModel::Text(text) if text.is_path && case.is_none() => placeholder(text, streams),
+        NamedModel::Text(text) => match case_of(text, case)? {
             WhichCase::Text(case) => Ok(case.text),
             _ => placeholder(text, streams),
         },

@@ -19,7 +19,7 @@ pub struct Gallery {
 
 /// A model of the gallery.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Known<'a> {
+pub(crate) enum GalleryModel<'a> {
     Compiled(&'a Entry),
     File(&'a ModelFile),
 }
@@ -40,20 +40,20 @@ impl Gallery {
     /// Usage: the model is unknown; the message suggests the nearest name.
     pub fn find(&self, name: &str) -> Result<&Entry, Failure> {
         match self.get(name) {
-            Some(Known::Compiled(entry)) => Ok(entry),
+            Some(GalleryModel::Compiled(entry)) => Ok(entry),
             _ => Err(self.unknown(name)),
         }
     }
 
     /// The model called `name`, by its file's name or as its text declares it.
-    pub(crate) fn get(&self, name: &str) -> Option<Known<'_>> {
+    pub(crate) fn get(&self, name: &str) -> Option<GalleryModel<'_>> {
         let mut entries = self.entries.iter();
         let compiled = entries.find(|entry| entry.card.kebab == name || entry.card.name == name);
         let is_own =
             |file: &&ModelFile| file.name == name || declared(file.text).is_some_and(|n| n == name);
         compiled
-            .map(Known::Compiled)
-            .or_else(|| self.files.iter().find(is_own).map(Known::File))
+            .map(GalleryModel::Compiled)
+            .or_else(|| self.files.iter().find(is_own).map(GalleryModel::File))
     }
 
     /// The names of all models, compiled ones first.

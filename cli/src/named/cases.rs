@@ -72,7 +72,7 @@ pub(crate) fn read(file: &Path) -> Result<CaseText, Failure> {
 
 /// The location of a case.
 #[derive(Clone, Debug)]
-enum Kept {
+enum CaseLocation {
     At(PathBuf),
     Shipped(CaseText),
 }
@@ -80,7 +80,7 @@ enum Kept {
 /// The cases of one model, the default one first.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NamedCases {
-    cases: Vec<(String, Kept)>,
+    cases: Vec<(String, CaseLocation)>,
 }
 
 impl NamedCases {
@@ -92,7 +92,7 @@ impl NamedCases {
         if own.is_file() {
             // A case that cannot be read is listed here and fails when it is requested.
             let name = read(&own).ok().and_then(|case| stated(&case.text));
-            cases.push((name.unwrap_or_else(|| stem(&own)), Kept::At(own)));
+            cases.push((name.unwrap_or_else(|| stem(&own)), CaseLocation::At(own)));
         }
         let entries = fs::read_dir(model.with_extension(""));
         let mut others: Vec<PathBuf> = entries
@@ -103,7 +103,11 @@ impl NamedCases {
             .filter(|path| path.extension().is_some_and(|ending| ending == "toml"))
             .collect();
         others.sort();
-        cases.extend(others.into_iter().map(|path| (stem(&path), Kept::At(path))));
+        cases.extend(
+            others
+                .into_iter()
+                .map(|path| (stem(&path), CaseLocation::At(path))),
+        );
         Self { cases }
     }
 
@@ -117,7 +121,7 @@ impl NamedCases {
                 false => format!("{}/{}.toml", model.name, case.stem),
             };
             let text = case.text.to_owned();
-            (name, Kept::Shipped(CaseText { file, text }))
+            (name, CaseLocation::Shipped(CaseText { file, text }))
         });
         Self {
             cases: cases.collect(),
@@ -140,8 +144,8 @@ impl NamedCases {
         };
         match found {
             None => Ok(None),
-            Some((_, Kept::Shipped(text))) => Ok(Some(text.clone())),
-            Some((_, Kept::At(path))) => read(path).map(Some),
+            Some((_, CaseLocation::Shipped(text))) => Ok(Some(text.clone())),
+            Some((_, CaseLocation::At(path))) => read(path).map(Some),
         }
     }
 
@@ -149,8 +153,8 @@ impl NamedCases {
     pub fn described(&self) -> Vec<(String, String)> {
         let each = self.cases.iter().map(|(name, kept)| {
             let text = match kept {
-                Kept::Shipped(case) => Some(case.text.clone()),
-                Kept::At(path) => read(path).ok().map(|case| case.text),
+                CaseLocation::Shipped(case) => Some(case.text.clone()),
+                CaseLocation::At(path) => read(path).ok().map(|case| case.text),
             };
             let doc = text.and_then(|text| string(&text, "doc"));
             (name.clone(), doc.unwrap_or_default())

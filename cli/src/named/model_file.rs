@@ -3,15 +3,15 @@
 
 use crate::case_file;
 use crate::case_file::stated::Stated;
+use crate::models::constraints::card_has_constraints;
 use crate::models::fields::{is_momentum, sample_values, turns};
 use crate::models::gallery::{Case, Citations, Entry};
-use crate::models::held::is_held;
 use crate::named::cases::WhichCase;
 use crate::named::sample::onto_constraints;
 use crate::terminal::failure::Failure;
 use crate::words::plain::shown;
 use clebsch::card::{Card, Field};
-use clebsch_core::lattice::Choice;
+use clebsch_core::lattice::ChainConfig;
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::{Model, Statement};
 use clebsch_interpret::Refused;
@@ -66,7 +66,7 @@ pub(crate) fn read(
 }
 
 /// The number of sites and the ends of the chain, from the case file if there is one.
-fn chosen(stated: &Stated, case: Option<(&str, &str)>) -> Result<Option<Choice>, Failure> {
+fn chosen(stated: &Stated, case: Option<(&str, &str)>) -> Result<Option<ChainConfig>, Failure> {
     match case {
         None => Ok(case_file::default_choice(stated)),
         Some((file, text)) => case_file::choice(file, text, stated),
@@ -76,7 +76,7 @@ fn chosen(stated: &Stated, case: Option<(&str, &str)>) -> Result<Option<Choice>,
 /// Values that are admissible for most models, and of no further meaning.
 fn sample(card: &Card, file: &str) -> Case {
     let turned = turns(card);
-    let held = is_held(card);
+    let held = card_has_constraints(card);
     let values = |fields: &[Field]| {
         let sample = |f: &Field| match held && is_momentum(f) {
             true => vec![0.0; f.count()],

@@ -2,7 +2,7 @@
 //! Takes MODEL or MODEL:CASE and the option `--case`; gives the model, ready to run, and which case is meant.
 
 use crate::case_file;
-use crate::models::gallery::{self, Entry, Gallery, Known};
+use crate::models::gallery::{self, Entry, Gallery, GalleryModel};
 use crate::named::cases::{self, CaseText, NamedCases, WhichCase, is_file};
 use crate::named::model_file;
 use crate::overrides;
@@ -32,7 +32,7 @@ pub(crate) struct ModelText {
 }
 
 /// The model that a name on the command line refers to.
-pub(crate) enum Named<'a> {
+pub(crate) enum NamedModel<'a> {
     Compiled(&'a Entry),
     Text(ModelText),
 }
@@ -57,10 +57,10 @@ pub(crate) fn resolved<'a>(
     matches: &ArgMatches,
     streams: &mut Streams<'_>,
 ) -> Result<Resolved<'a>, Failure> {
-    let (named, case) = asked(gallery, matches)?;
+    let (named, case) = resolve_model(gallery, matches)?;
     let by_name = overrides::by_name(matches);
     match named {
-        Named::Compiled(entry) => Ok(Resolved {
+        NamedModel::Compiled(entry) => Ok(Resolved {
             entry: Cow::Borrowed(entry),
             case: match case {
                 Some(file) if is_file(file) => {
@@ -75,7 +75,7 @@ pub(crate) fn resolved<'a>(
             },
             compiled: true,
         }),
-        Named::Text(text) => {
+        NamedModel::Text(text) => {
             let case = match case_of(&text, case) {
                 Ok(case) => case,
                 Err(no_case) => {
@@ -108,10 +108,10 @@ fn written(entry: &Entry, name: Option<&str>) -> Result<CaseText, Failure> {
 ///
 /// # Errors
 /// Usage: the model is unknown, a file cannot be read, or the arguments name two cases.
-pub(crate) fn asked<'a, 'm>(
+pub(crate) fn resolve_model<'a, 'm>(
     gallery: &'a Gallery,
     matches: &'m ArgMatches,
-) -> Result<(Named<'a>, Option<&'m str>), Failure> {
+) -> Result<(NamedModel<'a>, Option<&'m str>), Failure> {
     let argument = |key: &str| matches.get_one::<String>(key).map(String::as_str);
     let (name, case) = parts(argument("model").unwrap_or_default(), argument("case"))?;
     Ok((named(gallery, name, "expected a model")?, case))
@@ -128,7 +128,7 @@ pub(crate) fn entry(
 ) -> Result<Entry, Failure> {
     let mut warnings = Vec::new();
     let read = {
-        let _told = Waiting::told("deriving the equations".to_owned(), streams.progress);
+        let _told = Waiting::showing("deriving the equations".to_owned(), streams.progress);
         model_file::read(&text.name, &text.text, case, &mut warnings)
     };
     // A warning that cannot be written is not lost: the derivation contains it.
@@ -169,12 +169,16 @@ fn is_name(text: &str) -> bool {
 ///
 /// # Errors
 /// Usage: there is neither, or the file cannot be read.
-pub(crate) fn named<'a>(gallery: &'a Gallery, name: &str, but: &str) -> Result<Named<'a>, Failure> {
+pub(crate) fn named<'a>(
+    gallery: &'a Gallery,
+    name: &str,
+    but: &str,
+) -> Result<NamedModel<'a>, Failure> {
     let path = Path::new(name);
     match gallery.get(name) {
-        Some(Known::Compiled(entry)) => return Ok(Named::Compiled(entry)),
-        Some(Known::File(file)) => {
-            return Ok(Named::Text(ModelText {
+        Some(GalleryModel::Compiled(entry)) => return Ok(NamedModel::Compiled(entry)),
+        Some(GalleryModel::File(file)) => {
+            return Ok(NamedModel::Text(ModelText {
                 name: file.name.to_owned(),
                 text: file.text.to_owned(),
                 cases: NamedCases::shipped(file),
@@ -204,7 +208,7 @@ pub(crate) fn named<'a>(gallery: &'a Gallery, name: &str, but: &str) -> Result<N
             shown(name)
         )));
     }
-    Ok(Named::Text(ModelText {
+    Ok(NamedModel::Text(ModelText {
         name: name.to_owned(),
         text: bounded::text(path, "model file")?,
         cases: NamedCases::beside(path),
@@ -239,8 +243,8 @@ fn is_a_case(gallery: &Gallery, name: &str, but: &str) -> Failure {
         .and_then(|table| table.get_ref().get("model"));
     let stated = stated.and_then(|model| model.get_ref().as_str());
     let model = match stated.and_then(|stated| gallery.get(stated)) {
-        Some(Known::Compiled(entry)) => entry.card.kebab,
-        Some(Known::File(file)) => file.name,
+        Some(GalleryModel::Compiled(entry)) => entry.card.kebab,
+        Some(GalleryModel::File(file)) => file.name,
         None => "MODEL",
     };
     let name = shown(name);

@@ -21,18 +21,18 @@ pub(crate) fn onto_constraints(model: &Model, card: &Card, case: &mut Case) {
     let Ok(spec) = check::check(model) else {
         return;
     };
-    let held = Held { spec, card };
+    let held = ConstrainedCase { spec, card };
     if let Some(moved) = held.moved(case) {
         case.initial = moved;
     }
 }
 
-struct Held<'a> {
+struct ConstrainedCase<'a> {
     spec: Spec,
     card: &'a Card,
 }
 
-impl Held<'_> {
+impl ConstrainedCase<'_> {
     /// The entries that may move, each as a field and an entry of it.
     fn free(&self) -> Vec<(usize, usize)> {
         let symbols = &self.spec.symbols;

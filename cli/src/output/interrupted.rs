@@ -9,14 +9,14 @@ use std::sync::atomic::{AtomicI32, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// A hidden folder, and the parents that were made for it, innermost first.
-struct Begun {
+struct HiddenFolder {
     hidden: PathBuf,
     created: Vec<PathBuf>,
     kept: bool,
 }
 
 /// The folders that this process is writing.
-static BEGUN: Mutex<Vec<Begun>> = Mutex::new(Vec::new());
+static BEGUN: Mutex<Vec<HiddenFolder>> = Mutex::new(Vec::new());
 
 /// The number of runs that stop by themselves at a signal.
 static LISTENING: AtomicUsize = AtomicUsize::new(0);
@@ -24,7 +24,7 @@ static LISTENING: AtomicUsize = AtomicUsize::new(0);
 /// The signal that requested the stop; 0 for none.
 static ASKED: AtomicI32 = AtomicI32::new(0);
 
-fn with_begun<R>(then: impl FnOnce(&mut Vec<Begun>) -> R) -> R {
+fn with_begun<R>(then: impl FnOnce(&mut Vec<HiddenFolder>) -> R) -> R {
     then(&mut BEGUN.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
@@ -32,7 +32,7 @@ fn with_begun<R>(then: impl FnOnce(&mut Vec<Begun>) -> R) -> R {
 pub(super) fn begin(hidden: &Path, created: &[PathBuf]) {
     watch();
     with_begun(|all| {
-        all.push(Begun {
+        all.push(HiddenFolder {
             hidden: hidden.to_owned(),
             created: created.to_vec(),
             kept: false,
@@ -65,9 +65,9 @@ pub(super) fn remove(hidden: &Path, created: &[PathBuf]) {
 }
 
 /// While this value exists, a run stops by itself when a signal requests it.
-pub(crate) struct Listening(());
+pub(crate) struct SignalListener(());
 
-impl Listening {
+impl SignalListener {
     /// From here on.
     pub(crate) fn begin() -> Self {
         watch();
@@ -76,14 +76,14 @@ impl Listening {
     }
 
     /// The signal that requested the stop, if any.
-    pub(crate) fn asked(&self) -> Option<u8> {
+    pub(crate) fn stop_signal(&self) -> Option<u8> {
         u8::try_from(ASKED.load(Ordering::SeqCst))
             .ok()
             .filter(|signal| *signal != 0)
     }
 }
 
-impl Drop for Listening {
+impl Drop for SignalListener {
     fn drop(&mut self) {
         LISTENING.fetch_sub(1, Ordering::SeqCst);
     }

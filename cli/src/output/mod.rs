@@ -6,20 +6,20 @@ pub(crate) mod attitude;
 pub(crate) mod fluid;
 mod interrupted;
 mod multipliers;
+mod output_target;
 pub(crate) mod places;
 pub(crate) mod points;
 pub(crate) mod run_json;
+pub(crate) mod sample_selection;
 pub(crate) mod samples;
 pub(crate) mod sites;
 mod staging;
-mod standing;
-pub(crate) mod thinned;
 pub(crate) mod vtk;
 
-pub(crate) use interrupted::Listening;
+pub(crate) use interrupted::SignalListener;
 pub(crate) use multipliers::is_multiplier;
-pub use staging::{Found, Staging};
-pub(crate) use standing::{MARK, is_drawn};
+pub(crate) use output_target::{MARK, is_drawn};
+pub use staging::{ResumableRun, Staging};
 
 use crate::plan::Plan;
 use crate::trajectory::checkpoint;

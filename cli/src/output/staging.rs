@@ -12,12 +12,12 @@
 
 mod resumed;
 
-pub use resumed::Found;
+pub use resumed::ResumableRun;
 
 use super::interrupted;
-use super::standing::{self, Standing};
+use super::output_target::{self, EarlierFiles};
 use crate::terminal::failure::Failure;
-use crate::words::plain::{Shown, shown};
+use crate::words::plain::{PrintableName, shown};
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
@@ -37,7 +37,7 @@ pub struct Staging {
     /// The hidden folder, locked; `None` if the file system does not lock folders.
     held: Option<File>,
     /// The results that `--force` is to replace, as they were at the start.
-    standing: Option<Standing>,
+    standing: Option<EarlierFiles>,
     known: Vec<&'static str>,
     /// Parents of the target that did not exist, innermost first.
     created: Vec<PathBuf>,
@@ -61,7 +61,7 @@ impl Staging {
                 shown(target)
             )));
         }
-        let standing = standing::at(target, force, known)?;
+        let standing = output_target::at(target, force, known)?;
         if !force {
             Self::nothing_to_resume(target)?;
         }
@@ -122,7 +122,7 @@ impl Staging {
         if lock.try_lock().is_err() {
             return Ok(());
         }
-        match standing::look(folder, &self.known)? {
+        match output_target::look(folder, &self.known)? {
             Ok(files) => files.remove(folder),
             Err(_) => Ok(()),
         }
@@ -230,7 +230,7 @@ impl Staging {
     ///
     /// # Errors
     /// As [`Staging::commit`].
-    pub fn commit_stopped(mut self) -> Result<Shown, Failure> {
+    pub fn commit_stopped(mut self) -> Result<PrintableName, Failure> {
         if self.standing.is_none() {
             let target = shown(&self.target);
             return self.commit().map(|()| target);
@@ -262,7 +262,7 @@ impl Staging {
             };
         }
         // Looked at after the move, so that no run can exchange it between the look and the move.
-        match standing::look(&aside, &self.known) {
+        match output_target::look(&aside, &self.known) {
             Ok(Ok(now)) if now == *standing => Ok(Some(aside)),
             // An empty folder contains no results: another run has just made it to take the name.
             _ if fs::remove_dir(&aside).is_ok() => Ok(None),
@@ -294,7 +294,7 @@ impl Staging {
     }
 
     /// Renames a folder to the first free name of `target-2`, `target-3` and so on, and gives its path.
-    fn beside(&self, folder: &Path) -> Shown {
+    fn beside(&self, folder: &Path) -> PrintableName {
         let kept = first_free(|count| {
             let path = self.sibling("", &format!("-{}", count + 2));
             place(folder, &path).map(|()| path)

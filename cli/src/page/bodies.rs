@@ -2,7 +2,7 @@
 //! next to the other objects. Takes a card with its model; gives their columns, and their axes and positions in
 //! a sample.
 
-use super::ties::{Tied, Ties};
+use super::body_positions::{Tied, Ties};
 use super::value::Stated;
 use crate::output::Finished;
 use crate::output::attitude::{matrix, placed};
@@ -185,7 +185,7 @@ impl Body {
 }
 
 /// A sentence that states where bodies are drawn, if their names do not make it clear.
-pub(super) fn said(bodies: &[Body], ties: &Ties) -> String {
+pub(super) fn place_note(bodies: &[Body], ties: &Ties) -> String {
     let mut at: Vec<String> = Vec::new();
     let (mut origin, mut rows) = (Vec::new(), Vec::new());
     for body in bodies {

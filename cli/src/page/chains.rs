@@ -1,7 +1,7 @@
 //! Points that a page draws: a chain, single points, particles, or the profile of numbers along a chain.
 //! Takes the fields of a card; gives their positions in a sample, including points given at an end.
 
-use super::tints::Tints;
+use super::particle_colours::Tints;
 use super::value::Stated;
 use crate::case_file::space::Space;
 use crate::output::attitude::placed;

@@ -5,7 +5,7 @@
 //! two points, `u = a - b`. Each point is a position, or a position plus an arm of its body. A point that is
 //! the same in every frame is a support.
 
-use super::ties::{Ties, place_of};
+use super::body_positions::{Ties, place_of};
 use super::value::{At, Stated, Value, scalar};
 use clebsch_core::syntax::ast::{Expression, Kind, Statement};
 
@@ -41,14 +41,14 @@ struct Difference {
 
 /// The frames that a page shows, and the names of positions.
 #[derive(Clone, Copy)]
-pub(super) struct Shown<'a> {
+pub(super) struct PageFrames<'a> {
     pub(super) frames: &'a [&'a [f64]],
     pub(super) places: &'a [&'a str],
     pub(super) ties: &'a Ties,
 }
 
 /// The links of a model. If there are too many, only the first ones.
-pub(super) fn links(stated: &Stated<'_>, shown: Shown<'_>) -> Vec<Link> {
+pub(super) fn links(stated: &Stated<'_>, shown: PageFrames<'_>) -> Vec<Link> {
     let mut out = Vec::new();
     for statement in &stated.model.statements {
         let Statement::Hold { left, right, .. } = statement else {
@@ -89,7 +89,7 @@ fn differences(
     stated: &Stated<'_>,
     [left, right]: [&Expression; 2],
     site: Option<isize>,
-    shown: Shown<'_>,
+    shown: PageFrames<'_>,
 ) -> Vec<Difference> {
     let Some(row) = shown.frames.first() else {
         return Vec::new();
@@ -117,7 +117,7 @@ fn differences(
 fn joint(
     stated: &Stated<'_>,
     [left, right]: [Vec<Term>; 2],
-    shown: Shown<'_>,
+    shown: PageFrames<'_>,
 ) -> Option<Difference> {
     let of = |side: &[Term]| {
         let own = side
@@ -158,7 +158,7 @@ fn signed(terms: Vec<Term>, turned: bool) -> Vec<Term> {
 
 /// Splits a sum of terms into a difference of two points. `None` if it contains no position, or several of the
 /// same sign.
-fn parted(stated: &Stated<'_>, all: Vec<Term>, shown: Shown<'_>) -> Option<Difference> {
+fn parted(stated: &Stated<'_>, all: Vec<Term>, shown: PageFrames<'_>) -> Option<Difference> {
     let own = |all: &[Term]| -> Vec<Term> {
         let places = all
             .iter()
@@ -192,7 +192,7 @@ fn lengths(
     stated: &Stated<'_>,
     e: &Expression,
     site: Option<isize>,
-    shown: Shown<'_>,
+    shown: PageFrames<'_>,
     found: &mut Vec<Difference>,
     deep: usize,
 ) {
@@ -236,7 +236,7 @@ fn by_components(
     stated: &Stated<'_>,
     sides: [&Expression; 2],
     site: Option<isize>,
-    shown: Shown<'_>,
+    shown: PageFrames<'_>,
 ) -> Option<Difference> {
     let mut own = shown.places.iter().filter(|p| {
         let named = |e: &&Expression| stated.names(e, &|n| n == **p);

@@ -3,11 +3,11 @@
 //! Takes a run and its pictures; gives HTML.
 
 mod bodies;
+mod body_positions;
 mod chains;
 mod links;
+mod particle_colours;
 mod scene;
-mod ties;
-mod tints;
 mod value;
 
 use crate::output::Finished;

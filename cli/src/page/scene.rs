@@ -3,11 +3,11 @@
 //! most
 //! [`FRAMES`] frames.
 
-use super::bodies::{Body, Place, bodies, carried, is_placed, said, turns};
+use super::bodies::{Body, Place, bodies, carried, is_placed, place_note, turns};
+use super::body_positions::Ties;
 use super::chains::{Chain, chains};
-use super::links::{Link, Shown, links};
-use super::ties::Ties;
-use super::tints::Tints;
+use super::links::{Link, PageFrames, links};
+use super::particle_colours::Tints;
 use super::value::Stated;
 use crate::case_file::space::Space;
 use crate::output::Finished;
@@ -79,7 +79,7 @@ pub(super) fn scene(run: &Finished<'_>, samples: &Samples) -> Option<Scene> {
     let times = times.filter(|(i, _)| is_shown(*i)).map(|(_, t)| *t);
     let space = space(run.card, run.plan).map(|(space, _)| space);
     let space = space.as_ref();
-    let joined = Shown {
+    let joined = PageFrames {
         frames: &frames,
         places: &[places, others(run, stated)].concat(),
         ties: &ties,
@@ -104,7 +104,7 @@ pub(super) fn scene(run: &Finished<'_>, samples: &Samples) -> Option<Scene> {
         "links": links.iter().map(|l| &l.frames).collect::<Vec<_>>(),
         "supports": supports,
     });
-    let mut said = said(&bodies, &ties);
+    let mut said = place_note(&bodies, &ties);
     if shown.cut {
         let end = shown.record.times.get(last).copied().unwrap_or(0.0);
         let part = format!("The view shows the run up to time {}.", plain(end));

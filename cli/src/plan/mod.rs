@@ -1,7 +1,7 @@
 //! The plan of a run: a case of the gallery or of a file, with the options that override it.
 //! Takes the matches of `clebsch run`; gives the plan, and places error messages in its file.
 
-mod blamed;
+mod invalid_values;
 
 use crate::case_file::stated::Stated;
 use crate::case_file::{self, Located, Motion, undefined};
@@ -9,7 +9,7 @@ use crate::models::gallery::{self, Case, Entry};
 use crate::named::cases::{CaseText, WhichCase};
 use crate::named::resolve::Resolved;
 use crate::overrides;
-use crate::plan::blamed::{Origin, blamed};
+use crate::plan::invalid_values::{Origin, parameter_report};
 use crate::terminal::failure::Failure;
 use crate::words::plain::shown;
 use clap::ArgMatches;
@@ -17,7 +17,7 @@ use clebsch::card::{Card, Field, OpenError, Settings, Trajectory};
 use clebsch::integrate::Halved;
 use clebsch::solvers::Method;
 use clebsch::{ParameterError, StartError};
-use clebsch_core::lattice::Choice;
+use clebsch_core::lattice::ChainConfig;
 use serde_json::{Value, json};
 
 /// By default, the largest number of nodes written: a plot shows no more, and the files stay at a few
@@ -52,7 +52,7 @@ pub struct Plan {
     /// Whether samples are written as text however many they are.
     pub csv: bool,
     /// How many sites a model with labels has, and how its line ends.
-    pub choice: Option<Choice>,
+    pub choice: Option<ChainConfig>,
     /// Whether another step size keeps the end time of the case, rather than the number of steps.
     pub keeps_time: bool,
     /// The names of the quantities that `--set` set.
@@ -215,7 +215,7 @@ impl Plan {
 
     /// The lines about momenta that were computed from velocities.
     pub(crate) fn starts(&self, card: &Card) -> Vec<String> {
-        self.motion.told(card, &self.case)
+        self.motion.momentum_lines(card, &self.case)
     }
 
     /// Starts the trajectory.
@@ -307,7 +307,7 @@ impl Plan {
         let key = held
             .or_else(|| of("parameters", card.parameters))
             .or_else(|| of("initial", card.initial));
-        let made = || blamed(card, &self.case, self.origin.as_ref(), wrong.field);
+        let made = || parameter_report(card, &self.case, self.origin.as_ref(), wrong.field);
         if let Some(place) = key.is_none().then(made).flatten() {
             return place;
         }
@@ -331,7 +331,7 @@ impl Plan {
 fn start(
     motion: &mut Motion,
     card: &Card,
-    choice: Option<&Choice>,
+    choice: Option<&ChainConfig>,
     case: &mut Case,
 ) -> Result<(), Failure> {
     let put = motion.put(card, choice, case);

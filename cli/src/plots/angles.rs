@@ -1,7 +1,7 @@
 //! Euler angles of rotations: against time, of many sites as maps over sites and time.
 //! Takes the samples of a run; gives precession, nutation and spin of each.
 
-use super::attitude::{Kin, Placed, grouped, rotations, rows};
+use super::attitude::{Placed, QuantityColumns, grouped, rotations, rows};
 use super::axis::Axis;
 use super::curve::{Curve, Stroke};
 use super::figure::Panel;
@@ -178,7 +178,7 @@ fn curves((field, columns): &Placed, shown: Window<'_>, meaning: Meaning) -> Vec
 
 /// The angles of the rotations at many sites, over sites and time. The sum φ + ψ is included: for an upright
 /// body only the sum is defined.
-fn maps(kin: &Kin, shown: Window<'_>, meaning: Meaning) -> Vec<Panel> {
+fn maps(kin: &QuantityColumns, shown: Window<'_>, meaning: Meaning) -> Vec<Panel> {
     let times = shown.record.times.get(..shown.count).unwrap_or_default();
     let mut all = [const { Rows::new() }; 4];
     for (site, (_, columns)) in sites::shown(&kin.members) {

@@ -24,7 +24,7 @@ const SAME_LENGTH: f64 = 1e-9;
 pub(super) type Placed = (&'static Field, Range<usize>);
 
 /// One quantity, with or without sites.
-pub(super) struct Kin {
+pub(super) struct QuantityColumns {
     /// Its name without its site.
     pub(super) name: String,
     /// Its symbol in print: its name, or the symbol for momenta.
@@ -36,10 +36,10 @@ pub(super) struct Kin {
 }
 
 /// Groups observables by quantity, in the order in which each quantity occurs first.
-pub(super) fn grouped(run: &Finished<'_>, all: Vec<Placed>) -> Vec<Kin> {
+pub(super) fn grouped(run: &Finished<'_>, all: Vec<Placed>) -> Vec<QuantityColumns> {
     let at_sites = at_sites(run.card);
     let mut keys: Vec<&str> = Vec::new();
-    let mut kin: Vec<Kin> = Vec::new();
+    let mut kin: Vec<QuantityColumns> = Vec::new();
     for (field, columns) in all {
         let own = at_sites.iter().find_map(|q| {
             let mut members = q.members.iter();
@@ -57,7 +57,7 @@ pub(super) fn grouped(run: &Finished<'_>, all: Vec<Placed>) -> Vec<Kin> {
                     own if own == field.name => (name.to_owned(), name),
                     letter => (format!("{letter} of {name}"), letter),
                 };
-                kin.push(Kin {
+                kin.push(QuantityColumns {
                     name,
                     letter: letter.to_owned(),
                     index: own.map_or_else(String::new, |(q, _)| q.index.clone()),
@@ -71,7 +71,7 @@ pub(super) fn grouped(run: &Finished<'_>, all: Vec<Placed>) -> Vec<Kin> {
 
 /// Selects as many copies of each quantity as fit into `room` together, evenly spaced from its first to its
 /// last site. If some are omitted, a sentence lists the copies that are shown.
-fn chosen(kin: Vec<Kin>, room: usize) -> (Vec<Kin>, Option<String>) {
+fn chosen(kin: Vec<QuantityColumns>, room: usize) -> (Vec<QuantityColumns>, Option<String>) {
     let taken = |each: usize| kin.iter().map(|k| k.members.len().min(each)).sum::<usize>();
     let all = taken(usize::MAX);
     if all <= room {

@@ -109,7 +109,7 @@ fn shots(run: &Finished<'_>, record: &Record, field: &AtSites<'_>) -> Vec<Shot> 
 
 /// The two axes of a panel.
 #[derive(Clone, Copy)]
-enum Seen {
+enum PanelAxes {
     /// The coordinates with these numbers.
     Plane([usize; 2]),
     /// The number of the point, and a number.
@@ -118,11 +118,11 @@ enum Seen {
 
 /// The planes in which points with three coordinates are drawn, from the range of each. The first plane has the
 /// two largest ranges. If the third range is not small, a second plane has the third range and the largest.
-fn planes(extents: [f64; 3]) -> Vec<Seen> {
+fn planes(extents: [f64; 3]) -> Vec<PanelAxes> {
     let mut order = [0, 1, 2];
     order.sort_by(|a, b| extents[*b].total_cmp(&extents[*a]));
     let [most, second, third] = order;
-    let plane = |a: usize, b: usize| Seen::Plane([a.min(b), a.max(b)]);
+    let plane = |a: usize, b: usize| PanelAxes::Plane([a.min(b), a.max(b)]);
     let mut all = vec![plane(most, second)];
     if extents[third] > DEEP * extents[most] {
         all.push(plane(most, third));
@@ -140,7 +140,7 @@ struct Strip {
 
 /// The curves of one plane.
 struct Block {
-    seen: Seen,
+    seen: PanelAxes,
     curves: Vec<Vec<[f64; 2]>>,
     low: [f64; 2],
     high: [f64; 2],
@@ -158,8 +158,8 @@ impl Strip {
             high - low
         };
         let seen = match field.field.count() {
-            1 => vec![Seen::Graph],
-            2 => vec![Seen::Plane([0, 1])],
+            1 => vec![PanelAxes::Graph],
+            2 => vec![PanelAxes::Plane([0, 1])],
             _ => planes([0, 1, 2].map(extent)),
         };
         let blocks = seen.into_iter().map(|seen| Block::of(seen, shots));
@@ -173,8 +173,8 @@ impl Strip {
     /// The planes, for the title: `components 1 and 3`.
     fn seen(&self) -> String {
         let plane = |block: &Block| match block.seen {
-            Seen::Plane([a, b]) => Some(format!("{} and {}", a + 1, b + 1)),
-            Seen::Graph => None,
+            PanelAxes::Plane([a, b]) => Some(format!("{} and {}", a + 1, b + 1)),
+            PanelAxes::Graph => None,
         };
         let all: Vec<String> = self.blocks.iter().filter_map(plane).collect();
         format!("components {}", all.join(", below "))
@@ -183,12 +183,12 @@ impl Strip {
 
 impl Block {
     /// `None` if nothing can be drawn.
-    fn of(seen: Seen, shots: &[Shot]) -> Option<Self> {
+    fn of(seen: PanelAxes, shots: &[Shot]) -> Option<Self> {
         let put = |(k, p): (usize, &Vec<f64>)| {
             let at = |d: usize| p.get(d).copied().unwrap_or(f64::NAN);
             match seen {
-                Seen::Graph => [k as f64, at(0)],
-                Seen::Plane([a, b]) => [at(a), at(b)],
+                PanelAxes::Graph => [k as f64, at(0)],
+                PanelAxes::Plane([a, b]) => [at(a), at(b)],
             }
         };
         let curve = |shot: &Shot| -> Vec<[f64; 2]> {
@@ -207,7 +207,7 @@ impl Block {
         if !widest.is_finite() || widest <= 0.0 {
             return None;
         }
-        let graph = matches!(seen, Seen::Graph);
+        let graph = matches!(seen, PanelAxes::Graph);
         for d in 0..2 {
             let own = high[d] - low[d];
             // A graph fills its panel. A shape has one scale in both directions, in panels with a minimal
@@ -232,8 +232,8 @@ impl Block {
     /// The sides of a panel, in pixels.
     fn side(&self, width: f64) -> [f64; 2] {
         let ratio = match self.seen {
-            Seen::Graph => 0.7,
-            Seen::Plane(_) => (self.wide(1) / self.wide(0)).min(1.6),
+            PanelAxes::Graph => 0.7,
+            PanelAxes::Plane(_) => (self.wide(1) / self.wide(0)).min(1.6),
         };
         [width, (width * ratio).round()]
     }
@@ -242,8 +242,8 @@ impl Block {
     fn unit(&self, side: [f64; 2]) -> [f64; 2] {
         let unit = [side[0] / self.wide(0), side[1] / self.wide(1)];
         match self.seen {
-            Seen::Graph => unit,
-            Seen::Plane(_) => [unit[0].min(unit[1]); 2],
+            PanelAxes::Graph => unit,
+            PanelAxes::Plane(_) => [unit[0].min(unit[1]); 2],
         }
     }
 }
@@ -344,7 +344,7 @@ impl Block {
         [top, below]: [f64; 2],
         width: f64,
     ) -> Result<(), Box<dyn std::error::Error>> {
-        let Seen::Plane(components) = self.seen else {
+        let PanelAxes::Plane(components) = self.seen else {
             return Ok(());
         };
         let [across, up] = components.map(|d| format!("{name}{}", subscript(d + 1)));
@@ -361,7 +361,7 @@ impl Block {
         [left, top]: [f64; 2],
         side: [f64; 2],
     ) -> Result<(), Box<dyn std::error::Error>> {
-        let Seen::Plane([across, up]) = self.seen else {
+        let PanelAxes::Plane([across, up]) = self.seen else {
             let words = format!(
                 "from site to site; between {} and {}; a dot at the first site",
                 number::short(self.low[1]),
@@ -398,13 +398,13 @@ fn pixel(place: [f64; 2]) -> (i32, i32) {
 
 #[cfg(test)]
 mod tests {
-    use super::{Seen, planes};
+    use super::{PanelAxes, planes};
 
     /// The planes as components, counted from one.
     fn seen(extents: [f64; 3]) -> Vec<[usize; 2]> {
-        let own = |seen: Seen| match seen {
-            Seen::Plane(plane) => plane.map(|d| d + 1),
-            Seen::Graph => [0, 0],
+        let own = |seen: PanelAxes| match seen {
+            PanelAxes::Plane(plane) => plane.map(|d| d + 1),
+            PanelAxes::Graph => [0, 0],
         };
         planes(extents).into_iter().map(own).collect()
     }

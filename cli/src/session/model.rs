@@ -8,7 +8,7 @@ use crate::commands::show;
 use crate::models::gallery::{Citations, Entry, Gallery};
 use crate::named::cases::{CaseText, NamedCases, WhichCase};
 use crate::named::model_file;
-use crate::named::resolve::{ModelText, Named, named};
+use crate::named::resolve::{ModelText, NamedModel, named};
 use crate::plan::Plan;
 use crate::terminal::Streams;
 use crate::terminal::failure::Failure;
@@ -59,16 +59,16 @@ impl Model {
     /// Usage: the model is unknown, a file cannot be read, or the text does not derive.
     pub fn named(gallery: &Gallery, name: &str) -> Result<Self, Failure> {
         match named(gallery, name, "expected a model")? {
-            Named::Text(text) if text.is_path => Self::read(text),
+            NamedModel::Text(text) if text.is_path => Self::read(text),
             // Shipped texts derive, and each run derives them for its case.
-            Named::Text(text) => Ok(Self {
+            NamedModel::Text(text) => Ok(Self {
                 has_sites: has_sites(&text.text),
                 text,
                 compiled: None,
                 fixed: None,
                 warnings: String::new(),
             }),
-            Named::Compiled(entry) => Ok(Self {
+            NamedModel::Compiled(entry) => Ok(Self {
                 text: ModelText {
                     name: entry.card.kebab.to_owned(),
                     text: entry.card.source.to_owned(),

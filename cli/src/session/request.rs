@@ -5,7 +5,7 @@ use crate::plan::Plan;
 use crate::terminal::failure::Failure;
 use clebsch::card::OpenError;
 use clebsch::solvers::Method;
-use clebsch_check::Which;
+use clebsch_check::StepSelection;
 
 /// The options of a run. A case gives the step size and the number of steps.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ pub struct Request {
     /// Whether a failed step is retried as substeps.
     pub halve: bool,
     /// The steps to judge by the action as stated.
-    pub judged: Which,
+    pub judged: StepSelection,
 }
 
 impl Default for Request {
@@ -35,7 +35,7 @@ impl Default for Request {
             solver: None,
             compensated: false,
             halve: false,
-            judged: Which::None,
+            judged: StepSelection::None,
         }
     }
 }

@@ -12,7 +12,7 @@ use clebsch::StepError;
 use clebsch::card::{Card, Trajectory};
 use clebsch::integrate::{Halvings, Observer, RunError, Summary, Watch};
 use clebsch::saved::Words;
-use clebsch_check::{Verdict, Which};
+use clebsch_check::{StepSelection, Verdict};
 use std::collections::TryReserveError;
 use std::time::{Duration, Instant};
 
@@ -94,7 +94,7 @@ impl Running {
     ///
     /// # Errors
     /// Usage: the model rejects the data. Failed: the first step fails, or memory does not suffice.
-    pub fn start(planned: Planned, which: Which, sampled: bool) -> Result<Self, Failure> {
+    pub fn start(planned: Planned, which: StepSelection, sampled: bool) -> Result<Self, Failure> {
         let Planned { card, plan, .. } = planned;
         let opened = plan.open(&card)?;
         let trajectory = JudgedTrajectory::new(&card, &plan, which, opened);
@@ -120,7 +120,7 @@ impl Running {
         Ok(Self {
             card,
             plan,
-            judged: which != Which::None,
+            judged: which != StepSelection::None,
             trajectory,
             watch,
             rows,
@@ -311,7 +311,7 @@ impl Running {
         StepLimits {
             step: known.map(|found| found.step),
             frequency: known.map(clebsch::integrate::LongestStep::frequency),
-            told: limit.told(h),
+            told: limit.summary_line(h),
             warning: limit.warning(h),
         }
     }

@@ -19,7 +19,7 @@ pub(crate) struct Waiting {
 impl Waiting {
     /// Shows `what` on a terminal after a second, until the value is dropped. Without a terminal nothing is
     /// shown.
-    pub(crate) fn told(what: String, terminal: bool) -> Self {
+    pub(crate) fn showing(what: String, terminal: bool) -> Self {
         let (end, ended) = channel();
         let show = move || {
             if ended.recv_timeout(QUIET) != Err(RecvTimeoutError::Timeout) {

@@ -63,8 +63,12 @@ impl Identity {
             ("compensated".to_owned(), text(&plan.compensated)),
             ("halve".to_owned(), text(&plan.halve)),
         ];
-        all.extend(told("parameters", card.parameters, &case.parameters));
-        all.extend(told("initial", card.initial, &case.initial));
+        all.extend(compared_values(
+            "parameters",
+            card.parameters,
+            &case.parameters,
+        ));
+        all.extend(compared_values("initial", card.initial, &case.initial));
         Self(all)
     }
 
@@ -98,7 +102,7 @@ impl Identity {
 }
 
 /// The values of a table as they are compared: field by field. A quantity at many sites forms one entry.
-fn told(table: &str, fields: &[Field], values: &[Vec<f64>]) -> Vec<(String, String)> {
+fn compared_values(table: &str, fields: &[Field], values: &[Vec<f64>]) -> Vec<(String, String)> {
     let mut sites: BTreeMap<&str, usize> = BTreeMap::new();
     for quantity in fields.iter().filter_map(|f| quantity_of(f.ascii)) {
         *sites.entry(quantity).or_default() += 1;
@@ -146,7 +150,7 @@ impl Checkpoint {
     /// Writes the checkpoint in small pieces, so that the numbers of a million particles are not copied in
     /// memory.
     pub(crate) fn put(&self, identity: &Identity, out: impl Write) -> io::Result<()> {
-        let mut out = Summed {
+        let mut out = ChecksumWriter {
             out: BufWriter::with_capacity(BUFFER, out),
             sum: crc32fast::Hasher::new(),
         };
@@ -163,7 +167,7 @@ impl Checkpoint {
         }
         out.write_all(&self.rows.to_le_bytes())?;
         out.write_all(&u64::from(self.sum).to_le_bytes())?;
-        let Summed { mut out, sum } = out;
+        let ChecksumWriter { mut out, sum } = out;
         out.write_all(&u64::from(sum.finalize()).to_le_bytes())?;
         out.flush()
     }
@@ -211,7 +215,7 @@ impl Checkpoint {
         if u64::from_le_bytes(*sum) != u64::from(crc32fast::hash(contents)) {
             return Err(damaged());
         }
-        let mut rest = Rest(
+        let mut rest = UnreadBytes(
             rest.get(1..rest.len().saturating_sub(8))
                 .unwrap_or_default(),
         );
@@ -234,12 +238,12 @@ impl Checkpoint {
 }
 
 /// A writer that computes the checksum of its output.
-struct Summed<W> {
+struct ChecksumWriter<W> {
     out: W,
     sum: crc32fast::Hasher,
 }
 
-impl<W: Write> Summed<W> {
+impl<W: Write> ChecksumWriter<W> {
     fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.sum.update(bytes);
         self.out.write_all(bytes)
@@ -247,9 +251,9 @@ impl<W: Write> Summed<W> {
 }
 
 /// The bytes that remain to be read.
-struct Rest<'a>(&'a [u8]);
+struct UnreadBytes<'a>(&'a [u8]);
 
-impl<'a> Rest<'a> {
+impl<'a> UnreadBytes<'a> {
     fn take(&mut self, bytes: usize) -> Option<&'a [u8]> {
         let (taken, left) = self.0.split_at_checked(bytes)?;
         self.0 = left;
@@ -281,7 +285,7 @@ impl<'a> Rest<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Checkpoint, Identity, VERSION, listed, told};
+    use super::{Checkpoint, Identity, VERSION, compared_values, listed};
     use clebsch::card::{Field, Kind};
 
     fn identity(h: &str) -> Identity {
@@ -320,25 +324,25 @@ mod tests {
     #[test]
     fn values_at_many_sites_are_told_together_and_those_at_few_one_by_one() {
         let (few, values) = fields(3);
-        let all = told("initial", &few, &values);
+        let all = compared_values("initial", &few, &values);
         assert_eq!(all.len(), 7);
         assert_eq!(
             all[3],
             ("initial.momentum_X_1".to_owned(), "[3.0]".to_owned())
         );
         let (many, values) = fields(200);
-        let all = told("initial", &many, &values);
+        let all = compared_values("initial", &many, &values);
         let names: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
         assert_eq!(names, ["initial.c0", "initial.X", "initial.momentum_X"]);
         // Every value and its position count.
         for (site, other) in [(57, 0.5), (399, -1.0), (400, 2.0)] {
             let mut changed = values.clone();
             changed[site] = vec![other];
-            assert_ne!(told("initial", &many, &changed), all);
+            assert_ne!(compared_values("initial", &many, &changed), all);
         }
         let mut changed = values.clone();
         changed.swap(2, 4);
-        assert_ne!(told("initial", &many, &changed), all);
+        assert_ne!(compared_values("initial", &many, &changed), all);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use clebsch::card::{Card, Trajectory};
 use clebsch::integrate::Halvings;
 use clebsch::kinetic::KineticWarning;
 use clebsch::saved::{Saved, Words};
-use clebsch_check::{Chosen, Judge, Judged, Verdict, Which};
+use clebsch_check::{Chosen, Judge, Judged, StepSelection, Verdict};
 use serde_json::{Value, json};
 
 /// A trajectory whose steps are judged.
@@ -22,9 +22,14 @@ pub(crate) struct JudgedTrajectory {
 
 impl JudgedTrajectory {
     /// The trajectory `inner` of the planned run, with its steps judged.
-    pub(crate) fn new(card: &Card, plan: &Plan, which: Which, inner: Box<dyn Trajectory>) -> Self {
+    pub(crate) fn new(
+        card: &Card,
+        plan: &Plan,
+        which: StepSelection,
+        inner: Box<dyn Trajectory>,
+    ) -> Self {
         let judge = match which {
-            Which::None => Err("not requested".to_owned()),
+            StepSelection::None => Err("not requested".to_owned()),
             _ => judge(card, plan),
         };
         let verdict = Verdict {
@@ -32,7 +37,7 @@ impl JudgedTrajectory {
             not_judged: judge
                 .as_ref()
                 .err()
-                .filter(|_| which != Which::None)
+                .filter(|_| which != StepSelection::None)
                 .cloned(),
             ..Verdict::default()
         };

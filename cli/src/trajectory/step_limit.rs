@@ -2,7 +2,7 @@
 //! Takes a card with its plan; gives the highest frequency of small motions about the start and the stability
 //! limit, or why there is none.
 
-use crate::models::held;
+use crate::models::constraints;
 use crate::plan::Plan;
 use crate::words::number::plain;
 use clap::ArgMatches;
@@ -52,7 +52,7 @@ impl StepLimit {
         let case = &plan.case;
         let has_sites = plan.choice.is_some();
         let numbers: usize = case.initial.iter().map(Vec::len).sum();
-        let is_held = held::is_held(card);
+        let is_held = constraints::card_has_constraints(card);
         let most = match is_held {
             true => SOUGHT_HELD,
             false => SOUGHT,
@@ -92,7 +92,7 @@ impl StepLimit {
     }
 
     /// A line above a run with steps of `h`.
-    pub(crate) fn told(&self, h: f64) -> Option<String> {
+    pub(crate) fn summary_line(&self, h: f64) -> Option<String> {
         let short = |x: f64| plain(three_digits(x));
         match self {
             Self::Known(limit) if limit.step.is_finite() => Some(format!(

@@ -4,7 +4,7 @@ pub(crate) mod columns;
 pub(crate) mod lines;
 pub(crate) mod number;
 pub(crate) mod plain;
+pub(crate) mod step_method;
 pub(crate) mod suggestion;
 pub(crate) mod toml_value;
-pub(crate) mod way;
 pub(crate) mod width;

@@ -23,50 +23,50 @@ pub(crate) fn steps(count: u64) -> String {
 }
 
 /// A name for a message, on one line, every control character written `\u001b`.
-pub(crate) struct Shown(String);
+pub(crate) struct PrintableName(String);
 
 /// The name as a message shows it.
-pub(crate) fn shown(name: impl Named) -> Shown {
-    Shown(name.text())
+pub(crate) fn shown(name: impl MessageName) -> PrintableName {
+    PrintableName(name.text())
 }
 
 /// A name that messages print: a text, or a file, whose name need not be valid text.
-pub(crate) trait Named {
+pub(crate) trait MessageName {
     /// The name, with a replacement character for every invalid part.
     fn text(&self) -> String;
 }
 
-impl Named for &str {
+impl MessageName for &str {
     fn text(&self) -> String {
         (*self).to_owned()
     }
 }
 
-impl Named for &String {
+impl MessageName for &String {
     fn text(&self) -> String {
         (*self).clone()
     }
 }
 
-impl Named for &Path {
+impl MessageName for &Path {
     fn text(&self) -> String {
         self.display().to_string()
     }
 }
 
-impl Named for &std::path::PathBuf {
+impl MessageName for &std::path::PathBuf {
     fn text(&self) -> String {
         self.display().to_string()
     }
 }
 
-impl Named for std::ffi::OsString {
+impl MessageName for std::ffi::OsString {
     fn text(&self) -> String {
         OsStr::display(self).to_string()
     }
 }
 
-impl fmt::Display for Shown {
+impl fmt::Display for PrintableName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.chars().try_for_each(|letter| match acts(letter) {
             true => write!(f, "\\u{:04x}", u32::from(letter)),

@@ -1,7 +1,7 @@
 //! Every form of a rotation is accepted wherever a case has a rotation: initial values, parameters, values at sites and at ends.
 
 use crate::common::{Folder, table};
-use crate::ran::{Ran, run};
+use crate::text_runs::{Ran, run};
 
 const MODEL: &str = "model Drawn {
     param J: Sym<3>;

@@ -1,7 +1,7 @@
 //! Arithmetic in the numbers of every case, with and without labels, and one value for all copies of a quantity.
 
 use crate::common::{Folder, clebsch, table};
-use crate::ran::{Ran, run};
+use crate::text_runs::{Ran, run};
 
 const MODEL: &str = "model Beads {
     param m1, m2, k: Real;

@@ -3,7 +3,7 @@
 //! undefined there, the message says what to write.
 
 use crate::common::{Folder, table};
-use crate::ran::{Ran, run};
+use crate::text_runs::{Ran, run};
 use clebsch::scalar::largest;
 
 const MODEL: &str = "model Channel {

@@ -3,7 +3,7 @@
 //! distance.
 
 use crate::common::Folder;
-use crate::ran::run;
+use crate::text_runs::run;
 
 const PENDULUM: &str = "model Pendulum {
     param m, L, g: Real;

@@ -165,7 +165,7 @@ fn panels_of_fields_are_named_as_the_model_documents_them() {
     }";
     let case = "model = \"two\"\nh = 0.05\nsteps = 30\n[parameters]\nm = 1.0\n[initial]\ny = [1.0, 0.0]\nmomentum_y = [0.0, 0.5]\n\
                 z = 0.0\nmomentum_z = 1.0\n";
-    crate::ran::run(&folder, model, case, "--out @out").succeeds();
+    crate::text_runs::run(&folder, model, case, "--out @out").succeeds();
     let svg = folder.read("out/fields.svg");
     let lines: Vec<&str> = svg.lines().map(str::trim).collect();
     assert!(lines.contains(&"y") && lines.contains(&"z: height of the lid"));

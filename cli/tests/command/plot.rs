@@ -171,7 +171,7 @@ fn columns_are_found_as_the_table_names_them() {
     let case = "model = \"turns\"\nh = 0.01\nsteps = 3\n[labels]\ni = 2\n[parameters]\nJ = { I = [2, 3, 4] }\nk = 1\n[initial]\n\
                 R = { axis = [0, 0, 1], angle = 0.3 }\nangular_velocity_R = [1, 0.2, 0]\n";
     let out = folder.path("out");
-    crate::ran::run(&folder, model, case, "--out @out").succeeds();
+    crate::text_runs::run(&folder, model, case, "--out @out").succeeds();
     let table = folder.read("out/trajectory.csv");
     let names = table.lines().next().unwrap_or_default().split(',');
     let own: Vec<&str> = names.filter(|name| name.starts_with("relative_")).collect();

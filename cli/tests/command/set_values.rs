@@ -2,7 +2,7 @@
 //! leave the number of steps to an option.
 
 use crate::common::{Folder, clebsch, runs};
-use crate::ran::run;
+use crate::text_runs::run;
 
 const TOP: &str = "model Top {
     param J: Sym<3>;

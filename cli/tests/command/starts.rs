@@ -3,8 +3,8 @@
 //! forty digits by Newton's method on equations typed by hand.
 
 use crate::common::{Done, Folder, Samples, on, rotor};
-use crate::ran::run;
 use crate::rotor::gallery;
+use crate::text_runs::run;
 use clebsch::card::{OpenError, Settings, Trajectory};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -2,7 +2,7 @@
 //! finite there, along chains that are written out and along those that run by loops.
 
 use crate::common::Folder;
-use crate::ran::run;
+use crate::text_runs::run;
 
 const FIELD: &str = "model E {
     label i in 0..N;

@@ -2,7 +2,7 @@
 //! closed forms. If there are no momenta, the message says what to write.
 
 use crate::common::Folder;
-use crate::ran::{Ran, run};
+use crate::text_runs::{Ran, run};
 
 /// Eight roundings of a sum of terms of this size.
 fn near(found: f64, expected: f64, size: f64) {

@@ -7,18 +7,20 @@ use clebsch::Real;
 use std::sync::{Arc, OnceLock};
 
 /// An argument. A value that is stored in a place is not copied.
-pub(super) enum Given<T: Real> {
+pub(super) enum CallArgument<T: Real> {
     There,
     Made(Value<T>),
 }
 
-impl<T: Real> Given<T> {
+impl<T: Real> CallArgument<T> {
     #[inline]
     pub(super) fn of(code: &Code<T>, places: &mut Places<T>) -> Result<Self, Exit<T>> {
         match code {
-            Code::Place(_) | Code::Constant(_) => Ok(Given::There),
-            Code::Field(..) | Code::Index(..) if code.place(places).is_some() => Ok(Given::There),
-            _ => Ok(Given::Made(code.run(places)?)),
+            Code::Place(_) | Code::Constant(_) => Ok(CallArgument::There),
+            Code::Field(..) | Code::Index(..) if code.place(places).is_some() => {
+                Ok(CallArgument::There)
+            }
+            _ => Ok(CallArgument::Made(code.run(places)?)),
         }
     }
 
@@ -29,8 +31,8 @@ impl<T: Real> Given<T> {
         places: &'a Places<T>,
     ) -> Result<&'a Value<T>, Exit<T>> {
         match self {
-            Given::Made(value) => Ok(value),
-            Given::There => unfit(code.place(places)),
+            CallArgument::Made(value) => Ok(value),
+            CallArgument::There => unfit(code.place(places)),
         }
     }
 }
@@ -42,7 +44,7 @@ pub(super) fn apply<T: Real>(
     places: &mut Places<T>,
     f: impl Fn(&Value<T>) -> Option<Value<T>>,
 ) -> Evaluated<T> {
-    let x = Given::of(a, places)?;
+    let x = CallArgument::of(a, places)?;
     unfit(f(x.get(a, places)?))
 }
 
@@ -53,8 +55,8 @@ pub(super) fn operation<T: Real>(
     b: &Code<T>,
     places: &mut Places<T>,
 ) -> Evaluated<T> {
-    let x = Given::of(a, places)?;
-    let y = Given::of(b, places)?;
+    let x = CallArgument::of(a, places)?;
+    let y = CallArgument::of(b, places)?;
     unfit(crate::library::binary(
         operator,
         x.get(a, places)?,
@@ -69,7 +71,7 @@ pub(super) fn one<T: Real>(
     sizes: &[usize],
     places: &mut Places<T>,
 ) -> Evaluated<T> {
-    let x = Given::of(a, places)?;
+    let x = CallArgument::of(a, places)?;
     unfit(native(&[x.get(a, places)?], sizes))
 }
 
@@ -81,8 +83,8 @@ pub(super) fn two<T: Real>(
     sizes: &[usize],
     places: &mut Places<T>,
 ) -> Evaluated<T> {
-    let x = Given::of(a, places)?;
-    let y = Given::of(b, places)?;
+    let x = CallArgument::of(a, places)?;
+    let y = CallArgument::of(b, places)?;
     unfit(native(&[x.get(a, places)?, y.get(b, places)?], sizes))
 }
 
@@ -109,9 +111,9 @@ pub(super) fn several<T: Real, const N: usize>(
     sizes: &[usize],
     places: &mut Places<T>,
 ) -> Evaluated<T> {
-    let mut given = [const { Given::There }; N];
+    let mut given = [const { CallArgument::There }; N];
     for (slot, a) in given.iter_mut().zip(all) {
-        *slot = Given::of(a, places)?;
+        *slot = CallArgument::of(a, places)?;
     }
     let nothing = Value::Unit;
     let mut list = [&nothing; N];

@@ -60,7 +60,7 @@ pub struct Sweep {
 }
 
 /// A list that is taken out of its place, and its sites.
-struct Taken {
+struct TakenList {
     column: Column<f64>,
     from: usize,
     to: usize,
@@ -83,12 +83,12 @@ impl Slice {
         Ok([from, to])
     }
 
-    fn taken(&self, places: &mut Places<f64>) -> Result<Taken, Exit<f64>> {
+    fn taken(&self, places: &mut Places<f64>) -> Result<TakenList, Exit<f64>> {
         let [from, to] = self.range(places)?;
         let place = unfit(self.list.place_mut(places))?;
         match std::mem::replace(place, Value::Unit) {
             Value::Sites(column) if from <= to && to <= column.len() => {
-                Ok(Taken { column, from, to })
+                Ok(TakenList { column, from, to })
             }
             other => {
                 *place = other;
@@ -97,7 +97,7 @@ impl Slice {
         }
     }
 
-    fn put_back(&self, taken: Taken, places: &mut Places<f64>) -> Result<(), Exit<f64>> {
+    fn put_back(&self, taken: TakenList, places: &mut Places<f64>) -> Result<(), Exit<f64>> {
         *unfit(self.list.place_mut(places))? = Value::Sites(taken.column);
         Ok(())
     }
@@ -176,7 +176,7 @@ impl Sweep {
         Ok([from.count(places)?, to.count(places)?])
     }
 
-    fn filled(&self, taken: &mut Taken, places: &mut Places<f64>) -> Evaluated<f64> {
+    fn filled(&self, taken: &mut TakenList, places: &mut Places<f64>) -> Evaluated<f64> {
         let (mut i, to) = (0, taken.to - taken.from);
         while i < to {
             let mut lists = Lists {
@@ -199,8 +199,8 @@ impl Sweep {
 
     fn updated(
         &self,
-        out: &mut Taken,
-        kept: &mut Taken,
+        out: &mut TakenList,
+        kept: &mut TakenList,
         places: &mut Places<f64>,
     ) -> Evaluated<f64> {
         let (mut i, to) = (0, (out.to - out.from).min(kept.to - kept.from));

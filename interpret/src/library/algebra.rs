@@ -1,7 +1,7 @@
 //! Arithmetic, matrices and the functions of one number.
 
 use crate::code::{Native, Operator};
-use crate::value::{Kept, Value};
+use crate::value::{MatrixGroup, Value};
 use clebsch::Real;
 use clebsch::emitted as e;
 use clebsch::linalg;
@@ -36,8 +36,8 @@ pub fn binary<T: Real>(operator: Operator, a: &Value<T>, b: &Value<T>) -> Option
         (Mul, V::Quaternion(x), V::Quaternion(y)) => V::Quaternion(*x * *y),
         (Mul, V::Motion(x), V::Motion(y)) => V::Motion(Box::new(**x * **y)),
         (Mul, V::Plane(x), V::Plane(y)) => V::Plane(Box::new(**x * **y)),
-        (Add, V::Element(Kept::Field, x), V::Element(_, y)) => {
-            V::Element(Kept::Field, x.zip(y, |x, y| x + y))
+        (Add, V::Element(MatrixGroup::Field, x), V::Element(_, y)) => {
+            V::Element(MatrixGroup::Field, x.zip(y, |x, y| x + y))
         }
         (Mul, V::Element(..), V::Element(..)) => super::groups::composed(a, b)?,
         (Mul, a, V::Real(y)) => V::Dense(a.dense()?.map(|x| x * *y)),

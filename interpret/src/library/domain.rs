@@ -1,7 +1,7 @@
 //! Domains of functions, and residuals of the equations of a step.
 
 use crate::code::Native;
-use crate::value::{Kept, Value};
+use crate::value::{MatrixGroup, Value};
 use clebsch::Real;
 use clebsch::domain;
 use clebsch::integrate::{filled, fills};
@@ -79,7 +79,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             Some(warning.map_or(Value::None, Value::Warning))
         },
         ("is_invertible", 1) => |a, _| match a.first()? {
-            Value::Element(Kept::Linear, _) => Some(Value::Bool(true)),
+            Value::Element(MatrixGroup::Linear, _) => Some(Value::Bool(true)),
             _ => None,
         },
         _ => return None,

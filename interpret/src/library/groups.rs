@@ -1,7 +1,7 @@
 //! Group elements: products, velocities, matrices, places.
 
 use crate::code::Native;
-use crate::value::{Kept, Value};
+use crate::value::{MatrixGroup, Value};
 use clebsch::Real;
 use clebsch::emitted::{Additive, Group, Placed, added};
 use clebsch::linalg::Dense;
@@ -19,20 +19,20 @@ pub(crate) fn linear_inverse<T: Real>(a: &Dense<T>) -> Dense<T> {
 }
 
 /// The inverse of an element stored as a matrix.
-pub(crate) fn inverse_kept<T: Real>(kept: Kept, a: &Dense<T>) -> Dense<T> {
+pub(crate) fn inverse_kept<T: Real>(kept: MatrixGroup, a: &Dense<T>) -> Dense<T> {
     match kept {
-        Kept::Orthogonal => a.transpose(),
-        Kept::Linear => linear_inverse(a),
-        Kept::Field => a.map(|x| -x),
+        MatrixGroup::Orthogonal => a.transpose(),
+        MatrixGroup::Linear => linear_inverse(a),
+        MatrixGroup::Field => a.map(|x| -x),
     }
 }
 
 /// The product of two elements stored as matrices.
-pub(crate) fn composed_kept<T: Real>(kept: Kept, a: &Dense<T>, b: &Dense<T>) -> Dense<T> {
+pub(crate) fn composed_kept<T: Real>(kept: MatrixGroup, a: &Dense<T>, b: &Dense<T>) -> Dense<T> {
     match kept {
-        Kept::Orthogonal => turned(a, b),
-        Kept::Linear => a.times(b),
-        Kept::Field => a.plus(b),
+        MatrixGroup::Orthogonal => turned(a, b),
+        MatrixGroup::Linear => a.times(b),
+        MatrixGroup::Field => a.plus(b),
     }
 }
 
@@ -40,10 +40,12 @@ pub(crate) fn composed_kept<T: Real>(kept: Kept, a: &Dense<T>, b: &Dense<T>) -> 
 fn of_both<T: Real>(
     a: &Value<T>,
     b: &Value<T>,
-    f: impl Fn(Kept, &Dense<T>, &Dense<T>) -> Dense<T>,
+    f: impl Fn(MatrixGroup, &Dense<T>, &Dense<T>) -> Dense<T>,
 ) -> Option<Value<T>> {
     match (a, b) {
-        (Value::Element(kept, a), Value::Element(_, b)) if *kept != Kept::Field && a.fits(b) => {
+        (Value::Element(kept, a), Value::Element(_, b))
+            if *kept != MatrixGroup::Field && a.fits(b) =>
+        {
             Some(Value::Element(*kept, f(*kept, a, b)))
         }
         _ => None,
@@ -61,7 +63,7 @@ fn velocity<T: Real>(a: &Value<T>, b: &Value<T>) -> Option<Value<T>> {
         (Value::Quaternion(a), Value::Quaternion(b)) => Value::Quaternion(a.body_velocity(b)),
         (Value::Motion(a), Value::Motion(b)) => Value::Motion(Box::new(a.body_velocity(b))),
         (Value::Plane(a), Value::Plane(b)) => Value::Plane(Box::new(a.body_velocity(b))),
-        (Value::Element(Kept::Field, a), Value::Element(_, b)) => column_wise(a, b)?,
+        (Value::Element(MatrixGroup::Field, a), Value::Element(_, b)) => column_wise(a, b)?,
         _ => {
             return of_both(a, b, |kept, a, b| {
                 composed_kept(kept, &inverse_kept(kept, a), b)
@@ -76,7 +78,7 @@ fn spatial_velocity<T: Real>(a: &Value<T>, b: &Value<T>) -> Option<Value<T>> {
         (Value::Quaternion(a), Value::Quaternion(b)) => Value::Quaternion(a.spatial_velocity(b)),
         (Value::Motion(a), Value::Motion(b)) => Value::Motion(Box::new(a.spatial_velocity(b))),
         (Value::Plane(a), Value::Plane(b)) => Value::Plane(Box::new(a.spatial_velocity(b))),
-        (Value::Element(Kept::Field, a), Value::Element(_, b)) => {
+        (Value::Element(MatrixGroup::Field, a), Value::Element(_, b)) => {
             let (one, two) = (single(a), single(b));
             let each = one.iter().zip(&two).map(|(a, b)| a.spatial_velocity(b));
             field(a, each.map(|v| v.matrix()[0]).collect())
@@ -97,7 +99,7 @@ fn single<T: Real>(a: &Dense<T>) -> Vec<Additive<1, 1, T>> {
 
 fn field<T: Real>(like: &Dense<T>, data: Vec<T>) -> Value<T> {
     let (rows, cols) = (like.rows, like.cols);
-    Value::Element(Kept::Field, Dense { rows, cols, data })
+    Value::Element(MatrixGroup::Field, Dense { rows, cols, data })
 }
 
 fn column_wise<T: Real>(a: &Dense<T>, b: &Dense<T>) -> Option<Value<T>> {
@@ -150,7 +152,7 @@ fn moved<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
             let (end, left) = g.moved(v, &way(rest)?);
             (Value::Plane(Box::new(end)), Value::of(Dense::of(&left)))
         }
-        (Value::Element(Kept::Field, x), Value::Element(_, v)) => {
+        (Value::Element(MatrixGroup::Field, x), Value::Element(_, v)) => {
             let rest = rest.dense()?;
             let parts = single(x).into_iter().zip(single(v)).zip(&rest.data);
             let parts = parts.map(|((x, v), r)| x.moved(&v, &SMatrix::<T, 1, 1>::new(*r)));
@@ -180,7 +182,7 @@ fn between<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
         (Value::Plane(g), Value::Plane(f)) => {
             Value::Plane(Box::new(g.velocity_between(&way(rest)?, f, &way(next)?)))
         }
-        (Value::Element(Kept::Field, x), Value::Element(_, y)) => {
+        (Value::Element(MatrixGroup::Field, x), Value::Element(_, y)) => {
             let (rest, next) = (rest.dense()?, next.dense()?);
             let ends = single(x).into_iter().zip(single(y));
             let rests = rest.data.iter().zip(&next.data);
@@ -212,12 +214,14 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("body_velocity", 2) => |a, _| velocity(a.first()?, a.get(1)?),
         ("spatial_velocity", 2) => |a, _| spatial_velocity(a.first()?, a.get(1)?),
         ("inverse", 1) => |a, _| inverse(a.first()?),
-        ("Additive::new", 1) => |a, _| Some(Value::Element(Kept::Field, a.first()?.dense()?)),
+        ("Additive::new", 1) => {
+            |a, _| Some(Value::Element(MatrixGroup::Field, a.first()?.dense()?))
+        }
         ("changed", 2) => |a, _| match a {
-            [Value::Element(Kept::Linear, q), change] => {
+            [Value::Element(MatrixGroup::Linear, q), change] => {
                 let change = change.dense()?;
                 let fits = q.fits(&change);
-                fits.then(|| Value::Element(Kept::Linear, q.plus(&change)))
+                fits.then(|| Value::Element(MatrixGroup::Linear, q.plus(&change)))
             }
             _ => None,
         },

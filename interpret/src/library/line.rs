@@ -21,7 +21,7 @@ fn length<T: Real>(list: &Value<T>) -> Option<usize> {
     }
 }
 
-fn told<T: Real>(r: Result<(), LineError>) -> Option<Value<T>> {
+fn line_result<T: Real>(r: Result<(), LineError>) -> Option<Value<T>> {
     Some(Value::result(r.map(|()| Value::Unit)))
 }
 
@@ -40,14 +40,14 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
     Some(match (name, arguments) {
         ("line::count_of", 3) => |a, _| match a {
             [Value::Text(name), found, least] => {
-                told(line::count_of(name, found.count()?, least.count()?))
+                line_result(line::count_of(name, found.count()?, least.count()?))
             }
             _ => None,
         },
         ("line::length_of", 4) => |a, _| match a {
             [Value::Text(name), list, expected, Value::Text(sites)] => {
                 let list = vec![(); length(list)?];
-                told(line::length_of(name, &list, expected.count()?, sites))
+                line_result(line::length_of(name, &list, expected.count()?, sites))
             }
             _ => None,
         },

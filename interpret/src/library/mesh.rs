@@ -1,7 +1,7 @@
 //! Functions that the steppers of fluids call: domains and settings, functionals of all sites, walls.
 
 use crate::code::{Code, Exit, Native, Places, Special, unfit};
-use crate::functional::{Around, Extent, made};
+use crate::functional::{Extent, FunctionalSetting, made};
 use crate::sites::Column;
 use crate::value::Value;
 use clebsch::Real;
@@ -14,7 +14,7 @@ fn missing<T: Real>() -> Exit<T> {
     Exit::Unfit("a functional of all sites called with other arguments")
 }
 
-fn told<T: Real>(done: Result<Value<T>, MeshError>) -> Value<T> {
+fn mesh_result<T: Real>(done: Result<Value<T>, MeshError>) -> Value<T> {
     Value::result(done)
 }
 
@@ -64,24 +64,26 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                     }
                     _ => None,
                 };
-                let around = Around::new(*extent, cells.as_deref(), particles.count()?)?;
-                Some(Value::Around(Box::new(around)))
+                let around = FunctionalSetting::new(*extent, cells.as_deref(), particles.count()?)?;
+                Some(Value::FunctionalSetting(Box::new(around)))
             }
             _ => None,
         },
         ("nodes", 1) => |a, _| match a.first()? {
-            Value::Around(around) => Some(Value::Int(i64::try_from(around.nodes()).ok()?)),
+            Value::FunctionalSetting(around) => {
+                Some(Value::Int(i64::try_from(around.nodes()).ok()?))
+            }
             _ => None,
         },
         ("cell", 1) => |a, _| match a.first()? {
-            Value::Around(around) => {
+            Value::FunctionalSetting(around) => {
                 let lengths = around.cell().into_iter().map(Value::Double);
                 Some(Value::List(lengths.collect()))
             }
             _ => None,
         },
         ("Functional::new", 3) => |a, _| match a {
-            [Value::Text(name), Value::Around(around), data] => {
+            [Value::Text(name), Value::FunctionalSetting(around), data] => {
                 let data = match data {
                     Value::List(list) => list.as_slice(),
                     _ => &[],
@@ -139,7 +141,7 @@ fn value<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
         _ => None,
     };
     *unfit(out.place_mut(places))? = Value::Sites(Column::Numbers(values));
-    Ok(told(unfit(done)?.map(|()| Value::Unit)))
+    Ok(mesh_result(unfit(done)?.map(|()| Value::Unit)))
 }
 
 /// `functional.pull_back(&at[..], seed, back)`

@@ -2,7 +2,7 @@
 
 use super::groups::linear_inverse;
 use crate::code::Native;
-use crate::value::{Frame, Kept, Value};
+use crate::value::{Frame, MatrixGroup, Value};
 use clebsch::emitted::{AboutBody, BodyMomentum, Coadjoint, SpatialMomentum};
 use clebsch::linalg::Dense;
 use clebsch::{
@@ -16,15 +16,15 @@ fn by_matrix<T: Real>(element: &Value<T>, covector: &Dense<T>, to_space: bool) -
     let Value::Element(kept, g) = element else {
         return None;
     };
-    if *kept != Kept::Field && !g.fits(covector) {
+    if *kept != MatrixGroup::Field && !g.fits(covector) {
         return None;
     }
     Some(match (kept, to_space) {
-        (Kept::Orthogonal, true) => g.times(covector).times(&g.transpose()),
-        (Kept::Orthogonal, false) => g.tr_mul(&covector.times(g)),
-        (Kept::Linear, true) => linear_inverse(g).tr_mul(covector).times(&g.transpose()),
-        (Kept::Linear, false) => g.tr_mul(covector).times(&linear_inverse(g).transpose()),
-        (Kept::Field, _) => covector.clone(),
+        (MatrixGroup::Orthogonal, true) => g.times(covector).times(&g.transpose()),
+        (MatrixGroup::Orthogonal, false) => g.tr_mul(&covector.times(g)),
+        (MatrixGroup::Linear, true) => linear_inverse(g).tr_mul(covector).times(&g.transpose()),
+        (MatrixGroup::Linear, false) => g.tr_mul(covector).times(&linear_inverse(g).transpose()),
+        (MatrixGroup::Field, _) => covector.clone(),
     })
 }
 

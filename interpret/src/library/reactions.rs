@@ -16,7 +16,7 @@ fn search<'a, T: Real>(a: &[&'a Value<T>]) -> Option<&'a Multipliers<T>> {
     }
 }
 
-fn told<T: Real>(made: Result<(), (usize, NoReaction)>) -> Value<T> {
+fn reaction_result<T: Real>(made: Result<(), (usize, NoReaction)>) -> Value<T> {
     match made {
         Ok(()) => Value::Unit,
         Err((site, cause)) => Value::failed(Failure::At(site, Box::new(cause.into()))),
@@ -55,7 +55,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                 i64::try_from(search(a)?.largest_impulse()).ok()?,
             ))
         },
-        ("root_found", 1) => |a, _| Some(told(search(a)?.root_found())),
+        ("root_found", 1) => |a, _| Some(reaction_result(search(a)?.root_found())),
         ("fixed_view", 3) => |a, sizes| {
             let (m, row, column) = (a.first()?.dense()?, a.get(1)?.count()?, a.get(2)?.count()?);
             let [rows, cols] = sizes else { return None };
@@ -171,7 +171,7 @@ fn projected<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
         if made.is_ok() {
             put(search, places, out)?;
         }
-        Some(told(made))
+        Some(reaction_result(made))
     })
 }
 

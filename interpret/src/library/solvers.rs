@@ -3,7 +3,7 @@
 use super::momenta::three;
 use crate::code::Native;
 use crate::failure::Failure;
-use crate::value::{Frame, Kept, Value};
+use crate::value::{Frame, MatrixGroup, Value};
 use clebsch::emitted::{
     Edge, Free, LeftFactor, Poinsot, QuaternionBody, divided, reach_of, rotation_at,
 };
@@ -117,7 +117,7 @@ fn text<T: Real>(a: &Value<T>) -> Option<&'static str> {
 /// The solution of a linear equation, or the singular factor.
 fn increment<T: Real>(solved: Option<Dense<T>>, factor: &'static str) -> Value<T> {
     match solved {
-        Some(x) => Value::Element(Kept::Field, x),
+        Some(x) => Value::Element(MatrixGroup::Field, x),
         None => Value::failed(SingularFactor { factor }),
     }
 }
@@ -235,7 +235,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                 with_factor!(f, f => {
                     let solved = f.solve(&v.fixed(), *method);
                     Some(Value::result(
-                        solved.map(|g| Value::Element(Kept::Orthogonal, Dense::of(&g.matrix()))),
+                        solved.map(|g| Value::Element(MatrixGroup::Orthogonal, Dense::of(&g.matrix()))),
                     ))
                 })
             }
@@ -334,13 +334,13 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             let solved = between(a)?;
             Some(Value::result(solved.map(|x| {
                 let one = Dense::identity(x.rows, x.cols);
-                Value::Element(Kept::Linear, one.plus(&x))
+                Value::Element(MatrixGroup::Linear, one.plus(&x))
             })))
         },
         ("two_sided_increment", 4) => |a, _| {
             let solved = between(a)?;
             Some(Value::result(
-                solved.map(|x| Value::Element(Kept::Field, x)),
+                solved.map(|x| Value::Element(MatrixGroup::Field, x)),
             ))
         },
         ("increment_between", 4) => |a, _| {
@@ -361,7 +361,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             let [element, left, known, right, label] = a else {
                 return None;
             };
-            let Value::Element(Kept::Linear, q) = element else {
+            let Value::Element(MatrixGroup::Linear, q) = element else {
                 return None;
             };
             let (l, m, r) = (left.dense()?, known.dense()?, right.dense()?);
@@ -394,7 +394,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             let inverse = divided(&SMatrix::<T, 1, 1>::new(T::one()), *number, label);
             Some(Value::result(inverse.map(|x| {
                 let inverse = x.matrix()[(0, 0)];
-                Value::Element(Kept::Field, m.map(|entry| entry * inverse))
+                Value::Element(MatrixGroup::Field, m.map(|entry| entry * inverse))
             })))
         },
         ("StepCause::from", 1) => |a, _| match a.first()? {

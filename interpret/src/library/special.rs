@@ -158,12 +158,12 @@ fn remember<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
 }
 
 /// A closure that a search calls repeatedly. If a call fails, the search ends.
-struct Asked<'a, T: Real> {
+struct SearchClosure<'a, T: Real> {
     places: RefCell<&'a mut Places<T>>,
     closure: &'a Code<T>,
 }
 
-impl<T: Real> Asked<'_, T> {
+impl<T: Real> SearchClosure<'_, T> {
     fn answer(&self, x: Value<T>) -> Option<Value<T>> {
         let mut places = self.places.borrow_mut();
         self.closure.call(vec![x], &mut places).ok()
@@ -184,7 +184,7 @@ fn with_searched_step<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T>
         return Err(missing());
     };
     let given = values(places, others)?;
-    let asked = Asked {
+    let asked = SearchClosure {
         places: RefCell::new(places),
         closure,
     };
@@ -224,7 +224,7 @@ fn with_trials<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
         return Err(missing());
     };
     let (contact, h) = (contact.run(places)?, h.run(places)?);
-    let asked = Asked {
+    let asked = SearchClosure {
         places: RefCell::new(places),
         closure,
     };

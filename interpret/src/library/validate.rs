@@ -6,7 +6,7 @@ use crate::value::Value;
 use clebsch::{ParameterError, Real, validate};
 use nalgebra::SMatrix;
 
-fn told<T: Real>(r: Result<(), ParameterError>) -> Option<Value<T>> {
+fn check_result<T: Real>(r: Result<(), ParameterError>) -> Option<Value<T>> {
     Some(Value::result(r.map(|()| Value::Unit)))
 }
 
@@ -18,7 +18,7 @@ macro_rules! square {
                 return None;
             };
             let m = m.dense()?;
-            (m.rows == m.cols).then(|| told($f(name, &m)))?
+            (m.rows == m.cols).then(|| check_result($f(name, &m)))?
         }
     };
 }
@@ -32,7 +32,7 @@ macro_rules! argument {
                 Value::Function(f),
                 Value::Text(label),
                 Value::Real(x),
-            ] => told($f(*d, *f, label, *x)),
+            ] => check_result($f(*d, *f, label, *x)),
             _ => None,
         }
     };
@@ -46,7 +46,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                     Value::Momentum(..) | Value::Impulse(..) => numbers(&super::inner(values)?)?,
                     values => numbers(values)?,
                 };
-                told(validate::finite(name, &values))
+                check_result(validate::finite(name, &values))
             }
             _ => None,
         },
@@ -56,7 +56,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             };
             let m = m.dense()?;
             let entry = |row, column| Some(m.at(row, column));
-            told(validate::finite_entries_of(name, [m.rows, m.cols], entry))
+            check_result(validate::finite_entries_of(name, [m.rows, m.cols], entry))
         },
         ("validate::symmetric", 2) => square!(validate::symmetric_of),
         ("validate::skew", 2) => square!(validate::skew_of),
@@ -67,34 +67,38 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             let [Value::Text(name), m] = a else {
                 return None;
             };
-            told(validate::unit_quaternion(name, &m.dense()?.fixed::<4, 4>()))
+            check_result(validate::unit_quaternion(name, &m.dense()?.fixed::<4, 4>()))
         },
         ("validate::rigid_motion", 2) => |a, _| {
             let [Value::Text(name), m] = a else {
                 return None;
             };
             match m {
-                Value::Matrix(m) => told(validate::rigid_motion::<T, 3, 2>(name, m)),
+                Value::Matrix(m) => check_result(validate::rigid_motion::<T, 3, 2>(name, m)),
                 m => {
                     let m: SMatrix<T, 4, 4> = m.dense()?.fixed();
-                    told(validate::rigid_motion::<T, 4, 3>(name, &m))
+                    check_result(validate::rigid_motion::<T, 4, 3>(name, &m))
                 }
             }
         },
         ("validate::positive_step", 1) => |a, _| match a.first()? {
-            Value::Real(h) => told(validate::positive_step(*h)),
+            Value::Real(h) => check_result(validate::positive_step(*h)),
             _ => None,
         },
         ("validate::directed_step", 1) => |a, _| match a.first()? {
-            Value::Real(h) => told(validate::directed_step(*h)),
+            Value::Real(h) => check_result(validate::directed_step(*h)),
             _ => None,
         },
         ("validate::assumption", 2) => |a, _| match a {
-            [Value::Bool(holds), Value::Text(label)] => told(validate::assumption(*holds, label)),
+            [Value::Bool(holds), Value::Text(label)] => {
+                check_result(validate::assumption(*holds, label))
+            }
             _ => None,
         },
         ("validate::has_inertia", 2) => |a, _| match a {
-            [Value::Text(name), Value::Real(answer)] => told(validate::has_inertia(name, *answer)),
+            [Value::Text(name), Value::Real(answer)] => {
+                check_result(validate::has_inertia(name, *answer))
+            }
             _ => None,
         },
         ("validate::on_constraint", 4) => |a, _| match a {
@@ -103,7 +107,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                 Value::Text(equation),
                 Value::Real(value),
                 Value::Real(scale),
-            ] => told(validate::on_constraint(name, equation, *value, *scale)),
+            ] => check_result(validate::on_constraint(name, equation, *value, *scale)),
             _ => None,
         },
         ("validate::along_constraint", 5) => |a, _| match a {
@@ -113,7 +117,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                 Value::Real(impulse),
                 Value::Real(taken),
                 Value::Real(whole),
-            ] => told(validate::along_constraint(
+            ] => check_result(validate::along_constraint(
                 name, equation, *impulse, *taken, *whole,
             )),
             _ => None,
@@ -126,7 +130,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                 Value::Real(impulse),
                 _,
                 _,
-            ] => told(validate::along_constraint(
+            ] => check_result(validate::along_constraint(
                 name,
                 equation,
                 *impulse,

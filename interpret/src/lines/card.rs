@@ -2,7 +2,7 @@
 //! for all sites. Takes a model with labels and a choice; gives the card that the command reads and starts.
 
 use super::LineModel;
-use super::coordinates::{self, Of};
+use super::coordinates::{self, UserRole};
 use crate::cards::named;
 use crate::constants::Constants;
 use crate::opened::Text;
@@ -10,7 +10,7 @@ use crate::{Refused, text};
 use clebsch::card::{Card, Field, Invariant, Kind};
 use clebsch_core::derive::warnings::Warning;
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{Choice, ExpandedModel, Kind as QuantityKind, Lattice};
+use clebsch_core::lattice::{ChainConfig, ExpandedModel, Kind as QuantityKind, Lattice};
 use clebsch_core::line::{Coordinates, totals_on};
 use clebsch_core::syntax::ast::Model;
 use clebsch_core::{document, pipeline};
@@ -32,7 +32,7 @@ pub struct Carded {
     /// The program.
     pub model: Arc<LineModel>,
     /// The number of sites and the end conditions.
-    pub choice: Choice,
+    pub choice: ChainConfig,
     /// The card; the caller that opens it sets its functions.
     pub card: Card,
     /// The places of the parameters.
@@ -49,8 +49,8 @@ pub struct Carded {
 struct Short<'a> {
     lattice: &'a Lattice,
     unfolded: &'a ExpandedModel,
-    short: &'a Choice,
-    whole: &'a Choice,
+    short: &'a ChainConfig,
+    whole: &'a ChainConfig,
 }
 
 /// A field with its place, and the label and the quantity that it belongs to.
@@ -68,7 +68,7 @@ impl Carded {
     /// [`Refused`], if the short chain cannot be derived.
     pub fn of(
         stated: (&Model, &Lattice),
-        choice: &Choice,
+        choice: &ChainConfig,
         model: Arc<LineModel>,
         source: &str,
     ) -> Result<(Self, Vec<Warning>), Refused> {
@@ -84,7 +84,7 @@ impl Carded {
         let representative =
             pipeline::representative(statement, lattice).map_err(Refused::Model)?;
         let counts = representative.counts.iter().zip(&choice.counts);
-        let short = Choice {
+        let short = ChainConfig {
             // With functionals, one site represents all sites.
             counts: match lattice.meshes.is_empty() {
                 true => counts
@@ -104,7 +104,7 @@ impl Carded {
         let none = BTreeMap::new();
         let name = whole.derivation.spec.name.clone();
         let card = Constants::new(&whole.program, &name, &none).card()?;
-        let warnings = unfolded.told(&short, &whole.derivation.warnings);
+        let warnings = unfolded.declared_warnings(&short, &whole.derivation.warnings);
         let expander = Short {
             lattice,
             unfolded: &unfolded,
@@ -198,7 +198,7 @@ impl Carded {
         for c in &model.coordinates {
             summary.push_str(&format!("\ncoordinates          {}", c.words()));
         }
-        summary.push_str(&told(&left_out));
+        summary.push_str(&program_description(&left_out));
         let card = Card {
             source: text(source),
             summary: text(&summary),
@@ -281,7 +281,7 @@ fn of_all_sites<'a>(summary: &str, names: impl Iterator<Item = &'a str>) -> Stri
 }
 
 /// Describes how a chain is run, and lists the quantities that are not computed.
-fn told(left_out: &[String]) -> String {
+fn program_description(left_out: &[String]) -> String {
     let mut told = String::from(
         "\nprogram              one for any number of sites, with loops over the sites",
     );
@@ -306,9 +306,9 @@ fn in_groups(
             return vec![(field, place)];
         };
         let own = match of {
-            Of::Rest => Vec::new(),
-            Of::Element => coordinates::fields(c, site, false, initial),
-            Of::Momentum => coordinates::fields(c, site, true, initial),
+            UserRole::Rest => Vec::new(),
+            UserRole::Element => coordinates::fields(c, site, false, initial),
+            UserRole::Momentum => coordinates::fields(c, site, true, initial),
         };
         let placed = own.into_iter().map(|(field, key)| {
             let site = Some(site);

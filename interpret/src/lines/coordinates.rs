@@ -11,12 +11,12 @@ use clebsch::of_numbers::OfNumbers;
 use clebsch::validate;
 use clebsch::{Orthogonal, ParameterError, PlaneMotion, RigidMotion, StartError};
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::line::{By, Coordinates};
+use clebsch_core::line::{CoordinateKind, Coordinates};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 /// The role of a variable of the program in the form that users see.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Of {
+pub(super) enum UserRole {
     /// Users see the element instead.
     Element,
     /// Users see the momentum of the element instead.
@@ -28,10 +28,10 @@ pub(super) enum Of {
 /// Rows of the matrix of an element, and the shape of a momentum.
 fn sizes(c: &Coordinates) -> (usize, [usize; 2]) {
     match &c.by {
-        By::Entries(n) => (*n, [*n, *n]),
-        By::Angle(_) => (2, [2, 2]),
-        By::AngleAndPlace(..) => (3, [3, 1]),
-        By::TurnAndPlace(..) => (4, [6, 1]),
+        CoordinateKind::Entries(n) => (*n, [*n, *n]),
+        CoordinateKind::Angle(_) => (2, [2, 2]),
+        CoordinateKind::AngleAndPlace(..) => (3, [3, 1]),
+        CoordinateKind::TurnAndPlace(..) => (4, [6, 1]),
     }
 }
 
@@ -48,30 +48,31 @@ pub(super) fn shown(c: &Coordinates) -> [String; 3] {
 }
 
 /// The role of a variable of the program, by its name or its ASCII name.
-pub(super) fn of(c: &Coordinates, name: &str) -> Option<Of> {
+pub(super) fn of(c: &Coordinates, name: &str) -> Option<UserRole> {
     let is = |prefix: &str, own: &str| {
         let whole = format!("{prefix}{own}");
         name == whole || name == ascii(&whole)
     };
     let (first, place) = match &c.by {
-        By::Entries(_) => (&c.name, None),
-        By::Angle(angle) => (angle, None),
-        By::AngleAndPlace(first, place) | By::TurnAndPlace(first, place) => (first, Some(place)),
+        CoordinateKind::Entries(_) => (&c.name, None),
+        CoordinateKind::Angle(angle) => (angle, None),
+        CoordinateKind::AngleAndPlace(first, place)
+        | CoordinateKind::TurnAndPlace(first, place) => (first, Some(place)),
     };
-    let of_turn = matches!(c.by, By::TurnAndPlace(..));
+    let of_turn = matches!(c.by, CoordinateKind::TurnAndPlace(..));
     let momentum = if of_turn {
         "body_momentum_"
     } else {
         "momentum_"
     };
     if is("", first) {
-        return Some(Of::Element);
+        return Some(UserRole::Element);
     }
     if is(momentum, first) {
-        return Some(Of::Momentum);
+        return Some(UserRole::Momentum);
     }
     let beside = place.is_some_and(|p| is("", p) || is("momentum_", p));
-    (beside || of_turn && is("spatial_momentum_", first)).then_some(Of::Rest)
+    (beside || of_turn && is("spatial_momentum_", first)).then_some(UserRole::Rest)
 }
 
 /// The fields of a card of an element and of its momenta.
@@ -83,9 +84,9 @@ pub(super) fn fields(
 ) -> Vec<(Field, String)> {
     let (rows, [high, wide]) = sizes(c);
     let kind = match &c.by {
-        By::Entries(_) => Kind::Matrix,
-        By::Angle(_) => Kind::Rotation,
-        By::AngleAndPlace(..) | By::TurnAndPlace(..) => Kind::RigidMotion,
+        CoordinateKind::Entries(_) => Kind::Matrix,
+        CoordinateKind::Angle(_) => Kind::Rotation,
+        CoordinateKind::AngleAndPlace(..) | CoordinateKind::TurnAndPlace(..) => Kind::RigidMotion,
     };
     let [element, body, spatial] = shown(c);
     let own = match momenta {
@@ -124,11 +125,11 @@ pub(super) fn admit(c: &Coordinates, numbers: &Numbers<'_>) -> Result<(), Unstar
     let (rows, _) = sizes(c);
     for (site, one) in list.chunks(rows * rows).enumerate() {
         let read = match &c.by {
-            By::Entries(_) => invertible_map(&square(one, rows))
+            CoordinateKind::Entries(_) => invertible_map(&square(one, rows))
                 .map_err(|e| OpenError::Start(StartError::Initial(e.in_field(quantity)))),
-            By::Angle(_) => Orthogonal::<2>::of_numbers(quantity, one).map(|_| ()),
-            By::AngleAndPlace(..) => PlaneMotion::of_numbers(quantity, one).map(|_| ()),
-            By::TurnAndPlace(..) => RigidMotion::of_numbers(quantity, one).map(|_| ()),
+            CoordinateKind::Angle(_) => Orthogonal::<2>::of_numbers(quantity, one).map(|_| ()),
+            CoordinateKind::AngleAndPlace(..) => PlaneMotion::of_numbers(quantity, one).map(|_| ()),
+            CoordinateKind::TurnAndPlace(..) => RigidMotion::of_numbers(quantity, one).map(|_| ()),
         };
         match read {
             Ok(()) => {}
@@ -151,7 +152,7 @@ pub(super) fn admit(c: &Coordinates, numbers: &Numbers<'_>) -> Result<(), Unstar
 /// Whether every momentum of a rotation of the plane is skew.
 fn momenta_of_the_plane(c: &Coordinates, numbers: &Numbers<'_>) -> Result<(), Unstarted> {
     let name = given_momentum(c);
-    let (By::Angle(_), Some(list)) = (&c.by, numbers(&name)) else {
+    let (CoordinateKind::Angle(_), Some(list)) = (&c.by, numbers(&name)) else {
         return Ok(());
     };
     let quantity = text(&name);
@@ -198,10 +199,10 @@ pub(super) fn given(c: &Coordinates, name: &str, numbers: &Numbers<'_>) -> Optio
     let (rows, [high, wide]) = sizes(c);
     let body = c.side.is_body();
     let elements = numbers(&c.name)?;
-    if asked == Of::Element && matches!(c.by, By::Entries(_)) {
+    if asked == UserRole::Element && matches!(c.by, CoordinateKind::Entries(_)) {
         return Some(elements);
     }
-    let is_of_place = asked == Of::Rest;
+    let is_of_place = asked == UserRole::Rest;
     let of_momentum = name.starts_with("momentum_") || name.starts_with("body_momentum_");
     let momenta = match of_momentum {
         true => numbers(&given_momentum(c))?,
@@ -213,14 +214,14 @@ pub(super) fn given(c: &Coordinates, name: &str, numbers: &Numbers<'_>) -> Optio
     let mut out = Vec::new();
     for (g, m) in each {
         match &c.by {
-            By::Entries(n) => {
+            CoordinateKind::Entries(n) => {
                 let back = square(g, *n).inverse()?.transpose();
                 let m = square(m, *n);
                 let own = if body { back.times(&m) } else { m.times(&back) };
                 out.extend(by_rows(&own));
             }
-            By::Angle(_) => out.push(if of_momentum { m[2] } else { g[2].atan2(g[0]) }),
-            By::AngleAndPlace(..) => {
+            CoordinateKind::Angle(_) => out.push(if of_momentum { m[2] } else { g[2].atan2(g[0]) }),
+            CoordinateKind::AngleAndPlace(..) => {
                 let (turn, x) = of_plane(g)?;
                 let (about, linear) = (m[0], Vector2::new(m[1], m[2]));
                 let p = if body { turn * linear } else { linear };
@@ -232,7 +233,7 @@ pub(super) fn given(c: &Coordinates, name: &str, numbers: &Numbers<'_>) -> Optio
                     (true, true) => out.extend([p[0], p[1]]),
                 }
             }
-            By::TurnAndPlace(..) => {
+            CoordinateKind::TurnAndPlace(..) => {
                 let (turn, x) = of_space(g)?;
                 let (about, linear) = (
                     Vector3::new(m[0], m[1], m[2]),
@@ -292,7 +293,7 @@ pub(super) fn named(all: &[Coordinates], e: LineError) -> LineError {
 }
 
 /// The elements or momenta that users see, computed from the variables of the program.
-pub(super) fn told(
+pub(super) fn user_coordinates(
     c: &Coordinates,
     name: &str,
     mut seen: impl FnMut(&str) -> Option<Vec<f64>>,
@@ -305,7 +306,7 @@ pub(super) fn told(
     let is_element = name == element;
     let mut out = Vec::new();
     match &c.by {
-        By::Entries(n) => {
+        CoordinateKind::Entries(n) => {
             let places = seen(&c.name)?;
             if is_element {
                 return Some(places);
@@ -317,7 +318,7 @@ pub(super) fn told(
                 out.extend(by_rows(&if in_body { q.times(&p) } else { p.times(&q) }));
             }
         }
-        By::Angle(angle) => {
+        CoordinateKind::Angle(angle) => {
             let list = match is_element {
                 true => seen(angle)?,
                 false => seen(&format!("momentum_{angle}"))?,
@@ -330,7 +331,7 @@ pub(super) fn told(
                 });
             }
         }
-        By::AngleAndPlace(angle, place) => {
+        CoordinateKind::AngleAndPlace(angle, place) => {
             let (angles, places) = (seen(angle)?, seen(place)?);
             let about = seen(&format!("momentum_{angle}"))?;
             let linear = seen(&format!("momentum_{place}"))?;
@@ -344,7 +345,7 @@ pub(super) fn told(
                 });
             }
         }
-        By::TurnAndPlace(turn, place) => {
+        CoordinateKind::TurnAndPlace(turn, place) => {
             let (turns, places) = (seen(turn)?, seen(place)?);
             let about = seen(&format!("body_momentum_{turn}"))?;
             let linear = seen(&format!("momentum_{place}"))?;

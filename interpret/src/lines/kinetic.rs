@@ -3,14 +3,14 @@
 
 use super::{LineModel, Numbers};
 use clebsch::kinetic::KineticWarning;
-use clebsch_core::lattice::Choice;
+use clebsch_core::lattice::ChainConfig;
 
 impl LineModel {
     /// A warning if the kinetic energy is not positive. Returns nothing if the model is not a fluid, or does not define
     /// momenta of given velocities. `sites` returns the number of sites of a field.
     pub(super) fn kinetic_warning(
         &self,
-        choice: &Choice,
+        choice: &ChainConfig,
         numbers: &Numbers<'_>,
         sites: impl Fn(&str) -> Option<usize>,
     ) -> Option<KineticWarning> {

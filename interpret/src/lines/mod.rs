@@ -1,18 +1,18 @@
 //! Models with labels for every number of sites: the program with loops over sites that is emitted for
 //! them, executed. Takes the text of a model; gives chains that start from data at sites, and run.
 
-mod asked;
 mod card;
 mod composed;
 mod coordinates;
-mod given;
+mod inputs;
 mod kinetic;
+mod node_values;
 mod running;
 mod trajectory;
 
 pub(crate) use card::Carded;
-pub use given::Numbers;
-pub(crate) use given::extent;
+pub use inputs::Numbers;
+pub(crate) use inputs::extent;
 pub use trajectory::LineTrajectory;
 
 use crate::Refused;
@@ -27,11 +27,11 @@ use crate::value::Value;
 use clebsch::StepCause;
 use clebsch::line::LineError;
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::Choice;
+use clebsch_core::lattice::ChainConfig;
 use clebsch_core::line::{self as core_line, Coordinates};
 use clebsch_core::{emit, pipeline};
 use core::fmt;
-use given::{Ends, Given};
+use inputs::{Ends, InputStruct};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -79,7 +79,7 @@ impl fmt::Display for Unstarted {
 impl std::error::Error for Unstarted {}
 
 /// Routines that evaluate quantities of a state, by name.
-type Asked = Vec<(String, Routine<f64>)>;
+type Evaluators = Vec<(String, Routine<f64>)>;
 
 /// A model with labels, from which you can start chains.
 #[derive(Debug)]
@@ -89,10 +89,10 @@ pub struct LineModel {
     /// The names of the numbers of sites, one for each label, and whether one label is a chain.
     counts: Vec<String>,
     has_line: bool,
-    parameters: Given,
-    sites: Given,
+    parameters: InputStruct,
+    sites: InputStruct,
     ends: Ends,
-    initial: Given,
+    initial: InputStruct,
     new: Routine<f64>,
     start: Routine<f64>,
     /// Like `start`, with initial momenta projected on the constraints; `None` without constraints.
@@ -104,13 +104,13 @@ pub struct LineModel {
     /// The energy in the limit of small steps, if it is known.
     energies: Option<Routine<f64>>,
     energy_sizes: Option<Routine<f64>>,
-    totals: Asked,
-    total_sizes: Asked,
+    totals: Evaluators,
+    total_sizes: Evaluators,
     /// The state that measures sizes, if impulses act at nodes.
     enlarged: Option<Routine<f64>>,
-    observers: Asked,
-    functionals: Asked,
-    momenta: Asked,
+    observers: Evaluators,
+    functionals: Evaluators,
+    momenta: Evaluators,
     /// Name, number of components, and why it is conserved.
     conserved: Vec<(String, usize, String)>,
     /// The names of totals, and the terms that they sum over all sites, as text.
@@ -171,9 +171,9 @@ impl LineModel {
         let lattice = &line.lattice;
         let mut shared = Shared::new(program, BTreeMap::new());
         let item = |suffix: &str| format!("{name}{suffix}");
-        let parameters = Given::named(&mut shared, &item("Parameters"))?;
-        let initial = Given::named(&mut shared, &item("Initial"))?;
-        let sites = Given::named(&mut shared, &item("Sites"))?;
+        let parameters = InputStruct::named(&mut shared, &item("Parameters"))?;
+        let initial = InputStruct::named(&mut shared, &item("Initial"))?;
+        let sites = InputStruct::named(&mut shared, &item("Sites"))?;
         let ends = Ends::of(&mut shared, name)?;
         let state = item("State");
         let own = |ty: &str, wanted: &dyn Fn(&str) -> bool| -> Vec<String> {
@@ -231,11 +231,12 @@ impl LineModel {
             Some(_) => Some(lower(name, enlarge, &[at::MODEL, at::STATE, at::WORK])?),
             None => None,
         };
-        let mut asked = |ty: &str, names: Vec<String>, given: &[usize]| -> Result<Asked, Refused> {
-            let all = names.into_iter();
-            all.map(|f| Ok((f.clone(), lower(ty, &f, given)?)))
-                .collect()
-        };
+        let mut asked =
+            |ty: &str, names: Vec<String>, given: &[usize]| -> Result<Evaluators, Refused> {
+                let all = names.into_iter();
+                all.map(|f| Ok((f.clone(), lower(ty, &f, given)?)))
+                    .collect()
+            };
         let totals = asked(name, totals, &[at::MODEL, at::STATE])?;
         let observers = asked(&state, observers, &[at::STATE])?;
         let functionals = asked(name, functionals, &[at::MODEL, at::STATE])?;
@@ -264,8 +265,8 @@ impl LineModel {
             let routine = entry(&mut shared, (name, &own), &of, at::FIRST)?;
             Ok((f.clone(), routine))
         });
-        let total_sizes = sized.collect::<Result<Asked, Refused>>()?;
-        let spelt = |list: Asked| -> Asked {
+        let total_sizes = sized.collect::<Result<Evaluators, Refused>>()?;
+        let spelt = |list: Evaluators| -> Evaluators {
             let all = list.into_iter();
             all.map(|(f, r)| match held(line, &f) {
                 Some(_) => (ascii(&f), r),
@@ -378,7 +379,7 @@ impl LineModel {
     /// As [`LineModel::start`].
     pub fn momenta(
         &self,
-        choice: &Choice,
+        choice: &ChainConfig,
         numbers: &Numbers<'_>,
         field: &str,
         velocities: &[f64],
@@ -402,7 +403,7 @@ impl LineModel {
     /// The model with its parameters.
     fn built(
         &self,
-        choice: &Choice,
+        choice: &ChainConfig,
         numbers: &Numbers<'_>,
         places: &mut Places<f64>,
     ) -> Result<Value<f64>, Unstarted> {
@@ -417,7 +418,7 @@ impl LineModel {
         };
         let of_sites = |field: &str| match field {
             "ends" => Some(ends.clone()),
-            field => given::counts(&self.counts, choice, field),
+            field => inputs::counts(&self.counts, choice, field),
         };
         put(places, at::OUT, self.sites.value(numbers, &of_sites)?);
         let model = run(&self.new, places).map_err(Failure::line)?;
@@ -432,7 +433,7 @@ impl LineModel {
     /// [`Unstarted`] names the missing quantity, or the quantity and the site of a value that is not valid.
     pub fn start(
         self: &Arc<Self>,
-        choice: &Choice,
+        choice: &ChainConfig,
         h: f64,
         numbers: &Numbers<'_>,
     ) -> Result<LineTrajectory, Unstarted> {
@@ -445,7 +446,7 @@ impl LineModel {
     /// As [`LineModel::start`].
     pub fn start_projected(
         self: &Arc<Self>,
-        choice: &Choice,
+        choice: &ChainConfig,
         h: f64,
         numbers: &Numbers<'_>,
     ) -> Result<LineTrajectory, Unstarted> {
@@ -456,7 +457,7 @@ impl LineModel {
     fn start_by(
         self: &Arc<Self>,
         start: &Routine<f64>,
-        choice: &Choice,
+        choice: &ChainConfig,
         h: f64,
         numbers: &Numbers<'_>,
     ) -> Result<LineTrajectory, Unstarted> {
@@ -520,7 +521,7 @@ fn rows(output: &syn::ReturnType) -> Option<usize> {
     let syn::ReturnType::Type(_, ty) = output else {
         return None;
     };
-    let sizes = given::sizes(ty);
+    let sizes = inputs::sizes(ty);
     Some(sizes.into_iter().product())
 }
 

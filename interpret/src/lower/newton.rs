@@ -4,7 +4,7 @@
 use super::{Binding, Lower, Shared, refuse};
 use crate::Refused;
 use crate::code::{Code, Routine};
-use crate::newton::{AtTrial, Held, Kind, Settled, Shape, Solve, Sought};
+use crate::newton::{AtTrial, Kind, SearchValue, Settled, Shape, Solve, Sought};
 use crate::program::type_name;
 use crate::recorded::Function;
 use crate::value::Value;
@@ -103,7 +103,7 @@ impl Lower<'_, '_> {
             return Ok(None);
         };
         let sought = self.sought(ty)?;
-        let held = Held::begun(sought, tries);
+        let held = SearchValue::begun(sought, tries);
         Ok(Some(Code::Constant(Value::Search(held))))
     }
 
@@ -320,7 +320,7 @@ impl<'a> Lower<'a, '_> {
         let tangent_at = function("tangent_at", &principal).ok_or_else(unknown)?;
         let residual_at = alone(self.shared, &own, residual_at)?;
         let rounded = |routine: &Routine<f64>| {
-            let rounded = routine.over(Rounded::exactly);
+            let rounded = routine.map_scalar(Rounded::exactly);
             rounded.ok_or_else(|| refuse(of.body))
         };
         let completed_at = match completed_at.filter(|_| !rest.is_empty()) {

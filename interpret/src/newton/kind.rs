@@ -2,7 +2,7 @@
 //! plain loops if their sizes are known when a model is read.
 
 use crate::library::groups::{composed_kept, inverse_kept};
-use crate::value::{Kept, Value};
+use crate::value::{MatrixGroup, Value};
 use clebsch::groups::{Coordinate, Part};
 use clebsch::linalg::{Dense, Reals};
 use clebsch::{Group, OfScalars, PlaneMotion, RigidMotion, Rotation, UnitQuaternion};
@@ -41,15 +41,15 @@ macro_rules! of_type {
             Kind::Motion => with!(RigidMotion<f64>),
             Kind::Plane => with!(PlaneMotion<f64>),
             Kind::Linear(n) => {
-                let $matrix = Matrix(Kept::Linear, n, n);
+                let $matrix = Matrix(MatrixGroup::Linear, n, n);
                 $other
             }
             Kind::Orthogonal(n) => {
-                let $matrix = Matrix(Kept::Orthogonal, n, n);
+                let $matrix = Matrix(MatrixGroup::Orthogonal, n, n);
                 $other
             }
             Kind::Field(rows, cols) => {
-                let $matrix = Matrix(Kept::Field, rows, cols);
+                let $matrix = Matrix(MatrixGroup::Field, rows, cols);
                 $other
             }
         }
@@ -121,7 +121,7 @@ impl Kind {
         of_type!(
             self,
             G => <G as Group<f64>>::is_pure(part),
-            matrix => matrix.0 != Kept::Field
+            matrix => matrix.0 != MatrixGroup::Field
         )
     }
 
@@ -137,9 +137,9 @@ impl Kind {
             Kind::Quaternion => Value::Quaternion(read(numbers)),
             Kind::Motion => Value::Motion(Box::new(read(numbers))),
             Kind::Plane => Value::Plane(Box::new(read(numbers))),
-            Kind::Linear(n) => Matrix(Kept::Linear, n, n).value(numbers),
-            Kind::Orthogonal(n) => Matrix(Kept::Orthogonal, n, n).value(numbers),
-            Kind::Field(rows, cols) => Matrix(Kept::Field, rows, cols).value(numbers),
+            Kind::Linear(n) => Matrix(MatrixGroup::Linear, n, n).value(numbers),
+            Kind::Orthogonal(n) => Matrix(MatrixGroup::Orthogonal, n, n).value(numbers),
+            Kind::Field(rows, cols) => Matrix(MatrixGroup::Field, rows, cols).value(numbers),
         }
     }
 
@@ -158,7 +158,7 @@ impl Kind {
             self,
             G => write(&Group::retract(&read::<G>(at), xi), out),
             matrix => match matrix.0 {
-                Kept::Field => out.extend(matrix.places().map(|(i, j, k)| {
+                MatrixGroup::Field => out.extend(matrix.places().map(|(i, j, k)| {
                     at.get(k).copied().unwrap_or(0.0) + matrix.coordinate(xi, i, j)
                 })),
                 _ => out.extend(matrix.retract(&matrix.read(at), xi).data),
@@ -216,7 +216,7 @@ impl Kind {
             self,
             G => write(&<G as Group<f64>>::combined(weights, |i| read(past(i))), out),
             matrix => match matrix.0 {
-                Kept::Orthogonal => out.extend_from_slice(past(0)),
+                MatrixGroup::Orthogonal => out.extend_from_slice(past(0)),
                 _ => out.extend(matrix.places().map(|(_, _, k)| {
                     let entry = |i: usize| past(i).get(k).copied().unwrap_or(0.0);
                     let terms = weights.iter().enumerate();
@@ -229,13 +229,13 @@ impl Kind {
 
 /// Matrices with what they are kept as, their rows and their columns.
 #[derive(Clone, Copy)]
-struct Matrix(Kept, usize, usize);
+struct Matrix(MatrixGroup, usize, usize);
 
 impl Matrix {
     fn dimension(self) -> usize {
         let Matrix(kept, rows, cols) = self;
         match kept {
-            Kept::Orthogonal => rows * rows.saturating_sub(1) / 2,
+            MatrixGroup::Orthogonal => rows * rows.saturating_sub(1) / 2,
             _ => rows * cols,
         }
     }
@@ -254,7 +254,7 @@ impl Matrix {
 
     fn identity(self) -> Dense<f64> {
         match self.0 {
-            Kept::Field => Dense::zeros(self.1, self.2),
+            MatrixGroup::Field => Dense::zeros(self.1, self.2),
             _ => Dense::identity(self.1, self.2),
         }
     }
@@ -285,16 +285,16 @@ impl Matrix {
     fn beyond_identity(self, a: &[f64], (i, j, k): (usize, usize, usize)) -> f64 {
         let x = a.get(k).copied().unwrap_or(0.0);
         match self.0 {
-            Kept::Field => x,
+            MatrixGroup::Field => x,
             _ => x - if i == j { 1.0 } else { 0.0 },
         }
     }
 
     fn retract(self, a: &Dense<f64>, xi: &[f64]) -> Dense<f64> {
         match self.0 {
-            Kept::Linear => a.plus(&a.times(&self.coordinates(xi))),
-            Kept::Field => a.plus(&self.coordinates(xi)),
-            Kept::Orthogonal => {
+            MatrixGroup::Linear => a.plus(&a.times(&self.coordinates(xi))),
+            MatrixGroup::Field => a.plus(&self.coordinates(xi)),
+            MatrixGroup::Orthogonal => {
                 let half = Dense::skew_from(a.rows, xi).scaled(0.5);
                 let one = Dense::identity(a.rows, a.rows);
                 match one.minus(&half).solved(&one) {
@@ -309,7 +309,7 @@ impl Matrix {
 
     fn compared(self, a: &[f64], xi: &[f64]) -> [f64; 2] {
         match self.0 {
-            Kept::Linear | Kept::Field => {
+            MatrixGroup::Linear | MatrixGroup::Field => {
                 let mut both = [0.0; 2];
                 for i in 0..self.1 {
                     for j in 0..self.2 {
@@ -321,7 +321,7 @@ impl Matrix {
                 }
                 both
             }
-            Kept::Orthogonal => {
+            MatrixGroup::Orthogonal => {
                 let a = self.read(a);
                 let half = Dense::skew_from(a.rows, xi).scaled(0.5);
                 let off = a.minus(&a.times(&half)).minus(&half).minus_one();
@@ -337,8 +337,8 @@ impl Matrix {
 
     fn is_within(self, a: &[f64], reach: f64) -> bool {
         match self.0 {
-            Kept::Linear | Kept::Field => self.squares(a) - reach * reach <= 0.0,
-            Kept::Orthogonal => {
+            MatrixGroup::Linear | MatrixGroup::Field => self.squares(a) - reach * reach <= 0.0,
+            MatrixGroup::Orthogonal => {
                 let eighth = self.squares(a) * 0.125;
                 eighth * 4.0 - (1.0 - eighth) * (reach * reach) <= 0.0
             }

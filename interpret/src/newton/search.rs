@@ -4,8 +4,8 @@ use super::shape::Shape;
 use super::solve::{self, Solve};
 use crate::code::Exit;
 use crate::library::NAMES;
-use crate::over::numbers;
-use crate::recorded::Around;
+use crate::map_scalar::numbers;
+use crate::recorded::EquationValues;
 use crate::value::{Layout, Struct, Value};
 use clebsch::Real;
 use clebsch::linalg::Reals;
@@ -33,24 +33,24 @@ impl Sought {
 
 /// A search, as a value.
 #[derive(Clone, Debug)]
-pub struct Held {
+pub struct SearchValue {
     search: Box<AnySearch<Shape>>,
     sought: &'static Sought,
 }
 
-impl Held {
+impl SearchValue {
     /// A search that begins.
     pub fn begun(sought: &'static Sought, tries: bool) -> Self {
         let dimension = sought.shape.parts().dimension();
         let in_blocks = dimension == sought.capacity;
-        Held {
+        SearchValue {
             search: Box::new(AnySearch::new(dimension, in_blocks, tries)),
             sought,
         }
     }
 
     /// Takes over what another one measured of the equations: see [`AnySearch::measure_as`].
-    pub fn measure_as(&mut self, other: &Held) {
+    pub fn measure_as(&mut self, other: &SearchValue) {
         self.search.measure_as(&other.search);
     }
 
@@ -60,7 +60,7 @@ impl Held {
     }
 
     /// A new search for the unknowns of `other`. It only tries steps if this search only tries steps.
-    pub fn alike(&self, other: &Held) -> Held {
+    pub fn alike(&self, other: &SearchValue) -> SearchValue {
         Self::begun(other.sought, self.search.tries())
     }
 
@@ -85,7 +85,7 @@ impl Held {
         &mut self,
         equations: &Solve,
         node: u64,
-        around: &mut Around,
+        around: &mut EquationValues,
     ) -> Result<Solved<Reals>, Exit<f64>> {
         let charts = [&self.sought.shape, self.sought.all()];
         let mut iteration = self.search.begin(charts, node);
@@ -117,7 +117,7 @@ fn layout() -> Arc<Layout> {
 }
 
 /// A solution of all groups as emitted code has it.
-pub fn told(shape: &Shape, solved: &Solved<Reals>) -> Value<f64> {
+pub fn solution_value(shape: &Shape, solved: &Solved<Reals>) -> Value<f64> {
     Value::Struct(Struct {
         layout: layout(),
         values: vec![

@@ -1,12 +1,12 @@
 //! The equations of a step as operations, and the loop that solves them: the calls that emitted code makes,
 //! in the same order.
 
-use super::search::{self, Held, Sought};
+use super::search::{self, SearchValue, Sought};
 use super::shape::Shape;
 use crate::code::{Code, Evaluated, Exit, Iterate, Places, Routine, unfit};
 use crate::failure::Failure;
-use crate::over::{numbers, over};
-use crate::recorded::{Around, Function, RecordedSolve, Traced, Wanted, run_alone};
+use crate::map_scalar::{map_scalar, numbers};
+use crate::recorded::{EquationValues, Function, NewtonFunction, RecordedSolve, Traced, run_alone};
 use crate::value::Value;
 use clebsch::Real;
 use clebsch::emitted::{StepCause, StepError};
@@ -90,9 +90,9 @@ impl Iterate<f64> for Solve {
             Value::Search(held) => held,
             _ => return unfit(None),
         };
-        let solved = held.solve(self, node as u64, &mut Around::Places(places));
+        let solved = held.solve(self, node as u64, &mut EquationValues::Places(places));
         let shape = held.sought().all();
-        let solved = solved.map(|solved| search::told(shape, &solved));
+        let solved = solved.map(|solved| search::solution_value(shape, &solved));
         *unfit(self.search.place_mut(places))? = Value::Search(held);
         solved
     }
@@ -133,7 +133,7 @@ pub fn by(
     iteration: &mut AnyNewton<'_, Shape>,
     with: &Solve,
     sought: &'static Sought,
-    around: &mut Around,
+    around: &mut EquationValues,
 ) -> Result<Solved<Element>, Exit<f64>> {
     let in_part = with.completed_at.is_some();
     let size = sought.shape.parts().dimension();
@@ -182,11 +182,11 @@ impl Solve {
         trial: &Element,
         out: &mut Reals,
         sought: &'static Sought,
-        around: &mut Around,
+        around: &mut EquationValues,
     ) -> Result<(), Exit<f64>> {
         let size = sought.shape.parts().dimension();
         out.clear();
-        if around.by_tape(Wanted::Residual, trial, out) {
+        if around.by_tape(NewtonFunction::Residual, trial, out) {
             return Ok(());
         }
         let places = around.all();
@@ -207,11 +207,11 @@ impl Solve {
         trial: &Element,
         out: &mut Dense<f64>,
         sought: &'static Sought,
-        around: &mut Around,
+        around: &mut EquationValues,
     ) -> Result<f64, Exit<f64>> {
         let size = sought.shape.parts().dimension();
         out.data.clear();
-        if around.by_tape(Wanted::Tangent, trial, &mut out.data) {
+        if around.by_tape(NewtonFunction::Tangent, trial, &mut out.data) {
             (out.rows, out.cols) = (size, size);
             return unfit(out.data.pop());
         }
@@ -233,10 +233,10 @@ impl Solve {
         &self,
         trial: &Element,
         sought: &'static Sought,
-        around: &mut Around,
+        around: &mut EquationValues,
     ) -> Result<Element, Exit<f64>> {
         let mut found = Reals::new();
-        if around.by_tape(Wanted::AtRest, trial, &mut found) {
+        if around.by_tape(NewtonFunction::AtRest, trial, &mut found) {
             return Ok(found);
         }
         let value = self.at_rest.run(around.all())?;
@@ -248,7 +248,7 @@ impl Solve {
         iteration: &mut AnyNewton<'_, Shape>,
         solution: &Element,
         sought: &'static Sought,
-        around: &mut Around,
+        around: &mut EquationValues,
     ) -> Result<bool, Exit<f64>> {
         let all = sought.all();
         let at_rest = self.at_rest(iteration.trial(), sought, around)?;
@@ -257,7 +257,7 @@ impl Solve {
             let residual = |trial: &Element| {
                 let mut around = around.borrow_mut();
                 let mut found = Reals::new();
-                if around.by_tape(Wanted::Alone, trial, &mut found) {
+                if around.by_tape(NewtonFunction::Alone, trial, &mut found) {
                     return found;
                 }
                 match self.known(&mut around) {
@@ -283,20 +283,20 @@ impl Solve {
         &self,
         trial: &Element,
         sought: &'static Sought,
-        around: &mut Around,
+        around: &mut EquationValues,
     ) -> Result<bool, Exit<f64>> {
         let Some(convex) = &self.convex else {
             return Ok(false);
         };
         // Recorded only where it is.
-        if around.by_tape(Wanted::Convex, trial, &mut Reals::new()) {
+        if around.by_tape(NewtonFunction::Convex, trial, &mut Reals::new()) {
             return Ok(true);
         }
         let found = convex.at(sought.shape.value(trial), around.all())?;
         Ok(matches!(found, Value::Bool(true)))
     }
 
-    fn known(&self, around: &mut Around) -> Result<[Value<f64>; 4], Exit<f64>> {
+    fn known(&self, around: &mut EquationValues) -> Result<[Value<f64>; 4], Exit<f64>> {
         let places = around.all();
         let [parameters, step, given, momenta] = &self.known;
         Ok([
@@ -312,16 +312,16 @@ impl Solve {
         &self,
         trial: &Element,
         sought: &Sought,
-        around: &mut Around,
+        around: &mut EquationValues,
     ) -> Result<Vec<f64>, Exit<f64>> {
         let known = self.known(around)?;
         let exactly = &mut Rounded::exactly;
         let mut given = Vec::with_capacity(self.rounded_at.places);
         for value in &known {
-            given.push(unfit(over(value, exactly))?);
+            given.push(unfit(map_scalar(value, exactly))?);
         }
         let trial = sought.all().value(trial);
-        let mut trial = unfit(over(&trial, &mut Rounded::once))?;
+        let mut trial = unfit(map_scalar(&trial, &mut Rounded::once))?;
         if let (Some(completed_at), Value::List(list)) = (&self.completed_at, &trial) {
             let rotation = |value: &Value<Rounded>| match value {
                 Value::Motion(g) => Value::Rotation(g.rotation),
@@ -333,7 +333,7 @@ impl Solve {
         }
         given.push(trial);
         let residual = unfit(run_alone(&self.rounded_at, given))?;
-        let rest = unfit(over(&residual, &mut |x: Rounded| x.error()))?;
+        let rest = unfit(map_scalar(&residual, &mut |x: Rounded| x.error()))?;
         let whole = sought.all();
         let all = unfit(vector(&rest, whole.parts().dimension()))?;
         let rows = sought.shape.within(whole).into_iter();
@@ -348,7 +348,7 @@ impl Solve {
         iteration: &mut AnyNewton<'_, Shape>,
         ended: Progress<Element>,
         sought: &'static Sought,
-        around: &mut Around,
+        around: &mut EquationValues,
     ) -> Result<Option<Solved<Element>>, Exit<f64>> {
         let failed = match ended {
             Progress::Continue => return Ok(None),
@@ -372,7 +372,7 @@ impl Solve {
                 };
                 if let (Some((at, tries, look)), Some(solved)) = (&self.settled.contact, solved) {
                     let places = around.all();
-                    *unfit(places.get_mut(*at))? = search::told(sought.all(), &solved);
+                    *unfit(places.get_mut(*at))? = search::solution_value(sought.all(), &solved);
                     *unfit(places.get_mut(*tries))? = Value::Bool(iteration.tries());
                     if let Value::Failed(e) = look.run(places)? {
                         return Err(Exit::Return(Box::new(Value::Failed(e))));
@@ -429,7 +429,7 @@ impl Solve {
         };
         let places = RefCell::new(places);
         let other = |h: f64| -> Result<(), StepError> {
-            let search = Value::Search(Held::begun(sought, true));
+            let search = Value::Search(SearchValue::begun(sought, true));
             let untold = |what| Err(StepCause::Unread { what }.at_node(0));
             let given = vec![Value::Real(h), search];
             match self.settled.other.call(given, &mut places.borrow_mut()) {

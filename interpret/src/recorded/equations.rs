@@ -3,12 +3,12 @@
 
 use super::load;
 use crate::code::Places;
-use crate::over::fill;
+use crate::map_scalar::fill;
 use clebsch_program::{Frame, Machine, Part, Scalar, Tape};
 
 /// The functions that Newton's method evaluates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wanted {
+pub enum NewtonFunction {
     /// The residual at a trial, then the whole trial if a part of it is searched for.
     Residual,
     /// The tangent row after row, then its factor.
@@ -21,7 +21,7 @@ pub enum Wanted {
     Alone,
 }
 
-impl Wanted {
+impl NewtonFunction {
     /// All of them.
     pub const ALL: [Self; 5] = [
         Self::Residual,
@@ -67,7 +67,7 @@ pub struct Equations {
 /// The equations within a recording.
 #[derive(Clone, Debug)]
 pub struct Recorded {
-    /// The functions, in the order of [`Wanted::ALL`].
+    /// The functions, in the order of [`NewtonFunction::ALL`].
     pub parts: [Option<Part>; 5],
     /// How many inputs the step had before.
     pub inputs: usize,
@@ -131,7 +131,7 @@ impl Equations {
         }
     }
 
-    fn at(&mut self, wanted: Wanted, trial: &[f64]) -> Option<impl Iterator<Item = f64>> {
+    fn at(&mut self, wanted: NewtonFunction, trial: &[f64]) -> Option<impl Iterator<Item = f64>> {
         let part = self.parts.get_mut(wanted as usize)?.as_mut()?;
         let inputs = part.frame.inputs().get_mut(self.given..)?;
         for (at, x) in self.of_trial.iter().zip(trial) {
@@ -160,17 +160,22 @@ impl Equations {
 }
 
 /// The values around the equations of a step: tapes if the step is recorded, otherwise places.
-pub enum Around<'a> {
+pub enum EquationValues<'a> {
     /// Values at places.
     Places(&'a mut Places<f64>),
     /// Tapes.
     Tapes(&'a mut Equations),
 }
 
-impl Around<'_> {
+impl EquationValues<'_> {
     /// Appends the numbers of a function at a trial. False if no tape computes it there.
-    pub fn by_tape(&mut self, wanted: Wanted, trial: &[f64], out: &mut impl Extend<f64>) -> bool {
-        let Around::Tapes(equations) = self else {
+    pub fn by_tape(
+        &mut self,
+        wanted: NewtonFunction,
+        trial: &[f64],
+        out: &mut impl Extend<f64>,
+    ) -> bool {
+        let EquationValues::Tapes(equations) = self else {
             return false;
         };
         let Some(numbers) = equations.at(wanted, trial) else {
@@ -183,8 +188,8 @@ impl Around<'_> {
     /// The places with all values.
     pub fn all(&mut self) -> &mut Places<f64> {
         match self {
-            Around::Places(places) => places,
-            Around::Tapes(equations) => equations.places(),
+            EquationValues::Places(places) => places,
+            EquationValues::Tapes(equations) => equations.places(),
         }
     }
 }

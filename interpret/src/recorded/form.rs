@@ -1,9 +1,9 @@
 //! Operations among places that others fill, over the scalar that records.
 
 use super::Traced;
-use super::ask::Asker;
+use super::loop_inputs::SiteReader;
 use crate::code::{Code, Places};
-use crate::over::alike;
+use crate::map_scalar::alike;
 use crate::value::Value;
 use std::collections::BTreeSet;
 
@@ -28,13 +28,13 @@ impl Form {
             }
         }
         Some(Form {
-            body: body.over(Traced::constant)?,
+            body: body.map_scalar(Traced::constant)?,
             paths: distinct,
         })
     }
 
     /// Places with what the body reads, as inputs.
-    pub fn places(&self, asker: &mut Asker, places: &Places<f64>) -> Option<Places<Traced>> {
+    pub fn places(&self, asker: &mut SiteReader, places: &Places<f64>) -> Option<Places<Traced>> {
         let mut own = vec![Value::Unit; places.len()];
         for path in &self.paths {
             asker.provide(path, places, &mut own)?;

@@ -1,10 +1,10 @@
 //! A function of numbers, recorded when it is first called. It depends on its arguments alone.
 
 use super::form::value_of;
-use super::kept::{Pool, Tapes};
+use super::tape_storage::{Pool, Tapes};
 use super::traced::{Traced, record};
 use crate::code::Routine;
-use crate::over::{alike, numbers, over};
+use crate::map_scalar::{alike, map_scalar, numbers};
 use crate::value::Value;
 use clebsch::Real;
 use clebsch_program::{Frame, Machine};
@@ -52,7 +52,7 @@ impl Function {
 
     /// The function over the scalar that records, if it can be recorded.
     pub fn traced(&self) -> Option<&Routine<Traced>> {
-        let traced = || self.plain.over(Traced::constant);
+        let traced = || self.plain.map_scalar(Traced::constant);
         self.traced.get_or_init(traced).as_ref()
     }
 
@@ -60,11 +60,13 @@ impl Function {
         let traced = self.traced()?;
         let mut gives = None;
         let (tape, inputs) = record(|| {
-            let inputs = given.iter().map(|value| over(value, &mut Traced::input));
+            let inputs = given
+                .iter()
+                .map(|value| map_scalar(value, &mut Traced::input));
             let mut places: Vec<Value<Traced>> = inputs.collect::<Option<_>>()?;
             places.resize(traced.places.max(places.len()), Value::Unit);
             let found = value_of(&traced.body, &mut places)?;
-            gives = over(&found, &mut |_| 0.0);
+            gives = map_scalar(&found, &mut |_| 0.0);
             let mut out = Vec::new();
             numbers(&found, &mut out)?;
             Some(out)
@@ -94,7 +96,7 @@ impl Tape {
                     return None;
                 }
                 let mut made = self.machine.gives(frame, 0);
-                over(&self.gives, &mut |x| made.next().unwrap_or(x))
+                map_scalar(&self.gives, &mut |x| made.next().unwrap_or(x))
             },
         )
     }

@@ -4,19 +4,19 @@
 //! was recorded. If they do not, clebsch runs the function itself. Newton's iteration runs between two tapes: the first
 //! computes the input of the equations, and the second computes the step from their solution.
 
-mod ask;
 mod counts;
+mod decision_tree;
 mod equations;
 mod form;
 mod function;
-mod kept;
+mod loop_inputs;
 mod sites;
 mod solves;
+mod tape_storage;
 mod traced;
 mod trajectory;
-mod ways;
 
-pub use equations::{Around, Wanted};
+pub use equations::{EquationValues, NewtonFunction};
 pub use function::{Function, run as run_alone};
 pub use sites::{Lists, SiteFunction};
 pub use solves::RecordedSolve;

@@ -6,12 +6,12 @@
 mod load;
 mod run;
 
-use super::ask::{Asker, Fixed, Read};
 use super::form::Form;
-use super::kept::MOST;
+use super::loop_inputs::{Fixed, ReadValue, SiteReader};
+use super::tape_storage::MOST;
 use super::traced::record;
 use crate::code::{Code, Evaluated, Places, unfit};
-use crate::over::{numbers, over};
+use crate::map_scalar::{map_scalar, numbers};
 use crate::sites::Column;
 use crate::value::Value;
 use clebsch::linalg::Dense;
@@ -181,8 +181,8 @@ impl SiteFunction {
         places: &Places<f64>,
         site: usize,
         lists: &Lists<'_>,
-    ) -> Option<Once> {
-        let mut asker = Asker::new(site);
+    ) -> Option<SiteRecording> {
+        let mut asker = SiteReader::new(site);
         let mut gives = Vec::new();
         let (tape, inputs) = record(|| {
             let mut own = form.places(&mut asker, places)?;
@@ -205,13 +205,13 @@ impl SiteFunction {
                     (Value::Zeros, Some([rows, cols])) => Value::of(Dense::zeros(rows, cols)),
                     (value, _) => value,
                 };
-                gives.push(over(&value, &mut |_| 0.0)?);
+                gives.push(map_scalar(&value, &mut |_| 0.0)?);
                 numbers(&value, &mut outputs)?;
             }
             Some(outputs)
         })?;
-        let (reads, fixed) = asker.told();
-        Some(Once {
+        let (reads, fixed) = asker.into_reads();
+        Some(SiteRecording {
             tape,
             inputs,
             reads,
@@ -222,11 +222,11 @@ impl SiteFunction {
 }
 
 /// A recording at one site.
-struct Once {
+struct SiteRecording {
     tape: clebsch_program::Tape,
     inputs: usize,
     /// Where inputs come from.
-    reads: Vec<Read>,
+    reads: Vec<ReadValue>,
     /// The values that the tape relies on.
     fixed: Fixed,
     gives: Vec<Value<f64>>,

@@ -1,15 +1,15 @@
 //! Equations that a step solves on its way, as parts of a recording. A tape ends where Newton's method begins; the next one
 //! takes the solution as inputs.
 
-use super::equations::{Around, Equations, Recorded, Wanted};
+use super::equations::{EquationValues, Equations, NewtonFunction, Recorded};
 use super::form::value_of;
 use super::function::run as run_alone;
 use super::load;
 use super::traced::{Traced, aside, cut, model, steps, with_newest_cut};
 use crate::code::{Code, Exit, Iterate, Places, unfit};
-use crate::newton::{AtTrial, Held, Solve, Sought, matrix, told as found, vector};
+use crate::map_scalar::{map_scalar, numbers};
+use crate::newton::{AtTrial, SearchValue, Solve, Sought, matrix, solution_value, vector};
 use crate::opened::at;
-use crate::over::{numbers, over};
 use crate::value::{Struct, Value};
 use clebsch::linalg::Reals;
 use clebsch::solvers::newton::{Chart, Solved};
@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 /// Where a recording ends for a while.
 #[derive(Clone, Debug)]
-pub struct Cut {
+pub struct RecordingPause {
     /// How many decisions were noted before.
     pub guards: usize,
     /// How many inputs there were before.
@@ -27,9 +27,9 @@ pub struct Cut {
     pub solved: SolvedHere,
 }
 
-impl Cut {
+impl RecordingPause {
     /// Whether two recordings have the same cut. Counts enter neither.
-    pub fn agrees(&self, other: &Cut) -> bool {
+    pub fn agrees(&self, other: &RecordingPause) -> bool {
         let (own, others) = (&self.solved, &other.solved);
         let same = match (&own.equations, &others.equations) {
             (Some(a), Some(b)) => a.agrees(b),
@@ -74,19 +74,19 @@ pub struct RecordedSolve {
 impl RecordedSolve {
     /// Records these equations. Returns `None` if places alone do not give the search or the node.
     pub fn of(with: Arc<Solve>) -> Option<Self> {
-        let at_trial = |what: &AtTrial| what.body.over(Traced::constant);
+        let at_trial = |what: &AtTrial| what.body.map_scalar(Traced::constant);
         Some(RecordedSolve {
             residual: at_trial(&with.residual),
             tangent: at_trial(&with.tangent),
-            at_rest: with.at_rest.over(Traced::constant),
+            at_rest: with.at_rest.map_scalar(Traced::constant),
             convex: with.convex.as_ref().and_then(at_trial),
             known: with
                 .known
                 .iter()
-                .map(|code| code.over(Traced::constant))
+                .map(|code| code.map_scalar(Traced::constant))
                 .collect(),
-            search: with.search.over(Traced::constant)?,
-            node: with.node.over(Traced::constant)?,
+            search: with.search.map_scalar(Traced::constant)?,
+            node: with.node.map_scalar(Traced::constant)?,
             with,
         })
     }
@@ -117,7 +117,7 @@ impl Iterate<Traced> for RecordedSolve {
         let (mut own, mut around, mut computed) = (Vec::new(), Vec::new(), Vec::new());
         for (at, value) in places.iter().enumerate() {
             // A value that the equations cannot use is replaced by `Unit`.
-            let seen = over(value, &mut Traced::seen).unwrap_or(Value::Unit);
+            let seen = map_scalar(value, &mut Traced::seen).unwrap_or(Value::Unit);
             let mut all = Vec::new();
             if !matches!(seen, Value::Unit)
                 && numbers(value, &mut all).is_some()
@@ -133,7 +133,7 @@ impl Iterate<Traced> for RecordedSolve {
         let solved = held.solve(
             &self.with,
             node.unsigned_abs(),
-            &mut Around::Places(&mut seen),
+            &mut EquationValues::Places(&mut seen),
         );
         let solved = unfit(solved.ok())?;
         cut(SolvedHere {
@@ -145,7 +145,7 @@ impl Iterate<Traced> for RecordedSolve {
         });
         let sought = held.sought();
         let values = sought.all().value(&solved.element);
-        let element = unfit(over(&values, &mut Traced::input))?;
+        let element = unfit(map_scalar(&values, &mut Traced::input))?;
         let mut inputs = Vec::new();
         unfit(numbers(&element, &mut inputs))?;
         let (parts, of_trial) = unfit(self.parts(&element, &inputs, sought, places))?;
@@ -164,7 +164,7 @@ impl Iterate<Traced> for RecordedSolve {
         });
         unfit(noted)?;
         // Nothing is computed from how the solution was found.
-        let told = found(sought.all(), &solved);
+        let told = solution_value(sought.all(), &solved);
         let Value::Struct(Struct { layout, .. }) = told else {
             return unfit(None);
         };
@@ -204,28 +204,32 @@ impl RecordedSolve {
         let in_part = self.with.completed_at.is_some();
         // Tests of a solution evaluate the residual by itself only if a part of the unknowns lacks a scale.
         let is_asked_alone = !in_part && sought.shape.parts().open.contains(&true);
-        let wanted = |wanted: Wanted| {
+        let wanted = |wanted: NewtonFunction| {
             let (body, trial_at) = match wanted {
-                Wanted::Residual => (self.residual.as_ref()?, Some(self.with.residual.place)),
-                Wanted::Tangent => (self.tangent.as_ref()?, Some(self.with.tangent.place)),
-                Wanted::AtRest => (self.at_rest.as_ref()?, None),
-                Wanted::Convex => {
+                NewtonFunction::Residual => {
+                    (self.residual.as_ref()?, Some(self.with.residual.place))
+                }
+                NewtonFunction::Tangent => (self.tangent.as_ref()?, Some(self.with.tangent.place)),
+                NewtonFunction::AtRest => (self.at_rest.as_ref()?, None),
+                NewtonFunction::Convex => {
                     let convex = self.with.convex.as_ref()?;
                     (self.convex.as_ref()?, Some(convex.place))
                 }
-                Wanted::Alone if is_asked_alone => return self.alone(&trial, sizes, places),
-                Wanted::Alone => return None,
+                NewtonFunction::Alone if is_asked_alone => {
+                    return self.alone(&trial, sizes, places);
+                }
+                NewtonFunction::Alone => return None,
             };
             let (numbers, guards) = aside(|| {
                 let mut places = places.clone();
                 if let Some(at) = trial_at {
                     *places.get_mut(at)? = trial.clone();
                 }
-                told(wanted, value_of(body, &mut places)?, sizes, in_part)
+                wanted_numbers(wanted, value_of(body, &mut places)?, sizes, in_part)
             })?;
             Some(part(&numbers, guards))
         };
-        Some((Wanted::ALL.map(wanted), of_trial?))
+        Some((NewtonFunction::ALL.map(wanted), of_trial?))
     }
 
     /// The residual by itself.
@@ -249,21 +253,21 @@ impl RecordedSolve {
 }
 
 /// The numbers of what is wanted, of so many equations that are searched for, and so many in all.
-fn told(
-    wanted: Wanted,
+fn wanted_numbers(
+    wanted: NewtonFunction,
     value: Value<Traced>,
     [size, all]: [usize; 2],
     in_part: bool,
 ) -> Option<Vec<Traced>> {
     match (wanted, value) {
-        (Wanted::Residual, Value::List(mut both)) => {
+        (NewtonFunction::Residual, Value::List(mut both)) => {
             let mut residual = vector(&both.pop()?, size)?;
             if in_part {
                 numbers(&both.pop()?, &mut residual)?;
             }
             Some(residual)
         }
-        (Wanted::Tangent, Value::List(both)) => match both.as_slice() {
+        (NewtonFunction::Tangent, Value::List(both)) => match both.as_slice() {
             [tangent, Value::Real(unit)] => {
                 let mut data = matrix(tangent, size)?.data;
                 data.push(*unit);
@@ -271,8 +275,8 @@ fn told(
             }
             _ => None,
         },
-        (Wanted::AtRest, value) => vector(&value, all),
-        (Wanted::Convex, Value::Bool(true)) => Some(Vec::new()),
+        (NewtonFunction::AtRest, value) => vector(&value, all),
+        (NewtonFunction::Convex, Value::Bool(true)) => Some(Vec::new()),
         _ => None,
     }
 }
@@ -309,7 +313,7 @@ pub fn remember(
 
 /// Equations that are solved between two tapes.
 #[derive(Debug)]
-pub struct Between {
+pub struct SolveBetweenTapes {
     machine: Machine,
     frame: Frame<1>,
     equations: Equations,
@@ -317,7 +321,7 @@ pub struct Between {
     node: i64,
     remembers: bool,
     /// The search before the step, with its measurements.
-    before: Option<Held>,
+    before: Option<SearchValue>,
     /// Whether this step has come to the equations.
     begun: bool,
     /// The newest solution.
@@ -325,7 +329,7 @@ pub struct Between {
 }
 
 /// The tapes before each cut, and the tape of the last part.
-pub fn in_parts(tape: Tape, cuts: Vec<Cut>) -> Option<(Vec<Between>, Tape)> {
+pub fn in_parts(tape: Tape, cuts: Vec<RecordingPause>) -> Option<(Vec<SolveBetweenTapes>, Tape)> {
     let mut decided = 0;
     let mut all = Vec::new();
     for cut in cuts {
@@ -344,7 +348,7 @@ pub fn in_parts(tape: Tape, cuts: Vec<Cut>) -> Option<(Vec<Between>, Tape)> {
         };
         let machine = Machine::new(&tape.part(before), cut.inputs);
         decided = cut.guards;
-        all.push(Between {
+        all.push(SolveBetweenTapes {
             frame: machine.frame(),
             machine,
             equations,
@@ -362,7 +366,7 @@ pub fn in_parts(tape: Tape, cuts: Vec<Cut>) -> Option<(Vec<Between>, Tape)> {
 
 /// How a step by tapes went.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Went {
+pub enum TapeOutcome {
     /// As recorded.
     On,
     /// A decision came out otherwise.
@@ -371,22 +375,27 @@ pub enum Went {
     Unsolved,
 }
 
-impl Between {
+impl SolveBetweenTapes {
     /// Computes what the equations need from `numbers`, solves them and appends their solution. `first` is the first count
     /// of the state; the search is among the `places`.
-    pub fn solve(&mut self, own: &mut Vec<f64>, first: i64, places: &mut Places<f64>) -> Went {
+    pub fn solve(
+        &mut self,
+        own: &mut Vec<f64>,
+        first: i64,
+        places: &mut Places<f64>,
+    ) -> TapeOutcome {
         self.begun = false;
         let Some(given) = own.get(..self.machine.inputs()) else {
-            return Went::Elsewhere;
+            return TapeOutcome::Elsewhere;
         };
         let loaded = load(self.frame.inputs(), given);
         if loaded.is_none() || !self.machine.run(&mut self.frame) {
-            return Went::Elsewhere;
+            return TapeOutcome::Elsewhere;
         }
         self.equations
             .begin(given, self.machine.gives(&self.frame, 0));
         let Some(Value::Search(held)) = self.with.search.place_mut(places) else {
-            return Went::Unsolved;
+            return TapeOutcome::Unsolved;
         };
         match &mut self.before {
             Some(before) => before.measure_as(held),
@@ -394,13 +403,13 @@ impl Between {
         }
         self.begun = true;
         let node = (first + self.node).unsigned_abs();
-        let around = &mut Around::Tapes(&mut self.equations);
+        let around = &mut EquationValues::Tapes(&mut self.equations);
         let Ok(Solved { element, .. }) = held.solve(&self.with, node, around) else {
-            return Went::Unsolved;
+            return TapeOutcome::Unsolved;
         };
         own.extend_from_slice(&element);
         self.found = element;
-        Went::On
+        TapeOutcome::On
     }
 
     /// Gives the search back what it had measured before the step, if the step has come to the equations.

@@ -4,7 +4,7 @@
 //! number leaves the tape in any other way, as with `value()`, the recording is void, since later decisions would be
 //! invisible.
 
-use super::solves::{Cut, SolvedHere};
+use super::solves::{RecordingPause, SolvedHere};
 use crate::value::Value;
 use clebsch::Real;
 use clebsch_program::{Function, Guard, Recording, Scalar, Step, Tape, Test};
@@ -25,7 +25,7 @@ struct Here {
     recording: Recording,
     inputs: u32,
     spoiled: bool,
-    cuts: Vec<Cut>,
+    cuts: Vec<RecordingPause>,
     model: Option<Value<f64>>,
 }
 
@@ -47,7 +47,7 @@ pub fn record(body: impl FnOnce() -> Option<Vec<Traced>>) -> Option<(Tape, usize
 pub fn record_with_solves(
     model: Option<Value<f64>>,
     body: impl FnOnce() -> Option<Vec<Traced>>,
-) -> Option<(Tape, usize, Vec<Cut>)> {
+) -> Option<(Tape, usize, Vec<RecordingPause>)> {
     HERE.set(Some(Here {
         model,
         ..Here::default()
@@ -69,7 +69,7 @@ pub fn model() -> Option<Value<f64>> {
 /// Ends a part of the recording. The solution of the equations is the input of the next part.
 pub fn cut(solved: SolvedHere) {
     noted(|here| {
-        here.cuts.push(Cut {
+        here.cuts.push(RecordingPause {
             guards: here.recording.guards(),
             inputs: here.inputs as usize,
             solved,
@@ -103,7 +103,7 @@ pub fn steps(numbers: &[Traced]) -> Vec<Scalar> {
 }
 
 /// Does something with the newest cut.
-pub fn with_newest_cut<R>(what: impl FnOnce(&mut Cut) -> R) -> Option<R> {
+pub fn with_newest_cut<R>(what: impl FnOnce(&mut RecordingPause) -> R) -> Option<R> {
     noted(|here| here.cuts.last_mut().map(what)).flatten()
 }
 

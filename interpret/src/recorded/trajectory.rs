@@ -1,13 +1,13 @@
 //! The functions of a trajectory as tapes: its step, and what a run evaluates at nodes.
 
 use super::counts::{Choice, Chosen, counts, each_count, grow, growth, uncounted};
+use super::decision_tree::{Node, OutcomeTape, TapesByOutcome};
 use super::form::value_of;
-use super::solves::{Cut, in_parts};
+use super::solves::{RecordingPause, in_parts};
 use super::traced::{Traced, record, record_with_solves};
-use super::ways::{Node, Way, Ways};
 use crate::code::{Places, Routine};
+use crate::map_scalar::{alike, fill, map_scalar, numbers};
 use crate::opened::{Functions, at};
-use crate::over::{alike, fill, numbers, over};
 use crate::packed::Packed;
 use crate::value::Value;
 use clebsch_program::{Machine, Tape};
@@ -36,7 +36,7 @@ pub enum Watched {
 impl Recordable {
     /// The functions of a model over the scalar that records; nothing if its parameters cannot be prepared over it.
     pub fn of(functions: &Functions, places: usize) -> Option<Self> {
-        let over = |routine: &Routine<f64>| routine.over(Traced::constant);
+        let over = |routine: &Routine<f64>| routine.map_scalar(Traced::constant);
         Some(Recordable {
             new: over(&functions.new)?,
             with_solver: functions.with_solver.as_ref().and_then(over),
@@ -89,7 +89,7 @@ impl Fixed {
 }
 
 fn constant(value: &Value<f64>) -> Option<Value<Traced>> {
-    over(value, &mut Traced::constant)
+    map_scalar(value, &mut Traced::constant)
 }
 
 /// The tapes of a trajectory, and the numbers of its state and workspace.
@@ -97,8 +97,8 @@ fn constant(value: &Value<f64>) -> Option<Value<Traced>> {
 pub struct Recorded {
     functions: &'static Recordable,
     fixed: Fixed,
-    step: Ways,
-    watched: [Ways; 3],
+    step: TapesByOutcome,
+    watched: [TapesByOutcome; 3],
     /// The numbers of the state, followed by the numbers of the workspace.
     numbers: Vec<f64>,
     /// How many are the state's.
@@ -132,8 +132,11 @@ impl Recorded {
         Recorded {
             functions,
             fixed,
-            step: Ways::new(own_step && functions.step.is_some()),
-            watched: functions.watched.each_ref().map(|f| Ways::new(f.is_some())),
+            step: TapesByOutcome::new(own_step && functions.step.is_some()),
+            watched: functions
+                .watched
+                .each_ref()
+                .map(|f| TapesByOutcome::new(f.is_some())),
             numbers: Vec::new(),
             of_state: 0,
             counts: Vec::new(),
@@ -310,10 +313,10 @@ fn recordable(value: &Value<f64>) -> bool {
 }
 
 /// A recording: a tape with so many inputs and the cuts on its way; the counts before and after.
-type Once = ((Tape, usize, Vec<Cut>), [Vec<i64>; 2]);
+type StepRecording = ((Tape, usize, Vec<RecordingPause>), [Vec<i64>; 2]);
 
 /// Records twice, with different counts: if these enter a number or a decision, recording gives up.
-fn twice(once: impl Fn(Choice) -> Option<Once>) -> Option<Way> {
+fn twice(once: impl Fn(Choice) -> Option<StepRecording>) -> Option<OutcomeTape> {
     let ((tape, inputs, cuts), [before, after]) = once(Choice::Equal)?;
     let ((other, _, others), [earlier, later]) = once(Choice::Apart)?;
     let agree = cuts.len() == others.len() && cuts.iter().zip(&others).all(|(a, b)| a.agrees(b));
@@ -324,7 +327,7 @@ fn twice(once: impl Fn(Choice) -> Option<Once>) -> Option<Way> {
     let (between, last) = in_parts(tape, cuts)?;
     let machine = Machine::new(&last, inputs);
     let frame = machine.frame();
-    Some(Way {
+    Some(OutcomeTape {
         between,
         machine,
         frame,
@@ -336,12 +339,12 @@ fn twice(once: impl Fn(Choice) -> Option<Once>) -> Option<Way> {
 /// The numbers of a value as inputs, its counts as they are chosen.
 fn input(value: &Value<f64>, counts: &mut Chosen) -> Option<Value<Traced>> {
     numbers(value, &mut Vec::new())?;
-    let mut value = over(value, &mut Traced::input)?;
+    let mut value = map_scalar(value, &mut Traced::input)?;
     counts.choose(&mut value);
     Some(value)
 }
 
-fn recorded_step(all: &Recordable, fixed: &Fixed, from: &Places<f64>) -> Option<Way> {
+fn recorded_step(all: &Recordable, fixed: &Fixed, from: &Places<f64>) -> Option<OutcomeTape> {
     let routine = all.step.as_ref()?;
     twice(|choice| {
         let mut places = all.places(fixed)?;
@@ -374,7 +377,7 @@ fn recorded_watch(
     which: Watched,
     fixed: &Fixed,
     from: &Places<f64>,
-) -> Option<Way> {
+) -> Option<OutcomeTape> {
     let routine = all.watched.get(which as usize)?.as_ref()?;
     twice(|choice| {
         let mut places = all.places(fixed)?;

@@ -14,7 +14,7 @@
 //! At equilibrium under its weight q, a cantilever has `w(L) = q L⁴/(8 K) + q L²/(2 S)`. Under a force P on its end, it
 //! has `w(L) = P L³/(3 K) + P L/S`. In both, the moment is integrated twice and the shear force once.
 
-use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::lattice::{ChainConfig, Lattice};
 use clebsch_core::pipeline;
 use clebsch_interpret::lines::{LineModel, LineTrajectory};
 use nalgebra::{DMatrix, DVector};
@@ -32,7 +32,7 @@ const BENDING: f64 = 1.0;
 /// A rod of n segments with its ends.
 struct Beam {
     model: Arc<LineModel>,
-    choice: Choice,
+    choice: ChainConfig,
     n: usize,
     weight: f64,
     force: f64,
@@ -50,7 +50,7 @@ impl Beam {
     fn new(text: &str, n: usize, ends: [&str; 2]) -> Self {
         let lattice = Lattice::read(&pipeline::parse_source(text).expect("is a model"));
         let lattice = lattice.expect("has labels");
-        let choice = Choice::representative(&lattice, 1);
+        let choice = ChainConfig::representative(&lattice, 1);
         let choice = choice.with_count(&lattice, "i", n).expect("has sites");
         let choice = choice
             .with_end(&lattice, false, ends[0])

@@ -8,7 +8,7 @@ use clebsch::Rotation;
 use clebsch::card::{Card, Field, Kind, Settings};
 use clebsch_core::derive::bracket::{Space, coordinates};
 use clebsch_core::expr::shape::Structure;
-use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::lattice::{ChainConfig, Lattice};
 use clebsch_core::{Assignment, Derivation, derive_source, pipeline};
 use clebsch_oracle::oracle::points::Source;
 use nalgebra::{DMatrix, Matrix3, Vector3};
@@ -185,7 +185,7 @@ impl Rod {
     fn new(text: &str) -> Self {
         let model = pipeline::parse_source(text).expect("is a model");
         let lattice = Lattice::read(&model).expect("has labels");
-        let choice = Choice::representative(&lattice, 1);
+        let choice = ChainConfig::representative(&lattice, 1);
         let choice = choice.with_count(&lattice, "i", 2).expect("has sites");
         let (_, derived) = pipeline::derive_lattice(&model, &lattice, &choice).expect("derives");
         let (card, _) = clebsch_interpret::card_on_lattice(text, &choice).expect("is read");

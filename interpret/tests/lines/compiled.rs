@@ -233,8 +233,10 @@ macro_rules! compiled {
     };
 }
 
-#[path = "held.rs"]
-pub mod held;
+#[path = "constraints.rs"]
+pub mod constraints;
+#[path = "coupled_velocities.rs"]
+pub mod coupled_velocities;
 #[path = "newton.rs"]
 pub mod newton;
 #[path = "quaternions.rs"]
@@ -243,8 +245,6 @@ pub mod quaternions;
 pub mod springs;
 #[path = "sums.rs"]
 pub mod sums;
-#[path = "together.rs"]
-pub mod together;
 
 compiled!(
     TodaLine: TodaChain TodaChainParameters TodaChainSites TodaChainEnds TodaChainInitial TodaChainState TodaChainWorkspace,

@@ -3,7 +3,7 @@
 use super::judge;
 use super::judge::{Found, Wrong};
 use super::quantity::{At, Draw, Quantity, Sites, What};
-use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::lattice::{ChainConfig, Lattice};
 use clebsch_core::pipeline;
 use clebsch_interpret::lines::LineModel;
 use clebsch_oracle::oracle::dual::Number;
@@ -34,10 +34,10 @@ pub struct Line {
 /// Numbers by the names of quantities.
 type Numbers = BTreeMap<String, Vec<f64>>;
 
-fn choice(source: &str, (n, ends): Sites) -> Choice {
+fn choice(source: &str, (n, ends): Sites) -> ChainConfig {
     let model = pipeline::parse_source(source).expect("is a model");
     let lattice = Lattice::read(&model).expect("has labels");
-    let choice = Choice::representative(&lattice, 1);
+    let choice = ChainConfig::representative(&lattice, 1);
     let choice = choice.with_count(&lattice, "i", n).expect("has sites");
     match ends {
         None => choice.with_ring(&lattice).expect("closes"),

@@ -30,13 +30,13 @@ struct Judged {
 }
 
 /// Judges all models, prints what was measured, and panics with all that is wrong.
-fn told_of<R>(rows: &[R], name: impl Fn(&R) -> &'static str, judge: impl Fn(&R) -> Judged) {
+fn print_table<R>(rows: &[R], name: impl Fn(&R) -> &'static str, judge: impl Fn(&R) -> Judged) {
     let mut wrong = Vec::new();
     let asked = std::env::var("CLEBSCH_STEP_OF").ok();
     let asked = |row: &&R| asked.as_deref().is_none_or(|own| own == name(row));
     for row in rows.iter().filter(asked) {
         let judged = judge(row);
-        println!("{}", told(&judged));
+        println!("{}", table_line(&judged));
         wrong.extend(verdict(&judged));
     }
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
@@ -45,7 +45,7 @@ fn told_of<R>(rows: &[R], name: impl Fn(&R) -> &'static str, judge: impl Fn(&R) 
 /// Judges models of bodies and fields.
 #[allow(dead_code)]
 pub fn judged(rows: &[Row]) {
-    told_of(rows, Row::name, |row| Judged {
+    print_table(rows, Row::name, |row| Judged {
         name: row.name(),
         refused: row.refused,
         known: row.known,
@@ -56,7 +56,7 @@ pub fn judged(rows: &[Row]) {
 /// Judges lines of sites.
 #[allow(dead_code)]
 pub fn judged_lines(rows: &[Line]) {
-    told_of(rows, Line::name, |row| Judged {
+    print_table(rows, Line::name, |row| Judged {
         name: row.name(),
         refused: row.refused,
         known: row.known,
@@ -65,7 +65,7 @@ pub fn judged_lines(rows: &[Line]) {
 }
 
 /// A line of the table that the run prints.
-fn told(row: &Judged) -> String {
+fn table_line(row: &Judged) -> String {
     let found = &row.found;
     let off = found.off;
     let miss = match row.known {

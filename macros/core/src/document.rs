@@ -4,8 +4,8 @@
 
 pub mod citations;
 mod compose;
-mod folded;
 mod holds;
+mod indexed_notation;
 mod lattice;
 mod motion;
 mod outlook;
@@ -19,7 +19,7 @@ mod source;
 mod structure;
 
 pub use citations::{Citations, Place, Work};
-pub use compose::{Telling, document, document_telling};
+pub use compose::{DocumentExtras, document, document_telling};
 pub use lattice::{
     CardWords, InvariantWords, Printed, card_words, default_choice, printed_lattice,
 };
@@ -56,7 +56,7 @@ pub fn printed_telling(
         columns,
         ..style(d)
     };
-    let told = Telling {
+    let told = DocumentExtras {
         citations,
         scheme: matches!(format, Format::Latex | Format::Markdown),
         stated,

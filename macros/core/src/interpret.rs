@@ -12,7 +12,7 @@ use crate::lower::{self, Inputs, Lowered, Source};
 use crate::schedule::Program;
 use clebsch_program::{Array, Call, Doubles, Unvalued};
 
-pub use functionals::Asked;
+pub use functionals::FunctionalRequest;
 pub use mutants::Mutant;
 
 /// A matrix with its numbers of rows and columns.

@@ -7,7 +7,7 @@ use crate::check::{
 use crate::derive::{self, Derivation};
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::emit;
-use crate::lattice::{self, Choice, ExpandedModel, Lattice};
+use crate::lattice::{self, ChainConfig, ExpandedModel, Lattice};
 use crate::line::{self, Line};
 use crate::syntax;
 use crate::syntax::ast::Model;
@@ -41,10 +41,10 @@ pub fn derive_model(model: &Model) -> Result<Derivation, Errors> {
 }
 
 /// The lattice on which the middle site and each end have all their neighbours.
-pub fn representative(model: &Model, line: &Lattice) -> Result<Choice, Errors> {
-    let first = Choice::representative(line, 1);
+pub fn representative(model: &Model, line: &Lattice) -> Result<ChainConfig, Errors> {
+    let first = ChainConfig::representative(line, 1);
     let width = lattice::unfold(model, line, &first)?.width();
-    Ok(Choice::representative(line, width))
+    Ok(ChainConfig::representative(line, width))
 }
 
 /// How many times the work of an ordinary model a lattice is given: as many as it has copies, the work
@@ -57,7 +57,7 @@ fn room(unfolded: &ExpandedModel) -> u64 {
 pub fn derive_lattice(
     model: &Model,
     line: &Lattice,
-    choice: &Choice,
+    choice: &ChainConfig,
 ) -> Result<(ExpandedModel, Derivation), Errors> {
     let unfolded = lattice::unfold(model, line, choice)?;
     let _room = work::room(room(&unfolded));
@@ -67,7 +67,11 @@ pub fn derive_lattice(
 }
 
 /// A lattice that is written out, checked: its configurations know of what they are copies.
-fn written_out(unfolded: &ExpandedModel, line: &Lattice, choice: &Choice) -> Result<Spec, Errors> {
+fn written_out(
+    unfolded: &ExpandedModel,
+    line: &Lattice,
+    choice: &ChainConfig,
+) -> Result<Spec, Errors> {
     let mut spec = check::check_written_out(&unfolded.model)?;
     let motionless = check::without_velocity(&spec);
     if let Some(first) = motionless.first() {
@@ -97,7 +101,7 @@ fn written_out(unfolded: &ExpandedModel, line: &Lattice, choice: &Choice) -> Res
 pub fn outline_lattice(
     model: &Model,
     line: &Lattice,
-    choice: &Choice,
+    choice: &ChainConfig,
 ) -> Result<(ExpandedModel, derive::Outline), Errors> {
     let unfolded = lattice::unfold(model, line, choice)?;
     let _room = work::room(room(&unfolded));

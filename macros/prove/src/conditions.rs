@@ -11,7 +11,7 @@ pub type Structured = fn(Structure) -> bool;
 
 /// One condition or computation on the variables of a rule.
 #[derive(Clone, Copy, Debug)]
-pub enum Given<V> {
+pub enum RuleCondition<V> {
     /// A letter with `A^T = A`.
     Symmetric(V),
     /// A letter with `A^T = -A`.
@@ -75,47 +75,47 @@ pub trait View {
     fn whole(&self) -> Option<Shape>;
 }
 
-impl<V: Copy> Given<V> {
+impl<V: Copy> RuleCondition<V> {
     /// The variable and its required structure, if the condition concerns a letter.
     pub fn letter(&self) -> Option<(V, Structured)> {
         match *self {
-            Given::Symmetric(v) => Some((v, Structure::is_symmetric)),
-            Given::Skew(v) => Some((v, |s| s == Structure::Skew)),
-            Given::Diagonal(v) => Some((v, |s| s == Structure::Diagonal)),
-            Given::Orthogonal(v) => Some((v, |s| s == Structure::Orthogonal)),
+            RuleCondition::Symmetric(v) => Some((v, Structure::is_symmetric)),
+            RuleCondition::Skew(v) => Some((v, |s| s == Structure::Skew)),
+            RuleCondition::Diagonal(v) => Some((v, |s| s == Structure::Diagonal)),
+            RuleCondition::Orthogonal(v) => Some((v, |s| s == Structure::Orthogonal)),
             _ => None,
         }
     }
 
     /// The condition with renamed variables, or the first error of `f`.
-    pub fn renamed<W, E>(&self, f: impl Fn(V) -> Result<W, E>) -> Result<Given<W>, E> {
+    pub fn renamed<W, E>(&self, f: impl Fn(V) -> Result<W, E>) -> Result<RuleCondition<W>, E> {
         Ok(match *self {
-            Given::Symmetric(a) => Given::Symmetric(f(a)?),
-            Given::Skew(a) => Given::Skew(f(a)?),
-            Given::Diagonal(a) => Given::Diagonal(f(a)?),
-            Given::Orthogonal(a) => Given::Orthogonal(f(a)?),
-            Given::Scalar(a) => Given::Scalar(f(a)?),
-            Given::Vector(a) => Given::Vector(f(a)?),
-            Given::Column(a) => Given::Column(f(a)?),
-            Given::Wide(a) => Given::Wide(f(a)?),
-            Given::Square(a) => Given::Square(f(a)?),
-            Given::Bilinear(a, b) => Given::Bilinear(f(a)?, f(b)?),
-            Given::Number(a) => Given::Number(f(a)?),
-            Given::Whole(a) => Given::Whole(f(a)?),
-            Given::Plus(r, a, b) => Given::Plus(f(r)?, f(a)?, f(b)?),
-            Given::After(r, a) => Given::After(f(r)?, f(a)?),
-            Given::Times(r, a, b) => Given::Times(f(r)?, f(a)?, f(b)?),
-            Given::Raised(r, a, b) => Given::Raised(f(r)?, f(a)?, f(b)?),
-            Given::Rows(r, a) => Given::Rows(f(r)?, f(a)?),
-            Given::Zero(a) => Given::Zero(f(a)?),
-            Given::Identity(a) => Given::Identity(f(a)?),
+            RuleCondition::Symmetric(a) => RuleCondition::Symmetric(f(a)?),
+            RuleCondition::Skew(a) => RuleCondition::Skew(f(a)?),
+            RuleCondition::Diagonal(a) => RuleCondition::Diagonal(f(a)?),
+            RuleCondition::Orthogonal(a) => RuleCondition::Orthogonal(f(a)?),
+            RuleCondition::Scalar(a) => RuleCondition::Scalar(f(a)?),
+            RuleCondition::Vector(a) => RuleCondition::Vector(f(a)?),
+            RuleCondition::Column(a) => RuleCondition::Column(f(a)?),
+            RuleCondition::Wide(a) => RuleCondition::Wide(f(a)?),
+            RuleCondition::Square(a) => RuleCondition::Square(f(a)?),
+            RuleCondition::Bilinear(a, b) => RuleCondition::Bilinear(f(a)?, f(b)?),
+            RuleCondition::Number(a) => RuleCondition::Number(f(a)?),
+            RuleCondition::Whole(a) => RuleCondition::Whole(f(a)?),
+            RuleCondition::Plus(r, a, b) => RuleCondition::Plus(f(r)?, f(a)?, f(b)?),
+            RuleCondition::After(r, a) => RuleCondition::After(f(r)?, f(a)?),
+            RuleCondition::Times(r, a, b) => RuleCondition::Times(f(r)?, f(a)?, f(b)?),
+            RuleCondition::Raised(r, a, b) => RuleCondition::Raised(f(r)?, f(a)?, f(b)?),
+            RuleCondition::Rows(r, a) => RuleCondition::Rows(f(r)?, f(a)?),
+            RuleCondition::Zero(a) => RuleCondition::Zero(f(a)?),
+            RuleCondition::Identity(a) => RuleCondition::Identity(f(a)?),
         })
     }
 }
 
 /// Decides the conditions in order. `None` if one fails; otherwise the values of the variables that are literal or
 /// computed.
-pub fn decide(given: &[Given<Var>], view: &impl View) -> Option<Vec<(Var, Value)>> {
+pub fn decide(given: &[RuleCondition<Var>], view: &impl View) -> Option<Vec<(Var, Value)>> {
     let shape = |v: Var| view.shape(v);
     let number = |v: Var| view.number(v);
     let literal = |v: Var, q: Rational| Some((v, Value::Number(q)));
@@ -124,48 +124,51 @@ pub fn decide(given: &[Given<Var>], view: &impl View) -> Option<Vec<(Var, Value)
         let mut holds = true;
         let value = match *condition {
             // Letters were substituted when the rule was made for this statement.
-            Given::Symmetric(_) | Given::Skew(_) | Given::Diagonal(_) | Given::Orthogonal(_) => {
-                None
-            }
-            Given::Scalar(v) => {
+            RuleCondition::Symmetric(_)
+            | RuleCondition::Skew(_)
+            | RuleCondition::Diagonal(_)
+            | RuleCondition::Orthogonal(_) => None,
+            RuleCondition::Scalar(v) => {
                 holds = shape(v)?.is_scalar();
                 None
             }
-            Given::Vector(v) => {
+            RuleCondition::Vector(v) => {
                 holds = shape(v)?.is_vector();
                 None
             }
-            Given::Column(v) => {
+            RuleCondition::Column(v) => {
                 holds = shape(v)?.cols == Dim::Fixed(1);
                 None
             }
-            Given::Wide(v) => {
+            RuleCondition::Wide(v) => {
                 holds = shape(v)?.cols != Dim::Fixed(1);
                 None
             }
-            Given::Square(v) => {
+            RuleCondition::Square(v) => {
                 holds = shape(v)?.is_square();
                 None
             }
-            Given::Bilinear(a, b) => {
+            RuleCondition::Bilinear(a, b) => {
                 holds = shape(a)?.rows == Dim::Fixed(1) && shape(b)?.cols == Dim::Fixed(1);
                 None
             }
-            Given::Whole(v) => {
+            RuleCondition::Whole(v) => {
                 holds = number(v)?.as_integer().is_some();
                 None
             }
-            Given::Number(v) => literal(v, number(v)?),
-            Given::Plus(r, a, b) => literal(r, number(a)?.plus(number(b)?)?),
-            Given::After(r, a) => literal(r, number(a)?.plus(Rational::ONE)?),
-            Given::Times(r, a, b) => literal(r, number(a)?.times(number(b)?)?),
-            Given::Raised(r, a, b) => literal(r, number(a)?.power(number(b)?.as_integer()?)?),
-            Given::Rows(r, a) => match shape(a)?.rows {
+            RuleCondition::Number(v) => literal(v, number(v)?),
+            RuleCondition::Plus(r, a, b) => literal(r, number(a)?.plus(number(b)?)?),
+            RuleCondition::After(r, a) => literal(r, number(a)?.plus(Rational::ONE)?),
+            RuleCondition::Times(r, a, b) => literal(r, number(a)?.times(number(b)?)?),
+            RuleCondition::Raised(r, a, b) => {
+                literal(r, number(a)?.power(number(b)?.as_integer()?)?)
+            }
+            RuleCondition::Rows(r, a) => match shape(a)?.rows {
                 Dim::Fixed(n) => literal(r, Rational::integer(i64::from(n))),
                 Dim::Named(_) => return None,
             },
-            Given::Zero(v) => Some((v, Value::Zero(view.whole()?))),
-            Given::Identity(v) => Some((v, Value::Identity(view.whole()?.rows))),
+            RuleCondition::Zero(v) => Some((v, Value::Zero(view.whole()?))),
+            RuleCondition::Identity(v) => Some((v, Value::Identity(view.whole()?.rows))),
         };
         if !holds {
             return None;

@@ -1,7 +1,7 @@
 //! The rules for one statement: the general rules, and the rules that follow from the structure of its letters
 //! (`g g^T = 1` for a rotation g). Every rule has a unique name.
 
-use super::conditions::{Given, Structured, Value, put};
+use super::conditions::{RuleCondition, Structured, Value, put};
 use super::language::{Leaf, Term};
 use super::rules::{Group, Row, TABLE};
 use super::worth::Worth;
@@ -22,7 +22,7 @@ pub struct Rule {
     /// Right-hand side.
     pub right: PatternAst<Term>,
     /// Its conditions and computations.
-    pub given: Vec<Given<Var>>,
+    pub given: Vec<RuleCondition<Var>>,
     /// When the search should apply it.
     pub worth: Vec<Worth<Var>>,
 }
@@ -69,7 +69,7 @@ fn instances(
 ) -> Result<(), String> {
     let (left, right) = (pattern(name, left)?, pattern(name, right)?);
     let mut wanted: Vec<(Var, Structured)> = Vec::new();
-    let mut rest: Vec<Given<Var>> = Vec::new();
+    let mut rest: Vec<RuleCondition<Var>> = Vec::new();
     for condition in *given {
         match condition.letter() {
             Some((v, has)) => wanted.push((variable(name, v)?, has)),

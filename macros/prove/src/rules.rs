@@ -2,7 +2,7 @@
 //! wherever its left-hand side is defined; its right-hand side is then defined too. Terms are in the prefix notation
 //! of [`super::language::Term`]; variables begin with `?`.
 
-use super::conditions::Given::{self, *};
+use super::conditions::RuleCondition::{self, *};
 use super::worth::Join::{Product, Scale, Sum};
 use super::worth::Worth::{self, *};
 
@@ -11,7 +11,7 @@ pub type Row = (
     &'static str,
     &'static str,
     &'static str,
-    &'static [Given<&'static str>],
+    &'static [RuleCondition<&'static str>],
     &'static [Worth<&'static str>],
 );
 

@@ -33,7 +33,7 @@ const MATCHES: usize = 4_000;
 const STEPS: u64 = 20_000;
 
 /// The result of a search.
-pub struct Found {
+pub struct SearchResult {
     /// The terms from the left to the right side; each but the first has the rule that produced it.
     pub chain: Option<Vec<FlatTerm<Term>>>,
     /// Why the search ended.
@@ -89,7 +89,7 @@ pub fn search(
     right: &RecExpr<Term>,
     rules: &[Rule],
     limits: &Limits,
-) -> Result<Found, String> {
+) -> Result<SearchResult, String> {
     let mut rewrites = Vec::new();
     for rule in rules {
         rewrites.push((rule.group, rewrite(rule)?));
@@ -148,7 +148,7 @@ pub fn search(
             chain = Some(without_detours(explanation.make_flat_explanation()));
         }
     }
-    Ok(Found {
+    Ok(SearchResult {
         chain,
         end,
         nodes,

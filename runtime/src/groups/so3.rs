@@ -3,7 +3,7 @@
 
 use super::{Coadjoint, Group, squares};
 use crate::Real;
-use crate::scalar::one::{in_lanes, set_all};
+use crate::scalar::lane_view::{in_lanes, set_all};
 use crate::scalar::{larger, largest, of_scalars};
 use core::fmt;
 use core::ops::Mul;

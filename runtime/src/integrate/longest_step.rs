@@ -1,10 +1,10 @@
 //! The stability limit of the step size: 2/ω, with ω the frequency of the fastest small motion about the initial state.
 //! Takes a model's card with its data; makes single steps from rest to get forces and the inverse of the mass.
 
+mod equilibrium;
 mod extremes;
 mod moves;
 mod probe;
-mod resting;
 mod unknown;
 mod waves;
 

@@ -158,9 +158,9 @@ macro_rules! stepper {
                 parameters: &[Vec<f64>],
                 initial: &[Vec<f64>],
             ) -> Result<(Self, Self::Initial), $crate::card::OpenError> {
-                let mut given = $crate::of_numbers::Given::new(Self::CARD.parameters, parameters);
+                let mut given = $crate::of_numbers::FieldNumbers::new(Self::CARD.parameters, parameters);
                 let model = Self::new($parameters { $($parameter: given.take()?),* })?;
-                let mut given = $crate::of_numbers::Given::new(Self::CARD.initial, initial);
+                let mut given = $crate::of_numbers::FieldNumbers::new(Self::CARD.initial, initial);
                 Ok((model, $initial { $($given: given.take()?),* }))
             }
 

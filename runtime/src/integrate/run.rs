@@ -257,7 +257,7 @@ impl Watch {
     fn look(&mut self, trajectory: &dyn Trajectory, sampled: bool) -> Result<(), NotFinite> {
         trajectory.invariants(&mut self.invariants);
         if let Err(found) = finite(trajectory, Watched::Invariant, &self.invariants) {
-            return Err(self.told_of_overflow(trajectory, found));
+            return Err(self.overflow_as_infinite(trajectory, found));
         }
         trajectory.scales(&mut self.scales);
         if trajectory.node() > 0 {
@@ -276,7 +276,7 @@ impl Watch {
 
     /// Reports an invariant that is NaN as infinite if its terms overflow: then no function left its domain.
     #[cold]
-    fn told_of_overflow(&mut self, trajectory: &dyn Trajectory, found: NotFinite) -> NotFinite {
+    fn overflow_as_infinite(&mut self, trajectory: &dyn Trajectory, found: NotFinite) -> NotFinite {
         trajectory.scales(&mut self.scales);
         trajectory.observe(&mut self.observables);
         let is_large = |x: &f64| x.abs() > SQUARED;

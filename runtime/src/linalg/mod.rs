@@ -9,12 +9,12 @@ mod eigenvalues;
 mod elimination;
 mod factors;
 mod frame;
+mod identity_difference;
 mod inclusion;
 mod motion;
 mod pencil;
 mod product;
 mod quaternion;
-mod rest;
 mod singular_values;
 mod skew;
 
@@ -28,6 +28,7 @@ pub use elimination::{
 pub(crate) use elimination::{is_usable, weight};
 pub use factors::{DenseFactors, Factors};
 pub use frame::principal_frame;
+pub use identity_difference::less_identity;
 pub use inclusion::{columns_from, inclusion, into_columns, into_rows, rows_from};
 pub use motion::{Coordinates, Homogeneous, motion_rotation, motion_translation, twist};
 pub use pencil::{even_count, even_degrees, pencil_coefficients};
@@ -36,7 +37,6 @@ pub use quaternion::{
     left_multiplication, pure_quaternion, quaternion_imaginary, quaternion_real,
     quaternion_rotation,
 };
-pub use rest::less_identity;
 pub use singular_values::{singular_ratio, singular_ratio_of};
 pub use skew::{
     axial_of_difference, crossed, crossing, hat, skew_coordinates, skew_from, trace_complement, vee,

@@ -2,7 +2,7 @@
 //! method from rest with block-tridiagonal derivatives. Takes the momenta of sites and of coupling terms, with
 //! derivatives; gives the velocities, or the site at which the continuation fails.
 
-use super::blocks::{Blocks, Fixed, Read, Size};
+use super::blocks::{Blocks, Fixed, RuntimeSize, Size};
 use super::root::{Lists, Momenta, NoRoot, begins, follow, of_vector, scales_of};
 use super::turn::turn_of;
 use crate::Real;
@@ -239,7 +239,7 @@ impl<T: Real> AnyBand<T> {
         moving: [usize; 2],
         all: impl FnMut(&mut Sums<'_, T>),
     ) -> Result<(), (usize, NoRoot)> {
-        self.solve_by(Read(n), moving, all)
+        self.solve_by(RuntimeSize(n), moving, all)
     }
 
     /// Like `solve`, for a block size that may be known at compile time.

@@ -64,9 +64,9 @@ impl<const N: usize> Size for Fixed<N> {
 
 /// A size known only at run time.
 #[derive(Clone, Copy)]
-pub(super) struct Read(pub usize);
+pub(super) struct RuntimeSize(pub usize);
 
-impl Size for Read {
+impl Size for RuntimeSize {
     #[inline(always)]
     fn rows(self) -> usize {
         self.0

@@ -2,7 +2,7 @@
 //! and its site; gives messages that name both.
 
 use crate::mesh::MeshError;
-use crate::said;
+use crate::number_format;
 use crate::{ParameterError, StepCause};
 use core::fmt;
 
@@ -125,7 +125,7 @@ impl fmt::Display for LineError {
                 works,
             } => {
                 write!(f, "step from node {node}: `{quantity}`: {cause}")?;
-                said::works(f, *works)
+                number_format::works(f, *works)
             }
             Self::Step {
                 node,
@@ -134,7 +134,7 @@ impl fmt::Display for LineError {
                 works,
             } => {
                 write!(f, "step from node {node}: {at}: {cause}")?;
-                said::works(f, *works)
+                number_format::works(f, *works)
             }
         }
     }

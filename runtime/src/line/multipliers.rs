@@ -11,7 +11,7 @@
 // Loops use one index for several lists.
 #![allow(clippy::needless_range_loop)]
 
-use super::blocks::{Blocks, Fixed, Read, Size};
+use super::blocks::{Blocks, Fixed, RuntimeSize, Size};
 use super::error::Place;
 use super::root::scales_of;
 use crate::Real;
@@ -224,7 +224,7 @@ impl<T: Real> Multipliers<T> {
     where
         T: 'a,
     {
-        self.wants_by(Read(n), held)
+        self.wants_by(RuntimeSize(n), held)
     }
 
     #[inline(always)]
@@ -326,7 +326,7 @@ impl<T: Real> Multipliers<T> {
     where
         T: 'a,
     {
-        self.corrected_by(Read(n), rows);
+        self.corrected_by(RuntimeSize(n), rows);
     }
 
     #[inline(always)]
@@ -522,7 +522,7 @@ impl<T: Real> Multipliers<T> {
     where
         T: 'a,
     {
-        self.projected_by(Read(n), rows, rates)
+        self.projected_by(RuntimeSize(n), rows, rates)
     }
 
     #[inline(always)]

@@ -4,19 +4,19 @@
 mod double;
 mod double_double;
 mod dual;
+pub(crate) mod lane_view;
 mod lanes;
 mod largest;
-pub(crate) mod one;
-mod over;
+mod map_scalar;
 mod rounded;
 
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
+pub use lane_view::InLanes;
 pub use lanes::Lanes;
 pub use largest::{greater, larger, largest};
-pub use one::InLanes;
-pub(crate) use over::of_scalars;
-pub use over::{OfScalars, gather, lane};
+pub(crate) use map_scalar::of_scalars;
+pub use map_scalar::{OfScalars, gather, lane};
 pub use rounded::Rounded;
 
 use core::fmt::Debug;

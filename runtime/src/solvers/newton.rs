@@ -1,34 +1,34 @@
 //! Newton's method on a Lie group, for implicit steps without a closed form. Takes an initial guess or previous
 //! solutions, the residual and its tangent; gives a converged element or an error.
 
-mod alone;
 mod any_size;
 mod changes;
+mod checked_points;
+mod continuation_stage;
 mod corrections;
 mod failure;
-mod looks;
 mod parts;
 pub(crate) mod principal;
 mod reduced;
 mod saved;
 mod scale;
-mod stage;
+mod single_equation;
 mod verdict;
 
 pub use crate::scalar::Rounded;
-pub use alone::solve;
 pub use any_size::{AnyNewton, AnySearch, Chart, Lane, Settled};
 pub use failure::{NewtonError, NewtonFailure};
 pub use parts::Parts;
 use parts::{squares, with_kinds};
 pub use principal::{Equations, Fold};
 pub use reduced::Found;
+pub use single_equation::solve;
 pub use verdict::{Anchor, Numbers, Verdict};
 
 use crate::groups::Group;
 use crate::linalg::Factors;
 use crate::scalar::Real;
-use corrections::{Corrections, Next, Residual};
+use corrections::{Corrections, NextAction, Residual};
 use nalgebra::{SMatrix, SVector};
 use reduced::AtRest;
 
@@ -522,14 +522,14 @@ where
             largest(&SVector::<T, 1>::new(sum))
         };
         let next = self.corrections.next::<T>(self.seen(), moved, decrement);
-        if next == Next::End {
+        if next == NextAction::End {
             return self.solved_unless_outdated();
         }
         self.trial = match FROM_LEFT {
             true => self.trial.retract_from_left(step.as_slice()),
             false => self.trial.retract(step.as_slice()),
         };
-        if next == Next::CorrectAndEnd && !self.is_outdated() {
+        if next == NextAction::CorrectAndEnd && !self.is_outdated() {
             return self.solved(self.iteration + 1);
         }
         self.previous = size;

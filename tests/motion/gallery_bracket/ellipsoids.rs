@@ -5,7 +5,7 @@ use crate::seeded::Seeded;
 use clebsch::nalgebra::SMatrix;
 use clebsch::{BodyMomentumMatrix, Dual, Linear, SpatialMomentumMatrix};
 use clebsch_models::Case;
-use clebsch_oracle::physics::draws::Draws;
+use clebsch_oracle::physics::random_states::Draws;
 
 /// A symmetric matrix near the identity with independent variations from seed `first`.
 fn near_identity<const N: usize>(draws: &mut Draws, first: usize) -> SMatrix<Seeded, N, N> {

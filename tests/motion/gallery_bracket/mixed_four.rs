@@ -7,7 +7,7 @@ use clebsch::{
     Additive, BodyImpulse, BodyMomentum, Dual, FieldMomentum, RigidMotion, Rotation, UnitQuaternion,
 };
 use clebsch_models::Case;
-use clebsch_oracle::physics::draws::Draws;
+use clebsch_oracle::physics::random_states::Draws;
 
 pub(super) fn mixed_four(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     use clebsch_models::mixed_four::*;

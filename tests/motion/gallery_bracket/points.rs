@@ -4,7 +4,7 @@ use super::{Node, Step, column, length, number, quantity, vector};
 use crate::seeded::Seeded;
 use clebsch::{Additive, FieldMomentum};
 use clebsch_models::Case;
-use clebsch_oracle::physics::draws::Draws;
+use clebsch_oracle::physics::random_states::Draws;
 
 /// Starts a model of a point, steps once, and returns both nodes.
 macro_rules! point_stepped {

@@ -5,7 +5,7 @@ use crate::seeded::Seeded;
 use clebsch::nalgebra::SMatrix;
 use clebsch::{BodyMomentumMatrix, Dual, Linear, SpatialMomentumMatrix};
 use clebsch_models::Case;
-use clebsch_oracle::physics::draws::Draws;
+use clebsch_oracle::physics::random_states::Draws;
 use clebsch_oracle::physics::symplectic::defect_on_group;
 
 /// Defines the start of an ellipsoid: near the placement of the case, with any small body momentum, which `$seen` converts to the

@@ -7,7 +7,7 @@ use clebsch::{
     Additive, BodyImpulse, BodyMomentum, Dual, FieldMomentum, RigidMotion, Rotation, UnitQuaternion,
 };
 use clebsch_models::Case;
-use clebsch_oracle::physics::draws::Draws;
+use clebsch_oracle::physics::random_states::Draws;
 use clebsch_oracle::physics::symplectic::defect_on_group;
 
 /// mu . [E_a, E_b] on SO(3) x SE(3) x SU(2) x R^3, with three, six, three and three components.

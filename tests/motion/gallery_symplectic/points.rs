@@ -5,8 +5,8 @@ use crate::seeded::Seeded;
 use clebsch::nalgebra::Vector3;
 use clebsch::{Additive, Dual, FieldMomentum};
 use clebsch_models::Case;
-use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::physics::random_states::Draws;
 use clebsch_oracle::physics::symplectic::defect_on_group;
 
 /// A position at distance one from the origin and a momentum, with independent variations.

@@ -271,10 +271,10 @@ struct Rod {
 }
 
 /// The ends of a rod: a constraint number for each end, or a ring.
-type Held = Option<(usize, usize)>;
+type HeldEnds = Option<(usize, usize)>;
 
 impl Rod {
-    fn drawn(n: usize, held: Held, seed: u64) -> Self {
+    fn drawn(n: usize, held: HeldEnds, seed: u64) -> Self {
         let mut r = Random::new(seed);
         let nodes = n + usize::from(held.is_some());
         let spacing = 0.5 + 0.1 * r.number();
@@ -464,7 +464,7 @@ impl Case for Rod {
 }
 
 /// Every combination of ends of a rod, and the ring.
-fn all_ends() -> impl Iterator<Item = Held> {
+fn all_ends() -> impl Iterator<Item = HeldEnds> {
     let open = (0..9).map(|ends| Some((ends / 3, ends % 3)));
     open.chain([None])
 }

@@ -11,16 +11,16 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 /// The verdicts so far.
-struct Known {
+struct Verdicts {
     /// The caught mutants.
     caught: BTreeSet<usize>,
     /// The pairs of mutant and judge that have a verdict.
     asked: BTreeSet<(usize, String)>,
 }
 
-fn known() -> Known {
+fn known() -> Verdicts {
     let text = fs::read_to_string(place().join("verdicts.tsv")).unwrap_or_default();
-    let mut known = Known {
+    let mut known = Verdicts {
         caught: BTreeSet::new(),
         asked: BTreeSet::new(),
     };

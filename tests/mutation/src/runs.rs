@@ -20,7 +20,7 @@ struct Group {
 }
 
 /// The result of the tests on a mutant.
-pub struct Said {
+pub struct RunOutput {
     /// `passes`, `fails` or `hangs`, and the name of the test if it ran alone.
     pub how: String,
     /// The time it took.
@@ -143,7 +143,7 @@ impl Tests {
     }
 
     /// Runs tests until one fails.
-    pub fn judge(&self, mutant: usize) -> Result<Said, String> {
+    pub fn judge(&self, mutant: usize) -> Result<RunOutput, String> {
         let mut spent = Duration::ZERO;
         for group in &self.0 {
             let (how, took) = group.run(mutant)?;
@@ -153,13 +153,13 @@ impl Tests {
                     [one] => format!(" {one}"),
                     _ => String::new(),
                 };
-                return Ok(Said {
+                return Ok(RunOutput {
                     how: format!("{how}{which}"),
                     took: spent,
                 });
             }
         }
-        Ok(Said {
+        Ok(RunOutput {
             how: "passes".to_owned(),
             took: spent,
         })

@@ -2,11 +2,11 @@
 
 use super::oracle_bridge::{AGREEMENT, assignment};
 use clebsch_core::Derivation;
-use clebsch_oracle::oracle::points::{Given, Variation};
+use clebsch_oracle::oracle::points::{NamedValue, Variation};
 
 /// A point with the oracle's variation.
 pub struct Judged {
-    pub given: Vec<Given>,
+    pub given: Vec<NamedValue>,
     pub step: (&'static str, f64),
     pub oracle: Variation,
 }

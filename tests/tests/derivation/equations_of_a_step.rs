@@ -11,8 +11,8 @@ use clebsch_core::interpret::{Assignment, Matrix, evaluate};
 use clebsch_core::print::{Format, Style, expression};
 use clebsch_core::schedule::LoopInvariants;
 use clebsch_core::{Derivation, derive_source};
-use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::physics::random_states::Draws;
 
 /// Statements with coupled velocities, nonlinear in the velocity, or on another group.
 const MODELS: [(&str, &str); 6] = [

@@ -1,7 +1,7 @@
 //! Short chains and rings of all kinds against hand-written actions; `tests/tests/many_models/` tests longer ones.
 
 use super::common::lattices::{
-    Ends, FREE, beam, body_chain, held, hoop, rod, scalars, sets, shallow_water, tops,
+    Ends, FREE, beam, body_chain, hoop, prescribed_end, rod, scalars, sets, shallow_water, tops,
 };
 
 #[test]
@@ -46,11 +46,11 @@ fn tops_in_a_ring() {
 
 #[test]
 fn held_tops() {
-    held::check(1, Ends::Open("held", "free"));
-    held::check(1, Ends::Open("free", "held"));
+    prescribed_end::check(1, Ends::Open("held", "free"));
+    prescribed_end::check(1, Ends::Open("free", "held"));
     for first in ["held", "free"] {
         for last in ["free", "held"] {
-            held::check(3, Ends::Open(first, last));
+            prescribed_end::check(3, Ends::Open(first, last));
         }
     }
 }
@@ -58,7 +58,7 @@ fn held_tops() {
 #[test]
 fn tops_that_carry_in_a_ring() {
     for segments in [1, 2, 3] {
-        held::check(segments, Ends::Ring);
+        prescribed_end::check(segments, Ends::Ring);
     }
 }
 

@@ -6,7 +6,7 @@ use clebsch_core::{Derivation, derive_source};
 use clebsch_oracle::oracle::action::motions::{self, KirchhoffBody, twists};
 use clebsch_oracle::oracle::action::quaternions::{self, CayleyKlein, halves};
 use clebsch_oracle::oracle::action::{DiscreteAction, Side, stationarity};
-use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::points::{NamedValue, Source};
 use clebsch_oracle::oracle::square::Square;
 use clebsch_oracle::physics::measure::worse;
 use clebsch_oracle::sizes::POINTS;
@@ -28,7 +28,7 @@ fn worst<const N: usize, A: DiscreteAction<N, 1>>(
     basis: &[Square<f64, N>],
     node: fn(&mut Source) -> [Square<f64, N>; 1],
     system: impl Fn(&mut Source) -> (A, f64),
-    given: impl Fn(&A, &Nodes<N>) -> Vec<Given>,
+    given: impl Fn(&A, &Nodes<N>) -> Vec<NamedValue>,
 ) -> f64 {
     let mut worst: f64 = 0.0;
     for _ in 0..points {

@@ -93,7 +93,7 @@ fn worst<const G: usize, A: DiscreteAction<4, G>>(
     [text, other]: [&str; 2],
     system: impl Fn(&mut Source) -> (A, f64),
     node: fn(&mut Source) -> [Square<f64, 4>; G],
-    given: impl Fn(&A, &[[Square<f64, 4>; G]; 3]) -> Vec<clebsch_oracle::oracle::points::Given>,
+    given: impl Fn(&A, &[[Square<f64, 4>; G]; 3]) -> Vec<clebsch_oracle::oracle::points::NamedValue>,
     oracle: impl Fn(&A, &[[Square<f64, 4>; G]; 3]) -> Variation,
 ) -> (f64, f64) {
     let (d, other) = (derive(text), derive(other));

@@ -2,7 +2,7 @@
 //! `tests/tests/derivation/lattices.rs` tests the shortest of each kind.
 
 use super::common::lattices::{
-    Ends, FREE, beam, body_chain, held, hoop, rod, scalars, sets, shallow_water, tops,
+    Ends, FREE, beam, body_chain, hoop, prescribed_end, rod, scalars, sets, shallow_water, tops,
 };
 
 #[test]
@@ -50,7 +50,7 @@ fn held_tops() {
     for segments in [2, 5, 12] {
         for first in ["held", "free"] {
             for last in ["free", "held"] {
-                held::check(segments, Ends::Open(first, last));
+                prescribed_end::check(segments, Ends::Open(first, last));
             }
         }
     }
@@ -59,13 +59,13 @@ fn held_tops() {
 #[test]
 fn tops_that_carry_in_a_ring() {
     for segments in [5, 12] {
-        held::check(segments, Ends::Ring);
+        prescribed_end::check(segments, Ends::Ring);
     }
 }
 
 #[test]
 fn held_tops_in_a_long_row() {
-    held::check(50, Ends::Open("held", "held"));
+    prescribed_end::check(50, Ends::Open("held", "held"));
 }
 
 #[test]

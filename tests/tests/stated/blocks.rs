@@ -96,7 +96,7 @@ clebsch::model! {
 }
 
 /// The data of both models.
-struct Given {
+struct BlockData {
     h: f64,
     j: Square<f64, 3>,
     a: [f64; 3],
@@ -105,9 +105,9 @@ struct Given {
     e: f64,
 }
 
-impl Given {
-    fn random(source: &mut Source, h: f64) -> Given {
-        Given {
+impl BlockData {
+    fn random(source: &mut Source, h: f64) -> BlockData {
+        BlockData {
             h,
             j: source.positive(),
             a: source.vector(),
@@ -134,7 +134,7 @@ impl Given {
     }
 }
 
-impl DiscreteAction<3, 10> for Given {
+impl DiscreteAction<3, 10> for BlockData {
     fn edge<T: Number>(&self, tail: &[Square<T, 3>; 10], head: &[Square<T, 3>; 10]) -> Vec<T> {
         let mut all: Vec<T> = (0..10).map(|i| self.kinetic(&tail[i], &head[i])).collect();
         for i in 0..10 {
@@ -145,7 +145,7 @@ impl DiscreteAction<3, 10> for Given {
     }
 }
 
-impl DiscreteAction<3, 4> for Given {
+impl DiscreteAction<3, 4> for BlockData {
     fn edge<T: Number>(&self, tail: &[Square<T, 3>; 4], head: &[Square<T, 3>; 4]) -> Vec<T> {
         let mut all: Vec<T> = (0..4).map(|i| self.kinetic(&tail[i], &head[i])).collect();
         let turned = T::constant(3.0) - (tail[1].transpose() * head[1]).trace();
@@ -200,7 +200,7 @@ fn share(variation: &Variation) -> f64 {
     largest / variation.scale
 }
 
-fn ring(given: &Given, source: &mut Source) -> (Ring, RingInitial) {
+fn ring(given: &BlockData, source: &mut Source) -> (Ring, RingInitial) {
     let model = Ring::new(RingParameters {
         J: given.matrix(),
         a: Vector3::from(given.a),
@@ -235,7 +235,7 @@ fn ring(given: &Given, source: &mut Source) -> (Ring, RingInitial) {
     (model.expect("positive"), initial)
 }
 
-fn kinds(given: &Given, source: &mut Source) -> (Kinds, KindsInitial) {
+fn kinds(given: &BlockData, source: &mut Source) -> (Kinds, KindsInitial) {
     let model = Kinds::new(KindsParameters {
         J: given.matrix(),
         a: Vector3::from(given.a),
@@ -289,7 +289,7 @@ fn each_kind_of_block_solves_the_unreduced_equations() {
     let mut source = Source::seeded(11);
     for h in [0.02, 0.1, 0.2] {
         for _ in 0..20 {
-            let given = Given::random(&mut source, h);
+            let given = BlockData::random(&mut source, h);
             let (model, initial) = ring(&given, &mut source);
             let (start, _) = model.start(initial, h).expect("solvable");
             let mut worst = 0.0f64;
@@ -314,7 +314,7 @@ fn each_kind_of_block_solves_the_unreduced_equations() {
 fn the_oracle_notices_a_spring_that_is_missing() {
     let basis = rotations();
     let mut source = Source::seeded(12);
-    let mut given = Given::random(&mut source, 0.1);
+    let mut given = BlockData::random(&mut source, 0.1);
     given.c = 0.5;
     let (model, initial) = ring(&given, &mut source);
     let (start, _) = model.start(initial, given.h).expect("solvable");
@@ -331,7 +331,7 @@ fn the_oracle_notices_a_spring_that_is_missing() {
 fn frames_that_act_on_one_another_keep_their_angular_momentum() {
     let mut source = Source::seeded(13);
     for h in [1e-1, 1e-4, 1e-8] {
-        let given = Given::random(&mut source, h);
+        let given = BlockData::random(&mut source, h);
         let (model, initial) = ring(&given, &mut source);
         let (start, _) = model.start(initial, h).expect("solvable");
         let momenta = |s: &RingState<f64>| {
@@ -363,7 +363,7 @@ fn frames_that_act_on_one_another_keep_their_angular_momentum() {
 #[test]
 fn a_block_beyond_its_bound_is_refused_with_a_step_that_works() {
     let mut source = Source::seeded(14);
-    let given = Given::random(&mut source, 0.1);
+    let given = BlockData::random(&mut source, 0.1);
     for fast in 0..10 {
         let (model, mut initial) = ring(&given, &mut source);
         let momentum = match fast {

@@ -8,8 +8,8 @@ use clebsch_core::derive::bracket::Space;
 use clebsch_core::derive::invariants::Family;
 use clebsch_core::interpret::{Assignment, Matrix, evaluate};
 use clebsch_core::{Derivation, derive_source, expr};
-use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::physics::random_states::Draws;
 
 clebsch::model! {
     model Body {

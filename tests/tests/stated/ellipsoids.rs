@@ -52,7 +52,7 @@ clebsch::model! {
 type Matrix<const N: usize> = SMatrix<f64, N, N>;
 
 /// The data of both models.
-struct Given<const N: usize> {
+struct EllipsoidData<const N: usize> {
     c0: Matrix<N>,
     i0: Matrix<N>,
     a: f64,
@@ -69,7 +69,7 @@ fn inverse<const N: usize>(a: &Matrix<N>) -> Matrix<N> {
     a.try_inverse().expect("regular")
 }
 
-impl<const N: usize> Given<N> {
+impl<const N: usize> EllipsoidData<N> {
     fn random(source: &mut Source, h: f64) -> Self {
         Self {
             c0: matrix(&source.positive()),
@@ -110,7 +110,7 @@ const ROUNDING: f64 = 1e-14;
 fn follow<const N: usize, M: Stepper<Scalar = f64>>(
     model: &M,
     start: M::State,
-    given: &Given<N>,
+    given: &EllipsoidData<N>,
     placement: impl Fn(&M::State) -> Matrix<N>,
     spatial: bool,
 ) where
@@ -133,7 +133,7 @@ fn ellipsoids<const N: usize>(seed: u64) {
     let mut source = Source::seeded(seed);
     for h in [1e-3, 1e-2] {
         for _ in 0..20 {
-            let given = Given::<N>::random(&mut source, h);
+            let given = EllipsoidData::<N>::random(&mut source, h);
             // Near the reference, so that the placement stays invertible.
             let q = Matrix::<N>::identity() + matrix(&source.matrix()) * 0.1;
             let p = matrix(&source.matrix()) * 0.1;
@@ -188,7 +188,7 @@ fn four_dimensions() {
 #[test]
 fn the_material_form_notices_a_wrong_force() {
     let mut source = Source::seeded(24);
-    let mut given = Given::<3>::random(&mut source, 1e-2);
+    let mut given = EllipsoidData::<3>::random(&mut source, 1e-2);
     let model = Convective::<3>::new(ConvectiveParameters {
         C0: given.c0,
         I0: given.i0,
@@ -215,7 +215,7 @@ fn the_material_form_notices_a_wrong_force() {
 #[test]
 fn a_form_that_is_singular_is_refused_by_its_factor() {
     let mut source = Source::seeded(25);
-    let given = Given::<3>::random(&mut source, 1e-2);
+    let given = EllipsoidData::<3>::random(&mut source, 1e-2);
     let flat = Matrix::<3>::from_diagonal(&[1.0, 1.0, 0.0].into());
     let model = Convective::<3>::new(ConvectiveParameters {
         C0: given.c0,

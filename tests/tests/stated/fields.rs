@@ -107,7 +107,7 @@ pub(super) fn at_ends<T: Number>(tail: &[T], head: &[T], term: impl Fn(&[T]) -> 
 }
 
 /// Parameters of the vector models, by their names in the models.
-struct Given {
+struct VectorData {
     h: f64,
     m: f64,
     k: f64,
@@ -116,9 +116,9 @@ struct Given {
     e: [f64; 3],
 }
 
-impl Given {
-    fn random(source: &mut Source, h: f64) -> Given {
-        Given {
+impl VectorData {
+    fn random(source: &mut Source, h: f64) -> VectorData {
+        VectorData {
             h,
             m: source.between(0.5, 2.0),
             k: source.between(0.5, 2.0),
@@ -129,7 +129,7 @@ impl Given {
     }
 }
 
-struct OfPlanet<'a>(&'a Given);
+struct OfPlanet<'a>(&'a VectorData);
 
 impl Flat for OfPlanet<'_> {
     fn edge<T: Number>(&self, tail: &[T], head: &[T]) -> Vec<T> {
@@ -143,7 +143,7 @@ impl Flat for OfPlanet<'_> {
     }
 }
 
-struct OfCharge<'a>(&'a Given);
+struct OfCharge<'a>(&'a VectorData);
 
 impl Flat for OfCharge<'_> {
     fn edge<T: Number>(&self, tail: &[T], head: &[T]) -> Vec<T> {
@@ -162,7 +162,7 @@ impl Flat for OfCharge<'_> {
     }
 }
 
-fn planet(given: &Given, source: &mut Source) -> (Planet, PlanetInitial) {
+fn planet(given: &VectorData, source: &mut Source) -> (Planet, PlanetInitial) {
     let model = Planet::new(PlanetParameters {
         m: given.m,
         k: given.k,
@@ -174,7 +174,7 @@ fn planet(given: &Given, source: &mut Source) -> (Planet, PlanetInitial) {
     (model.expect("parameters"), initial)
 }
 
-fn charge(given: &Given, source: &mut Source) -> (Charge, ChargeInitial) {
+fn charge(given: &VectorData, source: &mut Source) -> (Charge, ChargeInitial) {
     let model = Charge::new(ChargeParameters {
         m: given.m,
         q: given.q,
@@ -193,7 +193,7 @@ fn vectors_solve_the_unreduced_equations() {
     let mut source = Source::seeded(31);
     for h in [0.01, 0.1, 0.3] {
         for _ in 0..20 {
-            let given = Given::random(&mut source, h);
+            let given = VectorData::random(&mut source, h);
             let (model, initial) = planet(&given, &mut source);
             let (start, _) = model.start(initial, h).expect("solvable");
             let flat = |s: &PlanetState<f64>| s.X().matrix().as_slice().to_vec();
@@ -212,7 +212,7 @@ fn vectors_solve_the_unreduced_equations() {
 #[test]
 fn the_oracle_notices_another_force() {
     let mut source = Source::seeded(32);
-    let mut given = Given::random(&mut source, 0.1);
+    let mut given = VectorData::random(&mut source, 0.1);
     let (model, initial) = planet(&given, &mut source);
     let (start, _) = model.start(initial, given.h).expect("solvable");
     given.k *= 1.0 + 1e-6;
@@ -227,7 +227,7 @@ fn the_oracle_notices_another_force() {
 fn a_charge_turns_as_boris_has_it() {
     let mut source = Source::seeded(33);
     for h in [0.01, 0.2, 3.0] {
-        let mut given = Given::random(&mut source, h);
+        let mut given = VectorData::random(&mut source, h);
         (given.b, given.e) = ([0.0, 0.0, 1.7], [0.0; 3]);
         let (model, initial) = charge(&given, &mut source);
         let (start, mut work) = model.start(initial, h).expect("solvable");
@@ -252,7 +252,7 @@ fn a_charge_turns_as_boris_has_it() {
 #[test]
 fn a_planet_is_stoermer_verlet() {
     let mut source = Source::seeded(34);
-    let given = Given::random(&mut source, 0.05);
+    let given = VectorData::random(&mut source, 0.05);
     let (model, initial) = planet(&given, &mut source);
     let (mut state, mut work) = model.start(initial, given.h).expect("solvable");
     let force = |x: Vector3<f64>| -x * (given.m * given.k / x.norm().powi(3));

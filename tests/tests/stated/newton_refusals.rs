@@ -15,8 +15,8 @@ use clebsch_models::coupled_bodies::{
     CoupledBodies, CoupledBodiesInitial, CoupledBodiesParameters, CoupledBodiesState,
 };
 use clebsch_oracle::oracle::points::asked_for;
-use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::physics::random_states::Draws;
 use drawn::{Coupled, Drawn, Fluid, InFourDimensions, Mixed, Quaternion, Rough, Stiff};
 use std::cell::Cell;
 

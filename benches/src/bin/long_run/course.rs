@@ -6,7 +6,7 @@ use clebsch::Order;
 use clebsch_benches::body::Generated;
 use clebsch_comparisons::body::{BodyMotion, Start};
 use clebsch_comparisons::handwritten::attitude::{apply, dot};
-use clebsch_oracle::physics::trend::{Trend, trend};
+use clebsch_oracle::physics::drift_detection::{Trend, trend};
 
 /// Steps of a run, a multiple of [`STRIDE`].
 pub const STEPS: u64 = 100_000_000;

@@ -4,12 +4,12 @@
 use super::precision::{MOMENTS, MOMENTUM, TIME};
 use super::timing::{Measured, error};
 use clebsch::{DoubleDouble, Real};
-use clebsch_benches::python::told;
+use clebsch_benches::python::run_script;
 use serde_json::Value;
 
 /// The versions as text, and the measurements.
 pub fn measured() -> Result<(String, Vec<Measured>), String> {
-    let read = told("peers.py", "peers.json", &[])?;
+    let read = run_script("peers.py", "peers.json", &[])?;
     parsed(&read).ok_or_else(|| "peers.json is not what the script writes".to_owned())
 }
 

@@ -5,7 +5,7 @@ use super::precision::{MOMENTS, MOMENTUM};
 use clebsch::DoubleDouble;
 use clebsch_benches::blocks::computed;
 use clebsch_benches::body::start_of;
-use clebsch_benches::truth;
+use clebsch_benches::reference_motion;
 use std::hint::black_box;
 
 /// Number of rounds.
@@ -46,7 +46,7 @@ pub struct Measured {
 
 /// The error at the end.
 pub fn error((attitude, momentum): &End, time: DoubleDouble) -> f64 {
-    truth::at(&start_of(MOMENTS, MOMENTUM, 1.0), time).error(attitude, momentum)
+    reference_motion::at(&start_of(MOMENTS, MOMENTUM, 1.0), time).error(attitude, momentum)
 }
 
 /// Measures all runs.

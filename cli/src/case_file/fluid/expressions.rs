@@ -3,7 +3,7 @@
 
 use super::meshes::Meshes;
 use super::{Reader, Wrong, size};
-use crate::case_file::from_npz::{self, Wanted};
+use crate::case_file::from_npz::{self, AcceptedShapes};
 use crate::case_file::names::{Nameless, Names as _};
 use crate::case_file::space::Space;
 use crate::case_file::value::{number, shape};
@@ -71,7 +71,7 @@ impl Reader<'_> {
         let (size, count) = (size(q), self.count(q));
         if from_npz::is_meant(value.get_ref()) {
             let sites: Vec<usize> = (0..count).collect();
-            let wanted = Wanted {
+            let wanted = AcceptedShapes {
                 values: &[if size == 1 { vec![] } else { vec![size] }],
                 sites: Some(&sites),
                 moving: None,
@@ -137,10 +137,10 @@ impl Reader<'_> {
         let DeValue::String(text) = value.get_ref() else {
             return Ok(vec![number(value.get_ref(), &Nameless)?; self.count(q)]);
         };
-        let told = |why: String| told(text, value, &why);
-        let (data, meshes) = self.expression(q, text).map_err(told)?;
+        let expression_error = |why: String| expression_error(text, value, &why);
+        let (data, meshes) = self.expression(q, text).map_err(expression_error)?;
         let each = (0..self.count(q)).map(|site| self.valued(q, &data, &meshes, site));
-        each.collect::<Result<_, _>>().map_err(told)
+        each.collect::<Result<_, _>>().map_err(expression_error)
     }
 
     fn at(&self, q: &Quantity, value: &Spanned<DeValue<'_>>, site: usize) -> Result<f64, Wrong> {
@@ -149,7 +149,7 @@ impl Reader<'_> {
         };
         let own = self.expression(q, text);
         let value_here = own.and_then(|(data, meshes)| self.valued(q, &data, &meshes, site));
-        value_here.map_err(|why| told(text, value, &why))
+        value_here.map_err(|why| expression_error(text, value, &why))
     }
 
     /// An expression, and the meshes in it.
@@ -180,7 +180,7 @@ impl Reader<'_> {
 }
 
 /// An error in an expression, with its position.
-fn told(text: &str, value: &Spanned<DeValue<'_>>, why: &str) -> Wrong {
+fn expression_error(text: &str, value: &Spanned<DeValue<'_>>, why: &str) -> Wrong {
     Wrong {
         why: format!("\"{text}\": {why}"),
         at: Some(value.span()),

@@ -37,7 +37,7 @@ pub(crate) struct Comparison {
     /// The reference for the errors, and its accuracy as far as it is known.
     pub reference: String,
     /// How the model's own stepper came about.
-    pub made: Made,
+    pub made: StepperOrigin,
     /// The model's own stepper first, the reference last.
     pub scores: Vec<Score>,
 }
@@ -62,8 +62,8 @@ pub fn compare(
         .map(|target| Staging::new(target, matches.get_flag("force"), &FILES))
         .transpose()?;
     let made = match resolved.compiled {
-        true => Made::Built,
-        false => Made::Read,
+        true => StepperOrigin::Built,
+        false => StepperOrigin::Read,
     };
     let done = against_all(card, &plan, made, streams.progress)?;
     let mut object = comparison_json(card, &plan, &done);
@@ -106,14 +106,14 @@ pub fn compare(
 
 /// How the stepper of a model came about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Made {
+pub(crate) enum StepperOrigin {
     /// It was generated as Rust and compiled.
     Built,
     /// It was read from a file and is executed.
     Read,
 }
 
-impl Made {
+impl StepperOrigin {
     /// The name in tables and files.
     pub fn name(self) -> &'static str {
         match self {
@@ -130,7 +130,7 @@ impl Made {
 pub(crate) fn against_all(
     card: &Card,
     plan: &Plan,
-    made: Made,
+    made: StepperOrigin,
     progress: bool,
 ) -> Result<Comparison, Failure> {
     // Other methods implement the equations of the gallery. A different model with the same name has none.

@@ -154,7 +154,7 @@ pub(crate) fn drifts(card: &Card, record: &Record, scales: &[f64]) -> Vec<Curve>
 
 impl Score {
     /// The score for files and `--json`.
-    pub fn json(&self, made: super::Made) -> Value {
+    pub fn json(&self, made: super::StepperOrigin) -> Value {
         let curves = |curves: &[Curve]| -> Value {
             let pairs = curves.iter().map(|curve| {
                 let value = json!({"worst": curve.worst(), "last": curve.last()});

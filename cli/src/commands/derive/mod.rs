@@ -5,7 +5,7 @@ pub mod generated;
 
 use crate::commands::show::statement;
 use crate::models::gallery::{Citations, Gallery};
-use crate::named::resolve::{Named, named};
+use crate::named::resolve::{NamedModel, named};
 use crate::terminal::Streams;
 use crate::terminal::bounded;
 use crate::terminal::failure::Failure;
@@ -79,8 +79,8 @@ fn source(
     let named = named(gallery, name, "derive needs a model or its text")?;
     let text = statement(&named).to_owned();
     let (name, citations) = match named {
-        Named::Compiled(entry) => (entry.card.kebab.to_owned(), entry.citations),
-        Named::Text(text) => (text.name, Citations::NONE),
+        NamedModel::Compiled(entry) => (entry.card.kebab.to_owned(), entry.citations),
+        NamedModel::Text(text) => (text.name, Citations::NONE),
     };
     Ok((name, text, citations))
 }

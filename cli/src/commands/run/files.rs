@@ -3,7 +3,7 @@
 
 use super::pdf;
 use crate::output::samples::{self, Rows};
-use crate::output::{FILES, Finished, Staging, arrays, run_json, thinned, vtk};
+use crate::output::{FILES, Finished, Staging, arrays, run_json, sample_selection, vtk};
 use crate::page;
 use crate::plots;
 use crate::terminal::failure::Failure;
@@ -24,7 +24,7 @@ pub(super) fn write(
     run: &Finished<'_>,
     rows: &Rows,
     opening: Option<Record>,
-    in_space: Vec<vtk::Drawn>,
+    in_space: Vec<vtk::DrawnObject>,
 ) -> Result<Vec<String>, Failure> {
     let [
         csv,
@@ -50,7 +50,7 @@ pub(super) fn write(
     }
     let arrays = arrays::arrays(run.card, rows.count());
     staging.write(archive, |file| npz::write(file, rows, &arrays))?;
-    let record = thinned::record(run.card, rows).map_err(|error| {
+    let record = sample_selection::record(run.card, rows).map_err(|error| {
         let path = staging.folder().join(samples::NAME);
         Failure::io(&format!("cannot read {}", shown(&path)), &error)
     })?;

@@ -3,7 +3,7 @@
 //! the result.
 
 use crate::output::samples::Stream;
-use crate::output::{Listening, Staging};
+use crate::output::{SignalListener, Staging};
 use crate::terminal::failure::Failure;
 use crate::terminal::waiting::progress_bar;
 use crate::trajectory::checkpoint::{Checkpoint, Identity};
@@ -41,7 +41,7 @@ pub(crate) struct Run<'a> {
 }
 
 /// The output of a run while it computes.
-pub(crate) struct Kept<'a> {
+pub(crate) struct RunOutput<'a> {
     /// Its folder.
     pub(crate) staging: &'a mut Staging,
     /// Its samples.
@@ -79,8 +79,8 @@ impl Run<'_> {
     /// # Errors
     /// Failed: samples or checkpoints cannot be written. The run can be resumed from the last checkpoint that
     /// was written.
-    pub(crate) fn follow(&mut self, kept: Option<&mut Kept<'_>>) -> Result<End, Failure> {
-        let listening = Listening::begin();
+    pub(crate) fn follow(&mut self, kept: Option<&mut RunOutput<'_>>) -> Result<End, Failure> {
+        let listening = SignalListener::begin();
         let bar = self.progress.then(|| progress_bar(self.steps, "steps"));
         if let Some(bar) = &bar {
             bar.set_position(self.watch.summary().steps);
@@ -95,8 +95,8 @@ impl Run<'_> {
 
     fn steps_left(
         &mut self,
-        listening: &Listening,
-        mut kept: Option<&mut Kept<'_>>,
+        listening: &SignalListener,
+        mut kept: Option<&mut RunOutput<'_>>,
         bar: Option<&ProgressBar>,
     ) -> Result<End, Failure> {
         let begun = Instant::now();
@@ -120,7 +120,7 @@ impl Run<'_> {
                 bar.set_position(done);
             }
             let over = self.watch.is_over();
-            let asked = listening.asked().filter(|_| !over);
+            let asked = listening.stop_signal().filter(|_| !over);
             if let Some(kept) = &mut kept {
                 let due = last_checkpoint.elapsed().as_secs_f64() >= kept.seconds;
                 // Also at the end, since writing the files may take long and be interrupted.
@@ -147,7 +147,7 @@ impl Run<'_> {
     }
 
     /// Writes a checkpoint, if the trajectory can be written down.
-    fn checkpoint(&mut self, kept: &mut Kept<'_>) -> Result<(), Failure> {
+    fn checkpoint(&mut self, kept: &mut RunOutput<'_>) -> Result<(), Failure> {
         let (mut trajectory, mut watch) = (Words::gathered(), Words::gathered());
         self.trajectory.words(&mut trajectory);
         self.watch.words(&mut watch);
@@ -173,7 +173,7 @@ impl Run<'_> {
     }
 }
 
-impl Kept<'_> {
+impl RunOutput<'_> {
     fn refused(&self, error: &io::Error) -> Failure {
         let folder = self.staging.folder();
         let message = format!("cannot write into {}", shown(folder));

@@ -11,7 +11,7 @@ mod summary;
 use crate::models::gallery::Gallery;
 use crate::named::resolve::resolved;
 use crate::output::samples::{self, Stream};
-use crate::output::{self, Finished, Found, Staging, Stopped, run_json};
+use crate::output::{self, Finished, ResumableRun, Staging, Stopped, run_json};
 use crate::plan::Plan;
 use crate::terminal::Streams;
 use crate::terminal::failure::{BOUND_LEFT, BY_SIGNAL, DONE, FAILED, Failure};
@@ -22,20 +22,20 @@ use crate::trajectory::stated::JudgedTrajectory;
 use crate::trajectory::step_limit::{self, StepLimit};
 use crate::trajectory::verdict::{Verdict, judge, lost, table};
 use crate::words::plain::shown;
-use crate::words::way::way_of;
+use crate::words::step_method::step_method;
 use crate::words::width::paragraph;
 use clap::ArgMatches;
 use clebsch::card::{Card, Trajectory as _};
 use clebsch::integrate::{self, Halved, RunError, Watch};
 use clebsch::record::Record;
-use clebsch_check::Which;
+use clebsch_check::StepSelection;
 use complete::already;
-use follow::{End, Kept, Run};
+use follow::{End, Run, RunOutput};
 use listener::Listener;
 use serde_json::json;
 use std::io::{self, Write};
 use std::path::PathBuf;
-use summary::Told;
+use summary::Verbosity;
 
 /// Steps whose every node is kept for the plots: all the swings there is room for, of 150 steps each.
 const OPENING: u64 = 10_000;
@@ -59,7 +59,7 @@ pub fn run(
     let resolved = resolved(gallery, matches, streams)?;
     let entry = &resolved.entry;
     let plan = {
-        let _told = Waiting::told("reading the case".to_owned(), streams.progress);
+        let _told = Waiting::showing("reading the case".to_owned(), streams.progress);
         Plan::new(&resolved, matches)?
     };
     let card = &entry.card_of(&plan.case);
@@ -76,14 +76,14 @@ pub fn run(
             fits(card, &plan)?;
             let found = match matches.get_flag("resume") {
                 true => Staging::resume(target, &output::FILES, &identity)?,
-                false => Found::Nothing,
+                false => ResumableRun::Nothing,
             };
             match found {
-                Found::Results => {
+                ResumableRun::Results => {
                     return already(card, &plan, target, (as_json, !drawn.is_empty()), streams);
                 }
-                Found::Middle(both) => (Some(both.0), Some(both.1)),
-                Found::Nothing => {
+                ResumableRun::Middle(both) => (Some(both.0), Some(both.1)),
+                ResumableRun::Nothing => {
                     let force = matches.get_flag("force");
                     (Some(Staging::new(target, force, &output::FILES)?), None)
                 }
@@ -97,7 +97,7 @@ pub fn run(
     let started = {
         let numbers: usize = plan.case.initial.iter().map(Vec::len).sum();
         let what = format!("taking the first step, from a state of {numbers} numbers");
-        let _told = Waiting::told(what, streams.progress);
+        let _told = Waiting::showing(what, streams.progress);
         plan.open(card)
     };
     // Values that the model rejects are reported before the search for a stability limit.
@@ -107,7 +107,7 @@ pub fn run(
     };
     let limit = {
         let what = "searching for the stability limit of the step size".to_owned();
-        let _told = Waiting::told(what, streams.progress);
+        let _told = Waiting::showing(what, streams.progress);
         StepLimit::of(card, &plan, step_limit::patience(matches))
     };
     let too_long = limit.warning(plan.case.h);
@@ -129,11 +129,11 @@ pub fn run(
     };
     let width = streams.width;
     let told = match matches.get_flag("quiet") || as_json {
-        true => Told::Nothing,
-        false if matches.get_flag("verbose") => Told::All,
-        false => Told::Result,
+        true => Verbosity::Nothing,
+        false if matches.get_flag("verbose") => Verbosity::All,
+        false => Verbosity::Result,
     };
-    let way = way_of(resolved.compiled);
+    let way = step_method(resolved.compiled);
     summary::title(&mut out, width, card, &plan, (told, way))?;
     let steps = plan.case.steps;
     let watch = Watch::new(&trajectory, steps, plan.every);
@@ -156,7 +156,7 @@ pub fn run(
                 }
             };
             let seconds = matches.get_one::<f64>("checkpoint").copied();
-            Some(Kept {
+            Some(RunOutput {
                 staging,
                 stream,
                 identity,
@@ -167,7 +167,7 @@ pub fn run(
     if let (Some(kept), Some(_)) = (&mut kept, &checkpoint) {
         kept.staging.go_on();
     }
-    if checkpoint.is_some() && told != Told::Nothing {
+    if checkpoint.is_some() && told != Verbosity::Nothing {
         let node = following.watch.summary().node;
         let text = format!("resumed at node {node}");
         out.write_all(paragraph(&text, width, 2).as_bytes())?;
@@ -177,7 +177,7 @@ pub fn run(
     let halvings = following.trajectory.halvings();
     // Steps before an interruption may have been judged.
     let stated = trajectory.verdict();
-    let stated = (which != Which::None || stated.judged > 0).then(|| stated.clone());
+    let stated = (which != StepSelection::None || stated.judged > 0).then(|| stated.clone());
     let why = match &end {
         End::Whole => None,
         // Without a step there are no results.
@@ -263,10 +263,10 @@ pub fn run(
             }
         }
         writeln!(out, "{object}")?;
-    } else if told != Told::Nothing {
+    } else if told != Verbosity::Nothing {
         write!(out, "\n{}", table(&outcomes, width))?;
         let mut lines = summary::below_the_table(&run, summary.steps);
-        lines.extend(limit.told(plan.case.h));
+        lines.extend(limit.summary_line(plan.case.h));
         if let Some(place) = place {
             lines.push(format!("written to {place}: {}", files.join(", ")));
             if !files.iter().any(|file| file == output::FILES[0]) {
@@ -299,11 +299,11 @@ pub fn run(
 }
 
 /// The steps to judge by the action as stated.
-fn judged_steps(matches: &ArgMatches) -> Which {
+fn judged_steps(matches: &ArgMatches) -> StepSelection {
     match matches.get_one::<String>("check").map(String::as_str) {
-        Some("all") => Which::All,
-        Some("none") => Which::None,
-        _ => Which::Sample,
+        Some("all") => StepSelection::All,
+        Some("none") => StepSelection::None,
+        _ => StepSelection::Sample,
     }
 }
 

@@ -17,7 +17,7 @@ const INDENT: usize = 21;
 
 /// How much a run prints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Told {
+pub(crate) enum Verbosity {
     /// Warnings and errors only.
     Nothing,
     /// The case and the drift of invariants.
@@ -26,7 +26,7 @@ pub(crate) enum Told {
     All,
 }
 
-/// Prints the case, and for [`Told::All`] also the derivation and the `way` in which steps are made.
+/// Prints the case, and for [`Verbosity::All`] also the derivation and the `way` in which steps are made.
 ///
 /// # Errors
 /// As for writing.
@@ -35,9 +35,9 @@ pub(crate) fn title(
     width: Option<usize>,
     card: &Card,
     plan: &Plan,
-    (told, way): (Told, &str),
+    (told, way): (Verbosity, &str),
 ) -> Result<(), Failure> {
-    if told == Told::Nothing {
+    if told == Verbosity::Nothing {
         return Ok(());
     }
     let case = &plan.case;
@@ -46,7 +46,7 @@ pub(crate) fn title(
         out.write_all(text.as_bytes())
     };
     let order = plan.order.unwrap_or(card.order);
-    if told == Told::All {
+    if told == Verbosity::All {
         say(&format!("{}: {}", card.kebab, first_line(card.doc)), 2)?;
         for line in card.summary.trim().lines() {
             say(line, INDENT)?;

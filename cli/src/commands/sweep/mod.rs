@@ -15,7 +15,7 @@ pub(crate) use collect::collect;
 use crate::arguments::Shard;
 use crate::models::gallery::Gallery;
 use crate::named::resolve::{Resolved, resolved};
-use crate::output::{self, Found, Staging, run_json};
+use crate::output::{self, ResumableRun, Staging, run_json};
 use crate::overrides::substitute::follow;
 use crate::plan::Plan;
 use crate::terminal::Streams;
@@ -121,16 +121,16 @@ pub(crate) fn sweep(
         .with("shard", description["shard"].to_string());
     let found = match matches.get_flag("resume") {
         true => Staging::resume(target, &table::FILES, &identity)?,
-        false => Found::Nothing,
+        false => ResumableRun::Nothing,
     };
     let mut staging = match found {
-        Found::Results => return already(target, &description, as_json, streams),
-        Found::Middle(both) => {
+        ResumableRun::Results => return already(target, &description, as_json, streams),
+        ResumableRun::Middle(both) => {
             let mut staging = both.0;
             staging.go_on();
             staging
         }
-        Found::Nothing => Staging::new(target, matches.get_flag("force"), &table::FILES)?,
+        ResumableRun::Nothing => Staging::new(target, matches.get_flag("force"), &table::FILES)?,
     };
     let columns = Columns::of(card, &axes);
     let names: Vec<&str> = axes

@@ -2,7 +2,7 @@
 
 use super::Sweep;
 use super::points::Points;
-use crate::output::Listening;
+use crate::output::SignalListener;
 use crate::terminal::failure::Failure;
 use crate::terminal::waiting::progress_bar;
 use std::sync::Mutex;
@@ -23,7 +23,7 @@ impl Sweep<'_> {
         progress: bool,
         keep: &mut dyn FnMut(u64) -> Result<(), Failure>,
     ) -> Result<Option<u8>, Failure> {
-        let listening = Listening::begin();
+        let listening = SignalListener::begin();
         let bar = progress.then(|| progress_bar(left.len() as u64, "points"));
         let (next, made) = (AtomicU64::new(0), AtomicU64::new(0));
         let refused = Mutex::new(None);
@@ -36,7 +36,7 @@ impl Sweep<'_> {
                     break;
                 };
                 let point = first + number;
-                if !self.row(point, &mut row, &|| listening.asked().is_some()) {
+                if !self.row(point, &mut row, &|| listening.stop_signal().is_some()) {
                     break;
                 }
                 let mut rows = rows
@@ -68,7 +68,7 @@ impl Sweep<'_> {
                 if let Some(bar) = &bar {
                     bar.set_position(made);
                 }
-                if !kept && (begun.elapsed() > WORTH_KEEPING || listening.asked().is_some()) {
+                if !kept && (begun.elapsed() > WORTH_KEEPING || listening.stop_signal().is_some()) {
                     kept = true;
                     if let Err(failure) = keep(made) {
                         ended.store(true, Ordering::Relaxed);
@@ -92,6 +92,6 @@ impl Sweep<'_> {
             return Err(Failure::io("cannot write the points", &error));
         }
         let all = made.load(Ordering::Relaxed) == left.len() as u64;
-        Ok(listening.asked().filter(|_| !all))
+        Ok(listening.stop_signal().filter(|_| !all))
     }
 }

@@ -2,7 +2,7 @@
 //! Takes the folder for the results; gives its hidden folder, locked, with its checkpoint, or the reason why
 //! there is nothing to resume. A run that cannot be resumed is left unchanged.
 
-use super::{PARTIAL, Staging, first_free, interrupted, standing};
+use super::{PARTIAL, Staging, first_free, interrupted, output_target};
 use crate::output::samples;
 use crate::terminal::failure::Failure;
 use crate::trajectory::checkpoint::{self, Checkpoint, Identity};
@@ -11,7 +11,7 @@ use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 
 /// The result of the search for a run to resume.
-pub enum Found {
+pub enum ResumableRun {
     /// Nothing: the run begins.
     Nothing,
     /// A run in the middle.
@@ -84,7 +84,7 @@ impl Staging {
         target: &Path,
         known: &[&'static str],
         identity: &Identity,
-    ) -> Result<Found, Failure> {
+    ) -> Result<ResumableRun, Failure> {
         // A run that was killed while it took its name leaves it empty.
         let _ = fs::remove_dir(target);
         let standing = target.exists();
@@ -113,7 +113,7 @@ impl Staging {
                         break;
                     }
                     let staging = Self::take_up(target, known, &folder, held)?;
-                    return Ok(Found::Middle(Box::new((staging, checkpoint))));
+                    return Ok(ResumableRun::Middle(Box::new((staging, checkpoint))));
                 }
                 Err(why) => refused = refused.or(Some((folder, why))),
             }
@@ -125,8 +125,8 @@ impl Staging {
             )));
         }
         Ok(match standing {
-            true => Found::Results,
-            false => Found::Nothing,
+            true => ResumableRun::Results,
+            false => ResumableRun::Nothing,
         })
     }
 
@@ -180,7 +180,7 @@ impl Staging {
         for name in &self.known {
             let path = self.hidden.join(name);
             if name.ends_with('/') {
-                let _ = standing::remove_folder(&path);
+                let _ = output_target::remove_folder(&path);
             } else if ![checkpoint::NAME, samples::NAME].contains(name) {
                 let _ = fs::remove_file(path);
             }

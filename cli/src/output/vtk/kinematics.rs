@@ -5,7 +5,7 @@
 use crate::plan::Plan;
 use clebsch::card::Card;
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::Choice;
+use clebsch_core::lattice::ChainConfig;
 use clebsch_interpret::lines::LineModel;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Computes velocities from momenta.
 pub(super) struct Kinematics {
     model: Arc<LineModel>,
-    choice: Choice,
+    choice: ChainConfig,
     /// Parameters, by their ASCII names. A parameter at sites has the values of all sites.
     numbers: HashMap<String, Vec<f64>>,
     field: String,

@@ -26,7 +26,7 @@ pub(crate) const FOLDER: &str = "vtk/";
 const FRAMES: u64 = 1000;
 
 /// An object that is drawn.
-pub(crate) struct Drawn {
+pub(crate) struct DrawnObject {
     /// The name of its files.
     name: String,
     part: Box<dyn Part>,
@@ -52,9 +52,9 @@ trait Part {
 ///
 /// # Errors
 /// Usage: there are none.
-pub(crate) fn drawn(card: &Card, plan: &Plan) -> Result<Vec<Drawn>, Failure> {
-    let own = |(name, part): (String, Box<dyn Part>)| Drawn { name, part };
-    let mut all: Vec<Drawn> = fluid::parts(card, plan).into_iter().map(own).collect();
+pub(crate) fn drawn(card: &Card, plan: &Plan) -> Result<Vec<DrawnObject>, Failure> {
+    let own = |(name, part): (String, Box<dyn Part>)| DrawnObject { name, part };
+    let mut all: Vec<DrawnObject> = fluid::parts(card, plan).into_iter().map(own).collect();
     let taken = !all.is_empty();
     all.extend(sites::parts(card, plan, taken).into_iter().map(own));
     all.extend(bodies::parts(card).into_iter().map(own));
@@ -75,7 +75,7 @@ pub(crate) fn write(
     staging: &Staging,
     plan: &Plan,
     rows: &Rows,
-    mut drawn: Vec<Drawn>,
+    mut drawn: Vec<DrawnObject>,
 ) -> Result<Vec<String>, Failure> {
     staging.make_folder(FOLDER)?;
     // If `--every` is given, all samples are written.

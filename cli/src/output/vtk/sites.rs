@@ -16,7 +16,7 @@ const APART: f64 = 1.0;
 
 /// Points of sites, joined along a line.
 struct OfSites {
-    points: Vec<Drawn>,
+    points: Vec<SiteLocation>,
     joined: bool,
     /// The name of the positions, and their number of components.
     places: Option<(String, usize)>,
@@ -25,7 +25,7 @@ struct OfSites {
 }
 
 /// The location at which a site is drawn.
-enum Drawn {
+enum SiteLocation {
     /// A position in the plane or in space.
     At(Point),
     /// A number, as the height over the number of its site.
@@ -75,16 +75,16 @@ fn of_label((card, plan): (&Card, &Plan), own: &[&AtSites<'_>]) -> Option<OfSite
     };
     let points = (0..count).map(|site| {
         let Some(q) = places else {
-            return Some(Drawn::Standing(APART * site as f64));
+            return Some(SiteLocation::Standing(APART * site as f64));
         };
         let known = Places::themselves((card, plan), q);
         let point = known.point(isize::try_from(site).ok()?)?;
         Some(match q.field.rows {
-            1 => Drawn::Height(site as f64, point),
-            _ => Drawn::At(point),
+            1 => SiteLocation::Height(site as f64, point),
+            _ => SiteLocation::At(point),
         })
     });
-    let points: Vec<Drawn> = points.collect::<Option<_>>()?;
+    let points: Vec<SiteLocation> = points.collect::<Option<_>>()?;
     let of_sites = |at: Sites, count: usize| {
         let all = own.iter().filter(|q| q.at == at);
         // Positions are the points themselves, so they have no column.
@@ -144,12 +144,12 @@ fn columns(q: &AtSites<'_>, count: usize, ring: Option<usize>) -> Vec<Option<Ran
     at
 }
 
-impl Drawn {
+impl SiteLocation {
     fn place(&self, row: &[f64]) -> [f64; 3] {
         match self {
-            Drawn::Standing(x) => [*x, 0.0, 0.0],
-            Drawn::At(point) => in_space(&point.at(row)),
-            Drawn::Height(x, point) => {
+            SiteLocation::Standing(x) => [*x, 0.0, 0.0],
+            SiteLocation::At(point) => in_space(&point.at(row)),
+            SiteLocation::Height(x, point) => {
                 let height = point.at(row).first().copied();
                 [*x, height.unwrap_or(f64::NAN), 0.0]
             }

@@ -11,7 +11,7 @@ use toml::de::{DeTable, DeValue};
 const TABLES: [&str; 2] = ["parameters", "initial"];
 
 /// The position of a key in the text.
-struct Found {
+struct KeyPosition {
     value: Range<usize>,
     /// The key, if the case gives the quantity under another one: the inertia `I` for the second moments `J`.
     key: Option<Range<usize>>,
@@ -44,11 +44,11 @@ pub(crate) fn is_within_a_table(text: &str, name: &str) -> bool {
     found(text, name).is_some_and(|found| found.within)
 }
 
-fn is_own(found: &Found, value: &str) -> bool {
+fn is_own(found: &KeyPosition, value: &str) -> bool {
     found.within || value.trim_start().starts_with(['[', '{'])
 }
 
-fn found(text: &str, name: &str) -> Option<Found> {
+fn found(text: &str, name: &str) -> Option<KeyPosition> {
     let document = DeTable::parse(text).ok()?;
     let mut path = name.split('.').map(str::trim);
     let root = path.next()?;
@@ -64,7 +64,7 @@ fn found(text: &str, name: &str) -> Option<Found> {
             // A table with its own head, `[initial.R]`, has its entries elsewhere.
             let is_inline = text.get(span.clone())?.starts_with(['[', '{']);
             let is_table = value.get_ref().is_table();
-            return (is_inline || !is_table).then_some(Found {
+            return (is_inline || !is_table).then_some(KeyPosition {
                 value: span,
                 key: None,
                 within,
@@ -73,7 +73,7 @@ fn found(text: &str, name: &str) -> Option<Found> {
         let other = other_key(root).filter(|_| path.is_empty());
         let other = other.and_then(|other| table.get_key_value(other.as_str()));
         if let Some((key, value)) = other {
-            return Some(Found {
+            return Some(KeyPosition {
                 value: value.span(),
                 key: Some(key.span()),
                 within: false,

@@ -66,7 +66,7 @@ impl End {
 
 /// Precomputed data of an end.
 #[derive(Clone, Copy, Debug)]
-struct Held {
+struct EndData {
     /// The fixed node, if any; its momentum is zero.
     node: Option<usize>,
     /// Impulse of the load.
@@ -81,7 +81,7 @@ pub struct ElasticRod {
     bodies: Bodies,
     nodes: usize,
     segments: usize,
-    ends: [Held; 2],
+    ends: [EndData; 2],
     /// The increase of positions around a ring.
     ring: Option<Vector>,
     per_length: f64,
@@ -130,7 +130,7 @@ impl ElasticRod {
                 End::Clamped { wall, bonds } => (wall, bonds),
                 _ => (Quaternion::IDENTITY, 0.0),
             };
-            Held {
+            EndData {
                 node: (!matches!(end, End::Loaded(_))).then_some(node),
                 load: match end {
                     End::Loaded(force) => scaled(h, &force),
@@ -216,7 +216,7 @@ impl ElasticRod {
         let [first, last] = &self.ends;
         self.forces.set(0, scaled(-1.0, &first.load));
         self.forces.set(self.nodes, last.load);
-        let wall = |end: &Held, section: usize| {
+        let wall = |end: &EndData, section: usize| {
             let section = Quaternion(self.q.get(section)).matrix();
             scaled(end.bonds, &bond(&section, &end.wall, &self.bending))
         };

@@ -1,8 +1,8 @@
 //! Numbers of lists put side by side, one lane a site, and back.
 
 use crate::code::Places;
-use crate::over::{alike, numbers, over};
-use crate::recorded::ask::List;
+use crate::map_scalar::{alike, map_scalar, numbers};
+use crate::recorded::loop_inputs::List;
 use crate::sites::Column;
 use crate::value::Value;
 
@@ -125,7 +125,7 @@ pub fn store<'a>(
             let mut taken = 0;
             for lane in 0..count {
                 taken = 0;
-                let value = over(kind, &mut |_| {
+                let value = map_scalar(kind, &mut |_| {
                     taken += 1;
                     let own = output(*next + taken - 1).get(lane);
                     own.copied().unwrap_or(f64::NAN)

@@ -1,12 +1,12 @@
 //! A tape of sites and how it runs: numbers are taken from lists, computed side by side and put into lists.
 
 use super::load::{column, extend, fill, numbers_of, store};
-use super::{Lists, Once};
+use super::{Lists, SiteRecording};
 use crate::code::{Code, Places};
-use crate::over::alike;
-use crate::recorded::ask::{Fixed, From, List};
+use crate::map_scalar::alike;
 use crate::recorded::form::{is_same, stands};
-use crate::recorded::kept::Pool;
+use crate::recorded::loop_inputs::{Fixed, InputSource, List};
+use crate::recorded::tape_storage::Pool;
 use crate::sites::Column;
 use crate::value::Value;
 use clebsch_program::{Frame, Machine, WIDTH};
@@ -24,7 +24,7 @@ struct Source<F> {
 
 /// The place of a value that is the same for all sites.
 #[derive(Debug)]
-enum Steady {
+enum ConstantPlace {
     Around(Code<f64>),
     Of(List, usize),
 }
@@ -33,7 +33,7 @@ enum Steady {
 #[derive(Debug)]
 pub struct SiteTape {
     machine: Machine,
-    steady: Vec<Source<Steady>>,
+    steady: Vec<Source<ConstantPlace>>,
     /// Values of lists, so far from the site of the loop.
     moving: Vec<Source<(List, isize)>>,
     fixed: Fixed,
@@ -46,7 +46,11 @@ type Frames = (Frame<1>, Frame<WIDTH>);
 impl SiteTape {
     /// The tape of recordings at two sites; nothing where they differ. If the body `clamps` sites to a list, a list that
     /// is read at one site must have one.
-    pub fn of([here, there]: [usize; 2], [first, second]: [Once; 2], clamps: bool) -> Option<Self> {
+    pub fn of(
+        [here, there]: [usize; 2],
+        [first, second]: [SiteRecording; 2],
+        clamps: bool,
+    ) -> Option<Self> {
         let values = first.gives.iter().zip(&second.gives);
         let same_kinds =
             first.gives.len() == second.gives.len() && values.clone().all(|(a, b)| alike(a, b));
@@ -64,8 +68,10 @@ impl SiteTape {
             let components: Vec<_> = inputs.filter(|(input, _)| machine.reads(*input)).collect();
             let kind = a.kind;
             let (from, off) = match (a.from, b.from) {
-                (From::Around(path), From::Around(_)) => (Steady::Around(path), None),
-                (From::Of(list, site, alone), From::Of(other, second, _)) => {
+                (InputSource::Around(path), InputSource::Around(_)) => {
+                    (ConstantPlace::Around(path), None)
+                }
+                (InputSource::Of(list, site, alone), InputSource::Of(other, second, _)) => {
                     let paths = match (&list.path, &other.path) {
                         (Some(a), Some(b)) => is_same(a, b),
                         (None, None) => true,
@@ -76,8 +82,8 @@ impl SiteTape {
                     }
                     let off = isize::try_from(site).ok()? - isize::try_from(here).ok()?;
                     match (second + here == site + there, second == site) {
-                        (true, _) => (Steady::Of(list, site), Some(off)),
-                        (_, true) if alone || !clamps => (Steady::Of(list, site), None),
+                        (true, _) => (ConstantPlace::Of(list, site), Some(off)),
+                        (_, true) if alone || !clamps => (ConstantPlace::Of(list, site), None),
                         _ => return None,
                     }
                 }
@@ -87,7 +93,7 @@ impl SiteTape {
                 continue;
             }
             match (from, off) {
-                (Steady::Of(list, _), Some(off)) => moving.push(Source {
+                (ConstantPlace::Of(list, _), Some(off)) => moving.push(Source {
                     from: (list, off),
                     kind,
                     components,
@@ -191,10 +197,10 @@ impl SiteTape {
         let mut own = Vec::new();
         for source in &self.steady {
             match &source.from {
-                Steady::Around(path) => {
+                ConstantPlace::Around(path) => {
                     numbers_of(path.place(places)?, &source.kind, &mut own)?;
                 }
-                Steady::Of(list, site) => {
+                ConstantPlace::Of(list, site) => {
                     let value = column(list, places)?.get(*site)?;
                     numbers_of(&value, &source.kind, &mut own)?;
                 }

@@ -41,16 +41,16 @@ pub(crate) struct Point<'a> {
     pub(super) seed: u64,
     size: Size,
     given: BTreeMap<Letter, Matrix>,
-    found: Found,
+    found: ValueCache,
 }
 
 /// Values at a point, so that shared subexpressions are evaluated once. A copy starts empty.
 #[derive(Default)]
-struct Found(RefCell<Hashed<Matrix>>);
+struct ValueCache(RefCell<Hashed<Matrix>>);
 
-impl Clone for Found {
-    fn clone(&self) -> Found {
-        Found::default()
+impl Clone for ValueCache {
+    fn clone(&self) -> ValueCache {
+        ValueCache::default()
     }
 }
 
@@ -65,14 +65,14 @@ impl<'a> Point<'a> {
                 _ => Size::Largest,
             },
             given: BTreeMap::new(),
-            found: Found::default(),
+            found: ValueCache::default(),
         }
     }
 
     /// This point, with this size for every named dimension.
     pub(crate) fn sized(mut self, size: usize) -> Point<'a> {
         self.size = Size::Given(size);
-        self.found = Found::default();
+        self.found = ValueCache::default();
         self
     }
 

@@ -11,7 +11,7 @@ use super::factor::{Factor, Source, Word};
 use super::monomial::{self, Atom, Monomial};
 use super::poly::{Poly, Term};
 use super::rational::Rational;
-use super::{Algebra, Sense};
+use super::{Algebra, KeyRelation};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::{self, Applied, Expr, FunctionalId, Kind, Node, Reach};
 use crate::work;
@@ -211,7 +211,7 @@ impl Algebra<'_> {
             table.push(opened);
             table.len() - 1
         });
-        let sense = Sense::Given(i as u32);
+        let sense = KeyRelation::Given(i as u32);
         let mut key = Poly::zero(shape);
         key.symmetric =
             kind.is_some_and(|k| matches!(k.structure, Structure::Symmetric | Structure::Diagonal));

@@ -6,7 +6,7 @@ use super::poly::{Poly, Term};
 use super::quaternion::rotation_of;
 use super::rational::Rational;
 use super::rigid::translation_of;
-use super::{Algebra, Sense};
+use super::{Algebra, KeyRelation};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Function, Map, Node, Parity, Part};
@@ -303,7 +303,7 @@ impl Algebra<'_> {
             ),
             _ => (a.clone(), meaning.clone(), Rational::ONE),
         };
-        let id = self.intern(&self.numbers, key, Sense::Value, || meaning);
+        let id = self.intern(&self.numbers, key, KeyRelation::Value, || meaning);
         let term = Term {
             monomial: vec![(Atom::Base(id), q)],
             word: Word::new(),
@@ -347,7 +347,7 @@ impl Algebra<'_> {
         }
         let mut key = a.clone();
         key.symmetric = self.transpose(a).terms == a.terms;
-        let id = self.intern(&self.matrices, key, Sense::Value, || meaning.clone());
+        let id = self.intern(&self.matrices, key, KeyRelation::Value, || meaning.clone());
         self.one_factor(
             a.shape,
             Factor::Letter {
@@ -429,7 +429,7 @@ impl Algebra<'_> {
         }
         let mut key = a.clone();
         key.symmetric = self.transpose(a).terms == a.terms;
-        let id = self.intern(&self.matrices, key, Sense::Value, || meaning.clone());
+        let id = self.intern(&self.matrices, key, KeyRelation::Value, || meaning.clone());
         self.scalar_atom(Atom::OpaqueDet(id))
     }
 
@@ -451,7 +451,7 @@ impl Algebra<'_> {
                     let mut key = a.clone();
                     key.symmetric = true;
                     let diagonal = || expr::part(Part::Diagonal, meaning.clone());
-                    let id = self.intern(&self.matrices, key, Sense::Diagonal, diagonal);
+                    let id = self.intern(&self.matrices, key, KeyRelation::Diagonal, diagonal);
                     return self.one_factor(
                         a.shape,
                         Factor::Letter {
@@ -488,7 +488,7 @@ impl Algebra<'_> {
         let Dim::Fixed(n) = v.shape.rows else {
             let mut key = v.clone();
             key.symmetric = true;
-            let id = self.intern(&self.matrices, key, Sense::Diagonal, || whole.clone());
+            let id = self.intern(&self.matrices, key, KeyRelation::Diagonal, || whole.clone());
             let source = Source::Opaque(id);
             return self.one_factor(
                 out.shape,
@@ -558,7 +558,7 @@ impl Algebra<'_> {
             ),
             false => (a, meaning.clone()),
         };
-        let id = self.intern(&self.numbers, key, Sense::Value, || meaning);
+        let id = self.intern(&self.numbers, key, KeyRelation::Value, || meaning);
         let value = self.scalar_atom(Atom::Call(function, id));
         match turned && parity == Parity::Odd {
             true => self.scaled(&value, Rational::MINUS_ONE),

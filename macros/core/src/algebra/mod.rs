@@ -7,9 +7,9 @@ mod bracket;
 pub(crate) mod exact;
 mod factor;
 mod functional;
-mod kept;
 mod lower;
 mod monomial;
+mod normal_form_cache;
 mod poly;
 mod prime;
 mod quaternion;
@@ -83,7 +83,7 @@ pub struct Algebra<'a> {
     /// Their normal forms, with and without blocks. Looked up, never iterated.
     given: RefCell<HashMap<(Expr, bool), Poly>>,
     /// Normal forms, without blocks and with blocks. Looked up, never iterated.
-    lowered: [RefCell<Hashed<kept::Lowered>>; 2],
+    lowered: [RefCell<Hashed<normal_form_cache::Lowered>>; 2],
     work: Cell<u64>,
     evaluated: Cell<u64>,
     excess: Cell<Option<Excess>>,
@@ -106,12 +106,12 @@ struct Opaque {
     key: Poly,
     meaning: Expr,
     /// Its relation to the key.
-    sense: Sense,
+    sense: KeyRelation,
 }
 
 /// The relation of an opaque quantity to its key.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Sense {
+enum KeyRelation {
     /// The key itself.
     Value,
     /// The diagonal of a matrix, or the matrix with that diagonal.
@@ -288,7 +288,7 @@ impl<'a> Algebra<'a> {
         &self,
         table: &RefCell<Vec<Opaque>>,
         key: Poly,
-        sense: Sense,
+        sense: KeyRelation,
         meaning: impl FnOnce() -> Expr,
     ) -> u32 {
         let same = |o: &Opaque| o.sense == sense && o.key == key;
@@ -299,7 +299,7 @@ impl<'a> Algebra<'a> {
         let mut meaning = meaning();
         // Letters that cancel in the key must not reappear through its expression: `V V^T` of a rotation is defined
         // even if no velocity is known.
-        if sense == Sense::Value {
+        if sense == KeyRelation::Value {
             let shorter = self.raise(&key);
             let (left, all) = (expr::letters(&shorter), expr::letters(&meaning));
             if left.len() < all.len() && left.iter().all(|l| all.contains(l)) {

@@ -39,7 +39,7 @@ pub struct DeclaredAdvected {
 
 /// A name that is in use; no other name may equal it in print or in files.
 #[derive(Clone)]
-struct Taken {
+struct UsedName {
     name: String,
     place: Place,
     /// Its printed form.
@@ -63,7 +63,7 @@ pub struct Declared {
     pub advected: Vec<DeclaredAdvected>,
     /// Fields whose matrix is built from independent entries.
     pub structured: Vec<(SymbolId, Entries)>,
-    taken: Vec<Taken>,
+    taken: Vec<UsedName>,
     /// Typeset names: the printed form, and the declaring name.
     typeset: Vec<(String, Name)>,
     /// Copies that print with their sites in brackets.
@@ -365,7 +365,7 @@ impl Declared {
         errors.extend(self.typeset_as_another(name));
         let latex = self.in_latex(name);
         self.typeset.push((latex, name.clone()));
-        self.taken.push(Taken {
+        self.taken.push(UsedName {
             name: text.to_owned(),
             place: name.place,
             seen: shown,
@@ -387,7 +387,7 @@ impl Declared {
     /// derivations. The user does not write the copy, and so cannot rename it.
     fn tell_apart(&mut self, name: &Name) {
         let shown = seen(&name.text, &self.time_index);
-        let alike = |t: &Taken| t.seen == shown;
+        let alike = |t: &UsedName| t.seen == shown;
         let sign = || PRINTED.into_iter().any(|sign| seen(sign, "") == shown);
         if name.is_copy {
             if self.taken.iter().any(alike) || sign() {
@@ -413,7 +413,7 @@ impl Declared {
     /// Marks the name as used. Its printed form is computed here once; computing it for each comparison would
     /// dominate the work of a long list of parameters.
     pub(super) fn take(&mut self, name: &str, place: Place) {
-        self.taken.push(Taken {
+        self.taken.push(UsedName {
             name: name.to_owned(),
             place,
             seen: seen(name, &self.time_index),

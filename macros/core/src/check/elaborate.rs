@@ -4,9 +4,9 @@
 mod components;
 mod domains;
 mod functions;
-mod given;
 mod names;
 mod products;
+mod user_functions;
 
 use super::declare::Declared;
 use super::messages::{self, shape_text};
@@ -14,7 +14,7 @@ use crate::algebra::Rational;
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::{self, Expr};
-use crate::syntax::ast::{Expression, Kind, Kindred, Name};
+use crate::syntax::ast::{Expression, Kind, Name, SizedName};
 
 /// Elaborates the expressions of one model.
 pub struct Elaborator<'a> {
@@ -153,7 +153,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The declared shape of a scalar, vector or matrix.
-    fn stated_shape(&self, shape: &Kindred) -> Option<Shape> {
+    fn stated_shape(&self, shape: &SizedName) -> Option<Shape> {
         let found = super::parameter_shape(&self.names.symbols, shape);
         found.map(|(shape, _)| shape)
     }

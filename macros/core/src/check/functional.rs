@@ -4,11 +4,11 @@ use super::declare::Declared;
 use super::shapes;
 use crate::diagnostic::Errors;
 use crate::expr::{Functional, Kind, Reach};
-use crate::syntax::ast::{Kindred, Name};
+use crate::syntax::ast::{Name, SizedName};
 
 impl Declared {
     /// The kind of a declared shape.
-    pub(super) fn kind(&self, k: &Kindred, errors: &mut Errors) -> Option<Kind> {
+    pub(super) fn kind(&self, k: &SizedName, errors: &mut Errors) -> Option<Kind> {
         let (shape, structure) = shapes::shape(&self.symbols, k, errors)?;
         Some(Kind { shape, structure })
     }
@@ -29,7 +29,7 @@ impl Declared {
         &mut self,
         name: &Name,
         arguments: Option<Vec<Kind>>,
-        value: &Kindred,
+        value: &SizedName,
         (path, reach): (&Name, Reach),
         errors: &mut Errors,
     ) {

@@ -20,7 +20,7 @@ use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
-use crate::syntax::ast::{Expression, Kindred, Model, NodeRule, Statement};
+use crate::syntax::ast::{Expression, Model, NodeRule, SizedName, Statement};
 use crate::{schedule, work};
 pub(crate) use members::name_of_function;
 pub(crate) use names::is_rust_word;
@@ -102,7 +102,7 @@ pub fn are_same(model: &Model, a: &Expression, b: &Expression) -> bool {
 }
 
 /// The declared shape of a parameter, if it is valid.
-pub fn parameter_shape(symbols: &Symbols, declared: &Kindred) -> Option<(Shape, Structure)> {
+pub fn parameter_shape(symbols: &Symbols, declared: &SizedName) -> Option<(Shape, Structure)> {
     shapes::shape(symbols, declared, &mut Errors::new())
 }
 

@@ -8,7 +8,7 @@ use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
 use crate::groups;
-use crate::syntax::ast::{Kindred, Size};
+use crate::syntax::ast::{Size, SizedName};
 use crate::syntax::unknown;
 
 /// The largest matrix size of the language.
@@ -65,7 +65,7 @@ fn size(symbols: &Symbols, kind: &str, s: &Size, errors: &mut Errors) -> Option<
     }
 }
 
-fn sizes(symbols: &Symbols, k: &Kindred, count: usize, errors: &mut Errors) -> Option<Vec<Dim>> {
+fn sizes(symbols: &Symbols, k: &SizedName, count: usize, errors: &mut Errors) -> Option<Vec<Dim>> {
     if k.sizes.len() != count {
         let name = &k.name.text;
         let example = match count {
@@ -97,7 +97,7 @@ fn sizes(symbols: &Symbols, k: &Kindred, count: usize, errors: &mut Errors) -> O
 }
 
 /// The shape and structure of a parameter.
-pub fn shape(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Shape, Structure)> {
+pub fn shape(symbols: &Symbols, k: &SizedName, errors: &mut Errors) -> Option<(Shape, Structure)> {
     let square = |structure| move |d: Vec<Dim>| (Shape::square(d[0]), structure);
     let one = |errors: &mut Errors| sizes(symbols, k, 1, errors);
     match k.name.text.as_str() {
@@ -161,14 +161,14 @@ fn sized(name: &str) -> Option<String> {
 /// The shape and structure of an advected quantity.
 pub fn advected_shape(
     symbols: &Symbols,
-    k: &Kindred,
+    k: &SizedName,
     errors: &mut Errors,
 ) -> Option<(Shape, Structure)> {
     shape(symbols, k, errors)
 }
 
 /// The shape in which a field is stored and varied, and how its matrix is built from it.
-pub fn field(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Shape, Entries)> {
+pub fn field(symbols: &Symbols, k: &SizedName, errors: &mut Errors) -> Option<(Shape, Entries)> {
     let (found, structure) = shape(symbols, k, errors)?;
     let column = |n: u32| match n {
         1 => Shape::SCALAR,
@@ -207,7 +207,7 @@ fn is_one(size: &Size) -> bool {
 }
 
 /// Whether one of the sizes is 1.
-fn is_column(k: &Kindred) -> bool {
+fn is_column(k: &SizedName) -> bool {
     k.sizes.iter().any(is_one)
 }
 
@@ -219,7 +219,7 @@ fn size_text(size: &Size) -> String {
 }
 
 /// A shape or a group in the notation of the language.
-fn written(k: &Kindred) -> String {
+fn written(k: &SizedName) -> String {
     let sizes: Vec<String> = k.sizes.iter().map(size_text).collect();
     match sizes.is_empty() {
         true => k.name.text.clone(),
@@ -232,7 +232,7 @@ fn is_group(name: &str) -> bool {
 }
 
 /// The group that a name and a size denote.
-pub fn group(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Group> {
+pub fn group(symbols: &Symbols, k: &SizedName, errors: &mut Errors) -> Option<Group> {
     let name = k.name.text.as_str();
     let all = || groups::listed("and", |_, _| true);
     if !is_group(name) {

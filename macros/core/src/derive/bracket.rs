@@ -36,7 +36,7 @@ pub struct Motion {
 
 /// A quantity of the bracket that is not a momentum, and its changes.
 #[derive(Clone, Debug)]
-pub struct Moved {
+pub struct AdvectedMotions {
     /// The quantity.
     pub quantity: SymbolId,
     /// Its changes, without configurations that do not change it.
@@ -50,9 +50,9 @@ pub struct Bracket {
     /// For each configuration: `⟨μ, [ξ, η]⟩` with its sign.
     pub momenta: Vec<Expr>,
     /// Advected quantities.
-    pub advected: Vec<Moved>,
+    pub advected: Vec<AdvectedMotions>,
     /// Group elements, with which it is the bracket of the phase space.
-    pub elements: Vec<Moved>,
+    pub elements: Vec<AdvectedMotions>,
     /// The printed rows: momenta, then configurations that occur in the action, then advected quantities.
     pub rows: Vec<Row>,
     /// Whether the action depends on configurations themselves, so that this is the bracket of their phase space.
@@ -125,12 +125,12 @@ pub fn bracket(
                 local,
             })
         });
-        Moved {
+        AdvectedMotions {
             quantity,
             motions: all.collect(),
         }
     };
-    let advected: Vec<Moved> = spec
+    let advected: Vec<AdvectedMotions> = spec
         .advected
         .iter()
         .map(|a| {
@@ -151,11 +151,11 @@ pub fn bracket(
             })
         })
         .collect();
-    let stands = |m: &Moved| {
+    let stands = |m: &AdvectedMotions| {
         let at_ends = [Shift::HERE, Shift::NEXT].map(|shift| at(m.quantity, shift));
         at_ends.iter().any(|l| expr::contains(&action.total, *l))
     };
-    let elements: Vec<Moved> = elements;
+    let elements: Vec<AdvectedMotions> = elements;
     let holds_elements = elements.iter().any(stands);
     let shown = elements.iter().filter(|m| stands(m)).chain(&advected);
     for m in shown {
@@ -224,7 +224,7 @@ pub(crate) trait Numbers {
 }
 
 impl Bracket {
-    fn moved(&self, spec: &Spec, space: Space) -> Vec<&Moved> {
+    fn moved(&self, spec: &Spec, space: Space) -> Vec<&AdvectedMotions> {
         match space {
             Space::Reduced => self.advected.iter().collect(),
             Space::Phase => {

@@ -82,7 +82,7 @@ impl Certificate {
 /// Proves the identities of the derivation, or reports those that remain.
 pub fn certify(x: &Inputs) -> Result<Certificate, Errors> {
     let mut steps = Vec::new();
-    let back = Back {
+    let back = PreviousNode {
         shell: on_shell(x.spec, x.letters),
         elements: previous_elements(x.spec, x.letters),
     };
@@ -121,7 +121,7 @@ pub fn certify(x: &Inputs) -> Result<Certificate, Errors> {
 }
 
 /// Replacements at the previous node, which are the same for every step of the proof.
-struct Back {
+struct PreviousNode {
     shell: Vec<(Letter, Expr)>,
     elements: Vec<(Letter, Expr)>,
 }
@@ -132,7 +132,7 @@ fn name_of(x: &Inputs, l: Letter) -> String {
 
 /// The variations preserve every constraint: directly on the outgoing edge; on the incoming edge, with node k
 /// expressed by node k-1. A constraint in which nothing varies is trivial.
-fn constraint_steps(x: &Inputs, i: usize, earlier: &Back, steps: &mut Vec<Step>) {
+fn constraint_steps(x: &Inputs, i: usize, earlier: &PreviousNode, steps: &mut Vec<Step>) {
     let s = &x.letters.symbols;
     let v = &x.variations[i];
     let nodes = x.spec.configurations.iter().map(|c| (c.element, &c.update));
@@ -209,7 +209,7 @@ fn gradient_steps(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
 /// `Σ ⟨E_v, δv⟩ = δS`: the balance is a combination of the Clebsch relations. The relations are affine in the
 /// multipliers, so the sum splits into one block for the action and one for each multiplier, and each block must
 /// cancel separately.
-fn combination(x: &Inputs, i: usize, back: &Back, steps: &mut Vec<Step>) {
+fn combination(x: &Inputs, i: usize, back: &PreviousNode, steps: &mut Vec<Step>) {
     let s = &x.letters.symbols;
     // The relations follow from the constrained action: the sum of the action and these terms.
     debug_assert_eq!(
@@ -260,7 +260,7 @@ fn combination(x: &Inputs, i: usize, back: &Back, steps: &mut Vec<Step>) {
 }
 
 /// A relation whose variable varies.
-struct Met<'a> {
+struct VariedRelation<'a> {
     relation: &'a Relation,
     /// The change of its variable.
     here: Option<Expr>,
@@ -269,14 +269,14 @@ struct Met<'a> {
 }
 
 /// The relations whose variables the variation of one configuration changes.
-fn met<'a>(x: &Inputs<'a>, i: usize) -> Vec<Met<'a>> {
+fn met<'a>(x: &Inputs<'a>, i: usize) -> Vec<VariedRelation<'a>> {
     let v = &x.variations[i];
     let changes: BTreeMap<Letter, Expr> = v
         .on_outgoing()
         .into_iter()
         .filter(|(_, change)| !change.is_zero())
         .collect();
-    let all = x.relations.iter().map(|relation| Met {
+    let all = x.relations.iter().map(|relation| VariedRelation {
         relation,
         here: changes.get(&relation.variable).cloned(),
         incoming: (v.incoming.0.symbol == relation.variable.symbol).then_some(&v.incoming.1),
@@ -286,7 +286,7 @@ fn met<'a>(x: &Inputs<'a>, i: usize) -> Vec<Met<'a>> {
 }
 
 /// The relations paired with the variations; `part` is applied to each gradient.
-fn combined(x: &Inputs, met: &[Met], part: &dyn Fn(&Expr) -> Expr) -> Expr {
+fn combined(x: &Inputs, met: &[VariedRelation], part: &dyn Fn(&Expr) -> Expr) -> Expr {
     let s = &x.letters.symbols;
     let mut terms = Vec::new();
     for m in met {

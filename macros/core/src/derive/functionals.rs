@@ -13,10 +13,10 @@ use crate::print::Format;
 use crate::syntax;
 
 /// The expression that replaces the parameter `w`.
-type Made = dyn Fn(&Sample, &dyn Fn(&str) -> Expr) -> Expr;
+type Replacement = dyn Fn(&Sample, &dyn Fn(&str) -> Expr) -> Expr;
 
 /// The models with a functional in place of `w`, and with its definition in place of `w`.
-fn stated(body: &str, made: &Made) -> (Spec, Spec, Sample) {
+fn stated(body: &str, made: &Replacement) -> (Spec, Spec, Sample) {
     let text = format!("model Functional {{ param m: Real; param z: Vec<3>; {body} }}");
     let tokens = syntax::tokens(&text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     let spec = check::check(&syntax::parse(tokens).unwrap_or_else(|e| panic!("{e}\n{text}")));
@@ -46,7 +46,7 @@ fn derived(spec: Spec) -> Derivation {
     derive(spec).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn pair(body: &str, made: &Made) -> (Derivation, Derivation, Sample) {
+fn pair(body: &str, made: &Replacement) -> (Derivation, Derivation, Sample) {
     let (own, open, sample) = stated(body, made);
     (derived(own), derived(open), sample)
 }

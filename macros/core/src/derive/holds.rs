@@ -9,7 +9,7 @@ pub(crate) use solved::Solved;
 
 use super::action::Action;
 use super::balance::{Balance, pairing};
-use super::invariants::{Family, Integrability, Invariant, Kind, Known};
+use super::invariants::{CasimirSearch, Family, Integrability, Invariant, Kind};
 use super::select_solver::StepEquation;
 use super::variation::{Variation, at};
 use super::{Derivation, Letters};
@@ -23,7 +23,7 @@ use crate::groups::{Additive, Group};
 
 /// The letters of one constraint besides its multiplier.
 #[derive(Clone, Debug)]
-pub struct Held {
+pub struct ConstraintLetters {
     /// The element whose increment is the multiplier: the state does not contain it.
     pub element: SymbolId,
     /// A free variation: the multiplier on arrival.
@@ -35,7 +35,7 @@ pub struct Held {
 }
 
 /// The letters of all constraints.
-pub(super) fn letters(spec: &Spec, symbols: &mut Symbols) -> Vec<Held> {
+pub(super) fn letters(spec: &Spec, symbols: &mut Symbols) -> Vec<ConstraintLetters> {
     let mut all = Vec::new();
     for hold in &spec.holds {
         let symbol = symbols.get(hold.multiplier).clone();
@@ -52,7 +52,7 @@ pub(super) fn letters(spec: &Spec, symbols: &mut Symbols) -> Vec<Held> {
             Structure::General,
             Role::Derived,
         );
-        all.push(Held {
+        all.push(ConstraintLetters {
             element,
             variation,
             direction,
@@ -157,7 +157,7 @@ pub(super) fn holds(s: &Symbols, spec: &Spec, hold: &Hold, i: usize) -> bool {
 }
 
 /// The multiplier as a configuration.
-fn configuration(s: &Symbols, hold: &Hold, held: &Held) -> Configuration {
+fn configuration(s: &Symbols, hold: &Hold, held: &ConstraintLetters) -> Configuration {
     let shape = s.get(hold.multiplier).shape;
     let add = |a, b| expr::add(expr::here(s, a), expr::here(s, b));
     Configuration {
@@ -322,7 +322,7 @@ pub(crate) fn scale(s: &Symbols, hold: &Hold) -> Expr {
 
 /// The result of the search for invariants. Momenta belong to the motion with constraint forces, the other invariants
 /// to the motion without them.
-pub(super) struct Found {
+pub(super) struct InvariantSearch {
     pub invariants: Vec<Invariant>,
     pub integrability: Integrability,
 }
@@ -335,14 +335,14 @@ pub(super) fn kept(
     variations: &[Variation],
     projected: bool,
     algebra: &Algebra,
-    found: Found,
-) -> Found {
-    let Found {
+    found: InvariantSearch,
+) -> InvariantSearch {
+    let InvariantSearch {
         invariants,
         mut integrability,
     } = found;
     if spec.holds.is_empty() {
-        return Found {
+        return InvariantSearch {
             invariants,
             integrability,
         };
@@ -385,7 +385,7 @@ pub(super) fn kept(
     }
     integrability.lax = None;
     integrability.discrete_energy.exact = false;
-    integrability.casimirs = Known::NotSought(
+    integrability.casimirs = CasimirSearch::NotSought(
         "the `hold` constraints restrict the motion to a smaller space than the bracket describes"
             .to_owned(),
     );
@@ -415,7 +415,7 @@ pub(super) fn kept(
             });
         }
     }
-    Found {
+    InvariantSearch {
         invariants,
         integrability,
     }

@@ -75,7 +75,7 @@ pub struct Letters {
     /// For each configuration: the name of its node momentum, a covector (a vector for SO(3)).
     pub node_momentum: Vec<SymbolId>,
     /// For each constraint: its letters besides the multiplier.
-    pub held: Vec<holds::Held>,
+    pub held: Vec<holds::ConstraintLetters>,
     /// The spectral parameter of a Lax form.
     pub spectral: SymbolId,
 }
@@ -375,12 +375,12 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
         assumed: &assumed,
         algebra: &algebra,
     });
-    let found = holds::Found {
+    let found = holds::InvariantSearch {
         invariants,
         integrability,
     };
     let projected = limit.is_ok();
-    let holds::Found {
+    let holds::InvariantSearch {
         invariants,
         integrability,
     } = holds::kept(&spec, &letters, &variations, projected, &algebra, found);

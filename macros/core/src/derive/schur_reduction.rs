@@ -9,7 +9,7 @@ use super::tangent::Direction;
 use crate::check::spec::Side;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
-use crate::expr::{self, Expr, Letter, Shift, Undone};
+use crate::expr::{self, Expr, InvertedFactor, Letter, Shift};
 
 const THREE: Dim = Dim::Fixed(3);
 
@@ -38,15 +38,15 @@ pub struct Place {
     /// The intermediate values from which it is computed, in order; the translation itself is the last.
     pub steps: Vec<(SymbolId, Expr)>,
     /// The matrix of its equation.
-    factors: Vec<Undone>,
+    factors: Vec<InvertedFactor>,
 }
 
 impl Place {
     /// The constant matrices whose inverses are needed.
     pub fn constants(&self) -> impl Iterator<Item = &Expr> {
         self.factors.iter().filter_map(|f| match f {
-            Undone::Matrix(a) => Some(a),
-            Undone::Cayley { .. } | Undone::Turn(_) => None,
+            InvertedFactor::Matrix(a) => Some(a),
+            InvertedFactor::Cayley { .. } | InvertedFactor::Turn(_) => None,
         })
     }
 
@@ -131,7 +131,8 @@ impl SchurReduction {
             if !known(x) || places.iter().any(met) {
                 continue;
             }
-            let Some((number, factors)) = Undone::factors(&symbols, &matrix, turn_of) else {
+            let Some((number, factors)) = InvertedFactor::factors(&symbols, &matrix, turn_of)
+            else {
                 continue;
             };
             if factors.len() > before.len() {
@@ -225,7 +226,8 @@ impl SchurReduction {
         let s = &self.symbols;
         let own = &along[p.block * count + p.block];
         let turn = |_: &Expr| Some(expr::zero(Shape::vector(THREE)));
-        let number = Undone::factors(s, own, turn).map_or(expr::integer(1), |(number, _)| number);
+        let number =
+            InvertedFactor::factors(s, own, turn).map_or(expr::integer(1), |(number, _)| number);
         let mut factors = p.factors.as_slice();
         let (mut a, mut c) = (a, c);
         if let [before @ .., last] = factors

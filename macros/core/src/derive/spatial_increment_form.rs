@@ -159,7 +159,7 @@ impl Space<'_> {
             true => {
                 let way = [(velocity, expr::add(one, along))];
                 let less = expr::sub(expr::substitute(s, e, &way), still.clone());
-                let less = self.told_in_space(self.defined(&less), time);
+                let less = self.covector_in_space(self.defined(&less), time);
                 self.algebra.shortest(&less)
             }
             false => expr::zero(e.shape()),
@@ -179,7 +179,7 @@ impl Space<'_> {
         let Some(seen) = &self.seen else {
             return Some(
                 self.algebra
-                    .shortest(&self.told_in_space(self.defined(e), time)),
+                    .shortest(&self.covector_in_space(self.defined(e), time)),
             );
         };
         let s = &self.d.letters.symbols;
@@ -204,9 +204,9 @@ impl Space<'_> {
             back.push((at(letter, shift), expr::shift_time(s, seen, time)));
         }
         let e = self.determinants(e, quantity);
-        let found = self.told_in_space(expr::substitute(s, &e, &there), time);
+        let found = self.covector_in_space(expr::substitute(s, &e, &there), time);
         let found = self.algebra.shortest(&found);
-        let stated = expr::substitute(s, &self.told_in_space(self.defined(&e), time), &back);
+        let stated = expr::substitute(s, &self.covector_in_space(self.defined(&e), time), &back);
         let less = expr::sub(expr::substitute(s, &found, &back), stated);
         self.algebra.is_zero(&less).then_some(found)
     }
@@ -225,7 +225,7 @@ impl Space<'_> {
     }
 
     /// A covector of the side, transformed to space.
-    fn told_in_space(&self, e: Expr, time: i8) -> Expr {
+    fn covector_in_space(&self, e: Expr, time: i8) -> Expr {
         let s = &self.d.letters.symbols;
         let c = &self.d.spec.configurations[self.i];
         let placement = expr::shift_time(s, &expr::here(s, c.element), time);
@@ -251,7 +251,7 @@ impl Space<'_> {
         if c.side.is_spatial() || !square {
             return None;
         }
-        let seen = self.told_in_space(value.clone(), Shift::HERE.time);
+        let seen = self.covector_in_space(value.clone(), Shift::HERE.time);
         let seen = self.algebra.shortest(&seen);
         (!divides(s, &seen)).then_some(seen)
     }

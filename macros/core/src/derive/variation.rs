@@ -52,7 +52,7 @@ pub fn variations(
 ) -> Result<Vec<Variation>, Errors> {
     let mut errors = Errors::new();
     let mut out = Vec::new();
-    let back = Back {
+    let back = PreviousNode {
         shell: on_shell(spec, letters),
         elements: previous_elements(spec, letters),
     };
@@ -98,7 +98,7 @@ fn of_configuration(c: &Configuration, letters: &Letters, i: usize) -> Variation
 }
 
 /// Replacements at the previous node, which are the same for every quantity.
-struct Back {
+struct PreviousNode {
     shell: Vec<(Letter, Expr)>,
     elements: Vec<(Letter, Expr)>,
 }
@@ -111,7 +111,7 @@ fn of_advected(
     v: &Variation,
     a: &Advected,
     j: usize,
-    back: &Back,
+    back: &PreviousNode,
 ) -> Result<(Letter, Expr), Box<Diagnostic>> {
     let s = &letters.symbols;
     let here = at(a.quantity, Shift::HERE);

@@ -16,7 +16,7 @@ use crate::syntax::ast::NodeRule;
 
 /// What a document contains besides the equations of the derivation.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Telling<'a> {
+pub struct DocumentExtras<'a> {
     /// The text of the model, if known.
     pub stated: Option<&'a str>,
     /// Where a work has the equations, and remarks on them.
@@ -27,7 +27,7 @@ pub struct Telling<'a> {
 
 /// The derivation as a document without citations.
 pub fn document(d: &Derivation) -> Document {
-    let told = Telling {
+    let told = DocumentExtras {
         stated: None,
         citations: Citations::NONE,
         scheme: false,
@@ -36,7 +36,7 @@ pub fn document(d: &Derivation) -> Document {
 }
 
 /// The derivation as a document with the given additions.
-pub fn document_telling(d: &Derivation, told: Telling<'_>) -> Document {
+pub fn document_telling(d: &Derivation, told: DocumentExtras<'_>) -> Document {
     let sheet = Sheet::new(d, told.citations);
     let mut doc = Document::titled(format!("{}: discrete equations of motion", d.spec.name));
     doc.work = told.citations.work;
@@ -62,7 +62,7 @@ pub fn document_telling(d: &Derivation, told: Telling<'_>) -> Document {
     doc
 }
 
-fn model(sheet: &Sheet, doc: &mut Document, told: Telling<'_>) {
+fn model(sheet: &Sheet, doc: &mut Document, told: DocumentExtras<'_>) {
     let section = doc.section("Model");
     let docs = sheet.d.spec.docs.iter().map(|l| l.trim());
     let words: Vec<&str> = docs.filter(|l| !l.is_empty()).collect();

@@ -105,7 +105,7 @@ pub fn held(sheet: &Sheet, doc: &mut Document) {
     }
     section.text(&no_change(d));
     for j in 0..d.spec.holds.len() {
-        section.equation(sheet.math(&told(d, j)));
+        section.equation(sheet.math(&reported_multiplier(d, j)));
     }
     section.text(MIDDLE);
 }
@@ -161,7 +161,7 @@ pub(super) fn rate_on_arrival(d: &Derivation, hold: &Hold) -> Expr {
 
 /// The reported multiplier of constraint `j`: the multiplier of the previous step minus the impulse of the projection
 /// divided by the step size.
-pub(super) fn told(d: &Derivation, j: usize) -> Expr {
+pub(super) fn reported_multiplier(d: &Derivation, j: usize) -> Expr {
     let s = &d.letters.symbols;
     let own = expr::here(s, d.spec.holds[j].multiplier);
     let own = expr::shift_time(s, &own, -Shift::NEXT.time);

@@ -1,7 +1,6 @@
 //! Lays out a model with labels as a section of a paper: its sites, the terms of its Lagrangian with their ranges,
 //! the equations of an interior site and of each end condition, and the invariants of each choice.
 
-mod beside;
 mod card;
 mod ends;
 mod functionals;
@@ -9,13 +8,14 @@ mod holds;
 mod invariants;
 mod sites;
 mod sums;
+mod unlabelled_equations;
 
 use super::compose::without_remarks;
-use super::folded::{From, IndexedNotation, Part};
+use super::indexed_notation::{IndexOrigin, IndexedNotation, Part};
 use crate::derive::warnings::Warning;
 use crate::diagnostic::Errors;
 use crate::expr::{self, Expr, Node, Shift};
-use crate::lattice::{Choice, Lattice, Range, Sites};
+use crate::lattice::{ChainConfig, Lattice, Range, Sites};
 use crate::pipeline;
 use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::Formula;
@@ -75,7 +75,7 @@ pub fn printed_lattice(
 
 /// Completes the choice of a case that sets no ends: a ring if the model declares `periodic` and no end conditions,
 /// otherwise the first alternative of each end.
-pub fn default_choice(lattice: &Lattice, choice: Choice) -> Choice {
+pub fn default_choice(lattice: &Lattice, choice: ChainConfig) -> ChainConfig {
     let ends = lattice.ends.iter().any(|e| !e.is_empty());
     match lattice.periodic.is_some() && !ends {
         true => choice.as_ring(lattice),
@@ -117,7 +117,7 @@ fn parts(model: &Model, lattice: &Lattice) -> Result<Vec<Part>, Errors> {
         .collect()
 }
 
-fn written_out(model: &Model, lattice: &Lattice, choice: Choice) -> Result<Part, Errors> {
+fn written_out(model: &Model, lattice: &Lattice, choice: ChainConfig) -> Result<Part, Errors> {
     let (unfolded, d) = pipeline::derive_lattice(model, lattice, &choice)?;
     Ok(Part {
         choice,
@@ -141,7 +141,7 @@ fn warnings(parts: &[Part], doc: &mut Document) -> Vec<Warning> {
     let mut out: Vec<Warning> = Vec::new();
     for w in parts
         .iter()
-        .flat_map(|p| p.unfolded.told(&p.choice, &p.d.warnings))
+        .flat_map(|p| p.unfolded.declared_warnings(&p.choice, &p.d.warnings))
     {
         let place = |w: &Warning| format!("{:?}", w.diagnostic.place);
         let known = |o: &Warning| o.topic == w.topic && place(o) == place(&w);
@@ -306,7 +306,7 @@ fn constraints(folded: &mut IndexedNotation, part: &Part, doc: &mut Document) {
     let section = doc.section("Constraints");
     for stated in stated_configurations(part) {
         let c = &part.d.spec.configurations[stated.shown];
-        let from = From::Site(stated.site);
+        let from = IndexOrigin::Site(stated.site);
         let next = folded.letter(part, c.element, Shift::NEXT, from);
         let update = folded.derived(part, &c.update, from);
         section.equation(Formula::equal(next, update));
@@ -321,7 +321,7 @@ fn constraints(folded: &mut IndexedNotation, part: &Part, doc: &mut Document) {
             continue;
         }
         told.push(of);
-        let from = From::Site(site);
+        let from = IndexOrigin::Site(site);
         let next = folded.letter(part, a.quantity, Shift::NEXT, from);
         let update = folded.derived(part, &a.update, from);
         let mut both = vec![Formula::equal(next, update)];
@@ -405,7 +405,7 @@ pub(super) fn equations(
     folded: &mut IndexedNotation,
     part: &Part,
     i: usize,
-    from: From,
+    from: IndexOrigin,
 ) -> Vec<Formula> {
     let (Some(b), Some(mu)) = (
         part.d.balances.get(i),
@@ -430,7 +430,7 @@ pub(super) fn reading(folded: &mut IndexedNotation, part: &Part, i: usize, site:
     };
     let style = Style::new(&part.d.spec.time_index);
     let mut text = |e: &Expr| {
-        let e = folded.expression(part, e, From::Site(site));
+        let e = folded.expression(part, e, IndexOrigin::Site(site));
         let e = expr::shown(&folded.symbols, &e);
         expression(&e, &folded.symbols, &style, Format::Text)
     };
@@ -473,17 +473,17 @@ fn interior(folded: &mut IndexedNotation, part: &Part, doc: &mut Document) {
         let c = &part.d.spec.configurations[s.shown];
         let (first, last) = like_the_middle(folded, part, &s);
         let words = format!(": {}", c.group.name(&|n| folded.symbols.dim_text(n)));
-        let element = folded.letter(part, c.element, Shift::HERE, From::Site(s.site));
+        let element = folded.letter(part, c.element, Shift::HERE, IndexOrigin::Site(s.site));
         let mut line: Vec<Inline> = vec![element.into(), words.into()];
         line.extend(range_words(folded.lattice, part, &s, first, last));
         line.push(".".into());
         section.paragraph(line);
         let summed = match s.label {
-            None => beside::equations(folded, part, &s),
+            None => unlabelled_equations::equations(folded, part, &s),
             Some(_) => None,
         };
         for equation in
-            summed.unwrap_or_else(|| equations(folded, part, s.shown, From::Site(s.site)))
+            summed.unwrap_or_else(|| equations(folded, part, s.shown, IndexOrigin::Site(s.site)))
         {
             section.equation(equation);
         }

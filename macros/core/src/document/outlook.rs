@@ -5,7 +5,7 @@ use super::citations::Place;
 use super::sheet::{Sheet, references};
 use crate::check::spec::Configuration;
 use crate::derive::holds;
-use crate::derive::invariants::{Invariant, Kind, Known};
+use crate::derive::invariants::{CasimirSearch, Invariant, Kind};
 use crate::derive::limit::STANDING;
 use crate::derive::reversal::Reversal;
 use crate::expr::{self, Letter, Shift, spelling};
@@ -17,7 +17,7 @@ pub fn invariants(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
     let section = doc.section("Invariants");
     let mut items: Vec<Vec<Inline>> = d.invariants.iter().map(|v| invariant(sheet, v)).collect();
-    if let Known::NotSought(why) = &d.integrability.casimirs {
+    if let CasimirSearch::NotSought(why) = &d.integrability.casimirs {
         items.push(vec![
             format!("clebsch does not look for Casimirs: {why}").into(),
         ]);

@@ -4,12 +4,12 @@
 //! derivation itself does not change.
 
 mod display;
-mod found;
+mod document_scan;
 mod lets;
+mod letter_definitions;
 mod names;
 mod points;
-mod read;
-mod said;
+mod rigid_motion_patterns;
 mod split;
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 
 use super::sheet::Sheet;
 use crate::derive::Derivation;
-use crate::derive::invariants::{Count, Known};
+use crate::derive::invariants::{CasimirSearch, Count};
 use crate::derive::variation::at;
 use crate::expr::shape::Dim;
 use crate::expr::{self, Expr, Node, Shift};
@@ -100,8 +100,8 @@ pub fn bracket(sheet: &Sheet, doc: &mut Document) {
         ));
     }
     let counts = match &d.integrability.casimirs {
-        Known::Counted(counts) => counts,
-        Known::NotSought(why) => {
+        CasimirSearch::Counted(counts) => counts,
+        CasimirSearch::NotSought(why) => {
             if d.bracket.holds_elements {
                 section.text("The equations contain the configuration itself, so clebsch does not look for Casimirs of a reduced space.");
                 return;

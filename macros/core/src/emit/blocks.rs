@@ -2,8 +2,6 @@
 //! for all blocks, then each block is solved by its own method, then all blocks advance to the next node. Takes the
 //! derivation; gives the factors that the model stores, the workspace and `step`.
 
-use super::alone::{alone, scaled_momentum};
-use super::carried::seen_from_space;
 use super::constant_factors::Constant;
 pub(super) use super::constant_factors::linear_solution;
 use super::element::{self, Family, family};
@@ -11,8 +9,10 @@ use super::expression::{Bindings, program};
 use super::force_at_node::at_nodes;
 use super::items::{letters_of, parameter_locals, text, with_transports};
 use super::left_factor::default_solver;
+use super::momentum_update::seen_from_space;
 use super::names::{Names, item, own, per_configuration, tagged, variable};
-use super::newton::{Together, onwards};
+use super::newton::{JointUnknowns, onwards};
+use super::single_body::{scaled_momentum, single_body_solution};
 use super::sizes::Generics;
 use super::step::{AtTheStart, at, finish, here, node_momentum, step_signature};
 use super::workspace::filled;
@@ -195,8 +195,8 @@ fn together<'a>(
     n: usize,
     b: &'a Block,
     block: &'a Derivation,
-) -> Together<'a> {
-    Together {
+) -> JointUnknowns<'a> {
+    JointUnknowns {
         whole,
         block,
         members: &b.members,
@@ -209,7 +209,7 @@ fn together<'a>(
 pub(super) fn each_newton<R>(
     d: &Derivation,
     names: &Names,
-    mut f: impl FnMut(usize, &Together) -> R,
+    mut f: impl FnMut(usize, &JointUnknowns) -> R,
 ) -> Vec<R> {
     by_newton(d)
         .map(|(n, b)| {
@@ -374,7 +374,7 @@ pub(super) fn step(d: &Derivation, names: &Names) -> TokenStream {
                 found[i] = quote!(#turns[#place]);
                 continue;
             }
-            let solve = alone(d, n, i, &scaled, factor);
+            let solve = single_body_solution(d, n, i, &scaled, factor);
             solves.extend(quote! {
                 let #omega = match #solve {
                     Ok(solved) => solved,

@@ -60,7 +60,7 @@ fn of_symbol(d: &Derivation, id: SymbolId, when: &str) -> FieldOf {
         name: symbol.name.clone(),
         shape: symbol.shape,
         kind,
-        doc: said(symbol, when),
+        doc: description(symbol, when),
     }
 }
 
@@ -78,7 +78,7 @@ fn of_given(d: &Derivation, id: SymbolId, when: &str) -> FieldOf {
 }
 
 /// The symbol's documentation in the model, or `else_words` if there is none.
-fn said(symbol: &Symbol, else_words: &str) -> String {
+fn description(symbol: &Symbol, else_words: &str) -> String {
     match symbol.doc() {
         doc if doc.is_empty() => else_words.to_owned(),
         doc => doc,
@@ -111,7 +111,7 @@ fn element_field(d: &Derivation, i: usize) -> FieldOf {
             _ => c.group.shape(),
         },
         kind,
-        doc: said(d.letters.symbols.get(c.element), doc),
+        doc: description(d.letters.symbols.get(c.element), doc),
     }
 }
 

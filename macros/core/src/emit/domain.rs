@@ -39,7 +39,7 @@ impl Domain {
 
 /// A function or operation with a domain; the names are the runtime's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Named {
+enum DomainOperation {
     Log,
     Sqrt,
     Power,
@@ -47,14 +47,14 @@ enum Named {
     Inverse,
 }
 
-impl Named {
+impl DomainOperation {
     fn tokens(self) -> TokenStream {
         match self {
-            Named::Log => quote!(domain::Function::Log),
-            Named::Sqrt => quote!(domain::Function::Sqrt),
-            Named::Power => quote!(domain::Function::Power),
-            Named::Quotient => quote!(domain::Function::Quotient),
-            Named::Inverse => quote!(domain::Function::Inverse),
+            DomainOperation::Log => quote!(domain::Function::Log),
+            DomainOperation::Sqrt => quote!(domain::Function::Sqrt),
+            DomainOperation::Power => quote!(domain::Function::Power),
+            DomainOperation::Quotient => quote!(domain::Function::Quotient),
+            DomainOperation::Inverse => quote!(domain::Function::Inverse),
         }
     }
 }
@@ -76,7 +76,7 @@ enum Place {
 #[derive(Clone, Debug, PartialEq)]
 struct Guard {
     domain: Domain,
-    function: Named,
+    function: DomainOperation,
     argument: Expr,
     place: Place,
 }
@@ -119,22 +119,22 @@ fn of(d: &Derivation, place: Place) -> Vec<Guard> {
 
 fn collect(s: &Symbols, e: &Expr, all: &mut Vec<Guard>) {
     match e.node() {
-        Node::Call(Function::Log, a) => guard(s, Domain::Positive, Named::Log, a, all),
+        Node::Call(Function::Log, a) => guard(s, Domain::Positive, DomainOperation::Log, a, all),
         Node::Power(a, q) => match (q.as_integer(), q.is_negative()) {
             (Some(_), false) => {}
-            (Some(_), true) => guard(s, Domain::NotZero, Named::Quotient, a, all),
-            (None, true) => guard(s, Domain::Positive, Named::Power, a, all),
+            (Some(_), true) => guard(s, Domain::NotZero, DomainOperation::Quotient, a, all),
+            (None, true) => guard(s, Domain::Positive, DomainOperation::Power, a, all),
             (None, false) if *q == Rational::HALF => {
-                guard(s, Domain::NotNegative, Named::Sqrt, a, all)
+                guard(s, Domain::NotNegative, DomainOperation::Sqrt, a, all)
             }
-            (None, false) => guard(s, Domain::NotNegative, Named::Power, a, all),
+            (None, false) => guard(s, Domain::NotNegative, DomainOperation::Power, a, all),
         },
-        Node::Quotient(_, b) => guard(s, Domain::NotZero, Named::Quotient, b, all),
+        Node::Quotient(_, b) => guard(s, Domain::NotZero, DomainOperation::Quotient, b, all),
         Node::Inverse(a) if !expr::is_invertible(s, a) => {
             guard(
                 s,
                 Domain::NotZero,
-                Named::Inverse,
+                DomainOperation::Inverse,
                 &expr::det(a.clone()),
                 all,
             );
@@ -194,7 +194,13 @@ fn squared(e: &Expr) -> Option<(Vec<Expr>, Expr)> {
     }
 }
 
-fn guard(s: &Symbols, domain: Domain, function: Named, argument: &Expr, all: &mut Vec<Guard>) {
+fn guard(
+    s: &Symbols,
+    domain: Domain,
+    function: DomainOperation,
+    argument: &Expr,
+    all: &mut Vec<Guard>,
+) {
     // A product is zero if one of its factors is.
     if let (Domain::NotZero, Node::Product(factors)) = (domain, argument.node())
         && factors.iter().all(|f| f.shape().is_scalar())

@@ -10,7 +10,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 /// How the runtime stores the elements of a group.
-pub use crate::groups::Kept as Family;
+pub use crate::groups::ElementStorage as Family;
 
 /// The family of a configuration.
 pub fn family(c: &Configuration) -> Family {

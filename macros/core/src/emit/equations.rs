@@ -6,7 +6,7 @@ use super::element::{self, Bundle, stacked};
 use super::expression::{Bindings, program};
 use super::items::letters_of;
 use super::names::{Names, variable};
-use super::stated::{Stated, stated};
+use super::precomputed_values::{PrecomputedValues, stated};
 use super::step::at;
 use crate::check::spec::Side;
 use crate::derive::parts::{Parts, Velocity};
@@ -37,7 +37,7 @@ pub(super) struct Equations<'a> {
 }
 
 /// The equations as code.
-pub(super) struct Written {
+pub(super) struct EquationCode {
     /// The statements that residual and tangent share.
     pub at_trial: TokenStream,
     /// The residual, as the body of a block.
@@ -51,7 +51,7 @@ pub(super) struct Written {
     /// Whether the tangent is multiplied by the step size.
     pub times_step: bool,
     /// Residual and tangent on the body side, without the factor of the step size, and without precomputed values.
-    pub alone: Alone,
+    pub alone: SeparateEquations,
     /// The type of the node momenta together, over `T`.
     pub momenta: TokenStream,
     /// The node momenta, with `change` applied to every number.
@@ -126,7 +126,7 @@ pub(super) fn eliminated(d: &Derivation, list: &[Expr]) -> Option<SchurReduction
 }
 
 /// Residual and tangent as functions of their own, and the values at the node that both need.
-pub(super) struct Alone {
+pub(super) struct SeparateEquations {
     /// The residual, as the body of a block.
     pub residual: TokenStream,
     /// The tangent, as the body of a block.
@@ -138,13 +138,17 @@ pub(super) struct Alone {
 impl Equations<'_> {
     /// The statement that binds the node momenta, and the equations. `list` is the derived momenta, `node` the values
     /// of the node momenta.
-    pub fn write(&self, list: &[Expr], node: &[TokenStream]) -> (TokenStream, Written) {
+    pub fn write(&self, list: &[Expr], node: &[TokenStream]) -> (TokenStream, EquationCode) {
         self.in_blocks(list, node)
             .unwrap_or_else(|| self.in_columns(list, node))
     }
 
     /// The equations in 3x3 blocks. None if a group has other coordinates, or if no rule gives the tangent.
-    fn in_blocks(&self, list: &[Expr], node: &[TokenStream]) -> Option<(TokenStream, Written)> {
+    fn in_blocks(
+        &self,
+        list: &[Expr],
+        node: &[TokenStream],
+    ) -> Option<(TokenStream, EquationCode)> {
         let (d, trial, mu) = (self.d, self.trial, self.momenta);
         let (parts, list) = by_parts(d, list)?;
         let eliminated = self.eliminated.map(|(found, _)| found);
@@ -259,7 +263,7 @@ impl Equations<'_> {
             let residual = residual_of(&values, &all, lets);
             let p = schedule::program(s, &whole, "t");
             let (lets, values) = program(&p, self.bindings);
-            Alone {
+            SeparateEquations {
                 residual,
                 tangent: tangent_of(&values, lets),
                 given: at_the_node(s, list.iter().chain(&whole)),
@@ -315,7 +319,7 @@ impl Equations<'_> {
         }
         at_node.values.retain(|(_, value)| kept(value).is_none());
         let s = &at_node.symbols;
-        let Stated {
+        let PrecomputedValues {
             statements,
             bindings,
             ..
@@ -350,7 +354,7 @@ impl Equations<'_> {
         let known = before;
         Some((
             known,
-            Written {
+            EquationCode {
                 at_trial: velocities,
                 residual,
                 at_rest,
@@ -449,7 +453,7 @@ impl Equations<'_> {
     }
 
     /// The equations in coordinates, with one column of the tangent per coordinate.
-    fn in_columns(&self, list: &[Expr], node: &[TokenStream]) -> (TokenStream, Written) {
+    fn in_columns(&self, list: &[Expr], node: &[TokenStream]) -> (TokenStream, EquationCode) {
         let (d, trial, mu) = (self.d, self.trial, self.momenta);
         let s = &d.letters.symbols;
         let bodies = d.spec.configurations.len();
@@ -543,14 +547,14 @@ impl Equations<'_> {
         let once = once.statements;
         let alone_tangent = quote!(#once #columns);
         let over: Vec<TokenStream> = momenta.iter().map(|m| quote!(#m.over(change))).collect();
-        let alone = Alone {
+        let alone = SeparateEquations {
             residual: residual_of(s, list, self.bindings),
             tangent: alone_tangent,
             given: at_the_node(s, list.iter().chain(derived.iter().flatten())),
         };
         (
             known,
-            Written {
+            EquationCode {
                 at_trial: velocities,
                 residual,
                 at_rest,

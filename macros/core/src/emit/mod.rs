@@ -2,11 +2,9 @@
 //! description of the model. Emission makes no decisions and cannot fail. [`refusal`] rejects models without a
 //! stepper beforehand.
 
-mod alone;
 mod between;
 mod blocks;
 mod card;
-mod carried;
 mod constant_factors;
 mod discrete_energy;
 mod domain;
@@ -26,16 +24,18 @@ mod kernel;
 mod kinetic;
 mod left_factor;
 mod line;
+mod momentum_update;
 mod names;
 mod newton;
 mod notes;
+mod precomputed_values;
 mod principal;
 mod quaternionic;
 mod residual;
+mod single_body;
 mod sizes;
 mod start;
 mod state;
-mod stated;
 mod step;
 mod stepper;
 #[cfg(test)]
@@ -57,7 +57,7 @@ use quote::{format_ident, quote};
 const MOST_COORDINATES: u64 = 28;
 
 /// Limits on the unknowns that a stepper solves together.
-struct Most {
+struct UnknownLimits {
     /// The number of coordinates, since their tangent is a dense array.
     coordinates: u64,
     /// The number of configurations, if their groups differ.
@@ -68,14 +68,14 @@ struct Most {
 
 /// The limits of a compiled stepper, which stores these arrays on the stack and represents products of groups as
 /// types.
-const BUILT: Most = Most {
+const BUILT: UnknownLimits = UnknownLimits {
     coordinates: MOST_COORDINATES,
     different: 6,
     made: "emits",
 };
 
 /// The limits of an interpreted stepper, whose step costs the cube of the number of coordinates.
-const READ: Most = Most {
+const READ: UnknownLimits = UnknownLimits {
     coordinates: 256,
     different: 256,
     made: "runs",
@@ -94,7 +94,7 @@ pub fn refusal_of_read(d: &Derivation) -> Option<Diagnostic> {
     refused(d, &READ)
 }
 
-fn refused(d: &Derivation, most: &Most) -> Option<Diagnostic> {
+fn refused(d: &Derivation, most: &UnknownLimits) -> Option<Diagnostic> {
     for (i, c) in d.spec.configurations.iter().enumerate() {
         let admitted = match element::family(c) {
             element::Family::Field(_) => most.coordinates,
@@ -133,8 +133,8 @@ fn refused(d: &Derivation, most: &Most) -> Option<Diagnostic> {
 
 /// Rejects a block that is too large for a dense tangent, or that has more configurations than a product of groups
 /// can have.
-fn too_many_together(d: &Derivation, most: &Most) -> Option<Diagnostic> {
-    let Most {
+fn too_many_together(d: &Derivation, most: &UnknownLimits) -> Option<Diagnostic> {
+    let UnknownLimits {
         coordinates: admitted,
         different,
         made,

@@ -119,7 +119,7 @@ pub(super) fn is_a_type(name: &str) -> bool {
     let of_groups = crate::groups::TABLE.iter().any(|line| {
         let size = crate::expr::shape::Dim::Fixed(line.size.unwrap_or(3));
         match (line.group)(size).kept() {
-            crate::groups::Kept::Coordinates(own) => {
+            crate::groups::ElementStorage::Coordinates(own) => {
                 let frames = ["Body", "Spatial", "Carried"];
                 let mut momenta = frames.iter().filter_map(|frame| name.strip_prefix(frame));
                 own.element == name || momenta.any(|rest| rest == own.momentum)

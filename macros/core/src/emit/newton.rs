@@ -23,7 +23,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 /// The unknowns that Newton's method finds together.
-pub(super) struct Together<'a> {
+pub(super) struct JointUnknowns<'a> {
     /// The model.
     pub whole: &'a Derivation,
     /// The unknowns as a model of their own; the model itself if it is a single block.
@@ -48,7 +48,7 @@ pub(super) struct Loop {
     pub functions: TokenStream,
 }
 
-impl Together<'_> {
+impl JointUnknowns<'_> {
     /// A name of the block: the name in a model of one block, followed by the number of this block.
     pub fn name(&self, base: &str) -> Ident {
         match self.number {
@@ -431,8 +431,8 @@ fn all<'a>(
     block: &'a Derivation,
     names: &'a Names,
     members: &'a [usize],
-) -> Together<'a> {
-    Together {
+) -> JointUnknowns<'a> {
+    JointUnknowns {
         whole: d,
         block,
         members,
@@ -460,7 +460,7 @@ pub(super) fn kept_inverses(d: &Derivation, names: &Names) -> Vec<Inverse> {
 }
 
 /// The inverses that the model stores for the elimination of one block.
-pub(super) fn inverses(together: &Together) -> Vec<Inverse> {
+pub(super) fn inverses(together: &JointUnknowns) -> Vec<Inverse> {
     let fields = together
         .eliminated()
         .map_or_else(Vec::new, |(_, fields)| fields);

@@ -2,7 +2,7 @@
 //! values at its node, over any scalar. Takes the equations; gives the functions.
 
 use super::element::{self, Bundle};
-use super::equations::{TURNED, Written};
+use super::equations::{EquationCode, TURNED};
 use super::expression::{Bindings, ty};
 use super::items::parameter_locals;
 use super::names::{item, variable};
@@ -19,7 +19,7 @@ pub(super) struct Principal<'a> {
     /// The locals of the values at the node.
     pub bindings: &'a Bindings,
     /// The equations.
-    pub equations: &'a Written,
+    pub equations: &'a EquationCode,
     /// The local of the node momenta.
     pub momenta: &'a Ident,
     /// The local of the trial.

@@ -1,11 +1,11 @@
 //! `step`: the momentum of the edge from the node momentum, the solution, the new element, and the momentum of the
 //! next node.
 
-use super::carried::{Acting, carried, gained, seen_from_space};
 use super::element::{self, Family, family};
 use super::expression::{Bindings, Writer, program};
 use super::force_at_node::AtNode;
 use super::items::{self, kept, letters_of, node_locals, parameter_locals, with_transports};
+use super::momentum_update::{EdgeForce, carried, gained, seen_from_space};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::sizes::Generics;
 use crate::check::spec::Side;
@@ -293,7 +293,7 @@ pub(super) fn finish(
     let (lets, values) = program(&p, bindings);
     out.extend(lets);
     let acting = values.into_iter().zip(in_space);
-    let mut acting = acting.map(|(value, in_space)| Acting { value, in_space });
+    let mut acting = acting.map(|(value, in_space)| EdgeForce { value, in_space });
     let mut kept_forces = TokenStream::new();
     for i in 0..d.spec.configurations.len() {
         let carried = match (by_change(i), force_on(i)) {
@@ -303,7 +303,7 @@ pub(super) fn finish(
                 let [here, next] = [0, 1].map(|time| force.local(d, names, time));
                 out.extend(force.next(d, names, bindings));
                 kept_forces.extend(force.remembered(d, names, bindings));
-                let both = Acting {
+                let both = EdgeForce {
                     value: quote!(-(#here + #next)),
                     in_space: false,
                 };

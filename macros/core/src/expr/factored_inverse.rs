@@ -10,7 +10,7 @@ use crate::expr::symbol::{Role, Symbols};
 
 /// A factor that is to be inverted.
 #[derive(Clone, Debug)]
-pub enum Undone {
+pub enum InvertedFactor {
     /// `Id + Q` for a rotation with this Rodrigues vector, or for its inverse if `minus` is set.
     Cayley {
         /// `Id + Q` itself.
@@ -26,14 +26,14 @@ pub enum Undone {
     Matrix(Expr),
 }
 
-impl Undone {
+impl InvertedFactor {
     /// The factors of a product in order, and the reciprocal of its scalar factor. `turn` gives the Rodrigues vectors
     /// of letters that are rotations. `None` if a factor cannot be inverted.
     pub fn factors(
         symbols: &Symbols,
         e: &Expr,
         turn: impl Fn(&Expr) -> Option<Expr>,
-    ) -> Option<(Expr, Vec<Undone>)> {
+    ) -> Option<(Expr, Vec<InvertedFactor>)> {
         let word = parts(e);
         let mut number = vec![super::number(word.coefficient.inverse()?)];
         number.extend(
@@ -51,7 +51,7 @@ impl Undone {
                 _ => (false, e.clone()),
             };
             if is_turn(&bare(f).1) {
-                return Some(Undone::Turn(f.clone()));
+                return Some(InvertedFactor::Turn(f.clone()));
             }
             if let Some((sign, q)) = identity_and(f)
                 && sign.is_one()
@@ -59,12 +59,12 @@ impl Undone {
             {
                 let (minus, q) = bare(&q);
                 let (whole, turn) = (f.clone(), turn(&q)?);
-                return Some(Undone::Cayley { whole, turn, minus });
+                return Some(InvertedFactor::Cayley { whole, turn, minus });
             }
             let constant = letters(f)
                 .iter()
                 .all(|l| symbols.get(l.symbol).role == Role::Parameter);
-            constant.then(|| Undone::Matrix(f.clone()))
+            constant.then(|| InvertedFactor::Matrix(f.clone()))
         };
         let listed = word
             .matrices
@@ -76,7 +76,9 @@ impl Undone {
     /// The matrix itself.
     pub fn whole(&self) -> &Expr {
         match self {
-            Undone::Cayley { whole, .. } | Undone::Turn(whole) | Undone::Matrix(whole) => whole,
+            InvertedFactor::Cayley { whole, .. }
+            | InvertedFactor::Turn(whole)
+            | InvertedFactor::Matrix(whole) => whole,
         }
     }
 
@@ -93,9 +95,9 @@ impl Undone {
             false => mul(a, e),
         };
         match self {
-            Undone::Turn(q) => placed(transpose(symbols, q.clone()), e),
-            Undone::Matrix(a) => placed(inverse(symbols, a.clone()), e),
-            Undone::Cayley { turn, minus, .. } => {
+            InvertedFactor::Turn(q) => placed(transpose(symbols, q.clone()), e),
+            InvertedFactor::Matrix(a) => placed(inverse(symbols, a.clone()), e),
+            InvertedFactor::Cayley { turn, minus, .. } => {
                 let across = match e.shape().is_vector() {
                     true => cross(turn.clone(), e.clone()),
                     false => placed(hat(turn.clone()), e.clone()),
@@ -210,14 +212,14 @@ mod tests {
         let (near, far) = (add(one(), back.clone()), add(q.clone(), one()));
         let turn = |_: &Expr| Some(c.clone());
         let whole = quotient(product([far.clone(), m.clone(), near.clone()]), h.clone());
-        let (number, factors) = Undone::factors(&s, &whole, turn).expect("a product");
+        let (number, factors) = InvertedFactor::factors(&s, &whole, turn).expect("a product");
         assert_eq!(number, h);
         let [first, second, third] = factors.as_slice() else {
             panic!("{factors:?}");
         };
-        assert!(matches!(first, Undone::Cayley { minus: false, .. }));
-        assert!(matches!(second, Undone::Matrix(_)));
-        assert!(matches!(third, Undone::Cayley { minus: true, .. }));
+        assert!(matches!(first, InvertedFactor::Cayley { minus: false, .. }));
+        assert!(matches!(second, InvertedFactor::Matrix(_)));
+        assert!(matches!(third, InvertedFactor::Cayley { minus: true, .. }));
         // The factor is removed from terms that begin with it, for any order of its terms.
         let asked = add(mul(add(one(), q.clone()), u.clone()), v.clone());
         let rest = scale(Rational::HALF, sub(v.clone(), cross(c.clone(), v.clone())));
@@ -232,7 +234,7 @@ mod tests {
         let seen = third.acted(&s, &mul(m.clone(), long), &v, &u);
         assert_eq!(seen, mul(m, add(c.clone(), u.clone())));
         // A matrix that varies is not inverted, and `Id - Q` is singular at zero velocity.
-        assert!(Undone::factors(&s, &mul(far, a), turn).is_none());
-        assert!(Undone::factors(&s, &sub(one(), q), turn).is_none());
+        assert!(InvertedFactor::factors(&s, &mul(far, a), turn).is_none());
+        assert!(InvertedFactor::factors(&s, &sub(one(), q), turn).is_none());
     }
 }

@@ -48,7 +48,7 @@ fn in_differences(
     s: &Symbols,
     e: &Expr,
     plain: impl Fn(&Expr) -> Expr,
-    size: impl Fn(&position_differences::Named) -> Expr,
+    size: impl Fn(&position_differences::NamedDifferences) -> Expr,
 ) -> Expr {
     match position_differences::named(s, e) {
         Some(named) => substitute(&named.symbols, &size(&named), &named.definitions),

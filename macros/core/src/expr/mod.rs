@@ -7,6 +7,7 @@ mod constant;
 mod determinant;
 mod diagonal;
 mod directional;
+mod display_form;
 mod factored;
 mod factored_inverse;
 mod function;
@@ -24,7 +25,6 @@ mod quaternion_components;
 pub(crate) mod range;
 mod rigid;
 pub mod shape;
-mod shown;
 mod simpler;
 pub(crate) mod spelling;
 mod substitute;
@@ -45,8 +45,9 @@ pub use constant::Constant;
 pub use determinant::{adjugate, adjugate_polynomial, det, with_plain_determinants};
 pub use diagonal::{diagonal, diagonal_of};
 pub use directional::directional;
+pub use display_form::{power_of_length, shown};
 pub use factored::{axial_of_outer, factored};
-pub use factored_inverse::Undone;
+pub use factored_inverse::InvertedFactor;
 pub use function::{Function, Parity};
 pub use functional::{
     Applied, BY_CASE, Functional, FunctionalId, Kind, Reach, derived, given, pull_back,
@@ -63,7 +64,6 @@ pub use rigid::{
     block, column, inclusion, is_motion, last_axis, paired_with_twists, part_of_six, quarter_turn,
     rows_in_parts, rows_of, stacked, taken_rows, twist, within,
 };
-pub use shown::{power_of_length, shown};
 pub use simpler::simpler;
 pub use substitute::{
     contains, contains_role, letters, rebuild, shift_time, substitute, with_children,

@@ -179,7 +179,7 @@ pub(crate) fn first(symbols: &Symbols, e: Expr) -> Expr {
 }
 
 /// An expression with letters for such differences.
-pub(crate) struct Named {
+pub(crate) struct NamedDifferences {
     /// The symbols of the expression, with these letters.
     pub(crate) symbols: Symbols,
     /// The expression.
@@ -189,11 +189,11 @@ pub(crate) struct Named {
 }
 
 /// The expression with a letter for each such difference. `None` if there are none.
-pub(crate) fn named(symbols: &Symbols, e: &Expr) -> Option<Named> {
+pub(crate) fn named(symbols: &Symbols, e: &Expr) -> Option<NamedDifferences> {
     let mut all = symbols.clone();
     let mut definitions = Vec::new();
     let whole = name(symbols, &mut all, &mut definitions, e);
-    (!definitions.is_empty()).then_some(Named {
+    (!definitions.is_empty()).then_some(NamedDifferences {
         symbols: all,
         whole,
         definitions,

@@ -1,7 +1,7 @@
 //! Numbers, vectors and matrices under addition: fields. The velocity of an edge is the increment `next(X) - X`, and
 //! variations are arbitrary arrays of the same shape. All frames are equal, so momenta are not transformed.
 
-use super::{Element, Kept, Record, Sizes, entries};
+use super::{Element, ElementStorage, Record, Sizes, entries};
 use crate::check::spec::Side;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
@@ -80,8 +80,8 @@ impl Record for Additive {
         false
     }
 
-    fn kept(&self) -> Kept {
-        Kept::Field(self.0)
+    fn kept(&self) -> ElementStorage {
+        ElementStorage::Field(self.0)
     }
 
     fn variation_words(&self) -> [String; 2] {

@@ -1,7 +1,7 @@
 //! Invertible matrices, GL(n). The Lie algebra consists of all matrices. Covectors are matrices with the pairing
 //! `tr(M^T X)`.
 
-use super::{Chart, Element, Kept, Record, Sizes, entries};
+use super::{Chart, Element, ElementStorage, Record, Sizes, entries};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
@@ -61,8 +61,8 @@ impl Record for GeneralLinear {
         false
     }
 
-    fn kept(&self) -> Kept {
-        Kept::Linear(self.0)
+    fn kept(&self) -> ElementStorage {
+        ElementStorage::Linear(self.0)
     }
 
     fn variation_words(&self) -> [String; 2] {

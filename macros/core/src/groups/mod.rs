@@ -196,7 +196,7 @@ impl Group {
 
 /// How the runtime stores the elements of a group.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Kept {
+pub enum ElementStorage {
     /// Rotations of space, by unit quaternions; covectors are vectors.
     Rotation,
     /// Orthogonal matrices; covectors are skew matrices.
@@ -365,7 +365,7 @@ pub trait Record {
     }
 
     /// How the runtime stores its elements.
-    fn kept(&self) -> Kept;
+    fn kept(&self) -> ElementStorage;
 
     /// The coordinates in which loops over sites store an element, if they do not support the group directly.
     fn chart(&self) -> Option<Chart> {

@@ -1,7 +1,7 @@
 //! Rigid motions of the plane, SE(2), as 3 x 3 homogeneous matrices. Letters of variation and covectors are vectors
 //! of three components, an angle stacked on a translation.
 
-use super::{Chart, Element, Euclidean, Kept, Names, Record, Sizes, THREE};
+use super::{Chart, Element, ElementStorage, Euclidean, Names, Record, Sizes, THREE};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
@@ -84,8 +84,8 @@ impl Record for PlaneMotions {
         Some(expr::block(s, g))
     }
 
-    fn kept(&self) -> Kept {
-        Kept::Coordinates(Names {
+    fn kept(&self) -> ElementStorage {
+        ElementStorage::Coordinates(Names {
             element: "PlaneMotion",
             momentum: "PlaneImpulse",
             coordinates: 3,

@@ -1,7 +1,7 @@
 //! Rigid motions of space, SE(3), as 4 x 4 homogeneous matrices. Letters of variation and covectors are vectors of
 //! six components, an angular part stacked on a linear part.
 
-use super::{Chart, Element, Euclidean, Kept, Names, Record, SIX, Sizes, THREE};
+use super::{Chart, Element, ElementStorage, Euclidean, Names, Record, SIX, Sizes, THREE};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
@@ -83,8 +83,8 @@ impl Record for RigidMotions {
         Some(expr::block(s, g))
     }
 
-    fn kept(&self) -> Kept {
-        Kept::Coordinates(Names {
+    fn kept(&self) -> ElementStorage {
+        ElementStorage::Coordinates(Names {
             element: "RigidMotion",
             momentum: "Impulse",
             coordinates: 6,

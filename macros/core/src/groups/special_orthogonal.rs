@@ -1,7 +1,7 @@
 //! Rotations, SO(n). The Lie algebra consists of the skew matrices. In three dimensions, covectors and velocities in
 //! continuous time are axial vectors, otherwise skew matrices.
 
-use super::{Chart, Element, Kept, Record, Sizes, THREE};
+use super::{Chart, Element, ElementStorage, Record, Sizes, THREE};
 use crate::algebra::Rational;
 use crate::derive::bracket::skew_entries;
 use crate::expr::shape::{Dim, Shape, Structure};
@@ -125,10 +125,10 @@ impl Record for SpecialOrthogonal {
         self.is_of_space().then(|| g.clone())
     }
 
-    fn kept(&self) -> Kept {
+    fn kept(&self) -> ElementStorage {
         match self.is_of_space() {
-            true => Kept::Rotation,
-            false => Kept::Orthogonal(self.0),
+            true => ElementStorage::Rotation,
+            false => ElementStorage::Orthogonal(self.0),
         }
     }
 

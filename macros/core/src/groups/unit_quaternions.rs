@@ -1,7 +1,7 @@
 //! Unit quaternions, SU(2), as 4 x 4 matrices of left multiplication. Letters of variation and covectors are vectors.
 //! The element of the Lie algebra is half the vector, so that the coordinates are the angular velocity of space.
 
-use super::{Element, Kept, Record, Sizes, THREE};
+use super::{Element, ElementStorage, Record, Sizes, THREE};
 use crate::algebra::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
@@ -60,8 +60,8 @@ impl Record for UnitQuaternions {
         Some(expr::rotation(s, g.clone()))
     }
 
-    fn kept(&self) -> Kept {
-        Kept::Quaternion
+    fn kept(&self) -> ElementStorage {
+        ElementStorage::Quaternion
     }
 
     fn variation_words(&self) -> [String; 2] {

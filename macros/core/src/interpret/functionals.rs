@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// A request for a value, a derivative or a pull-back. Arguments are counted from 0.
 #[derive(Clone, Copy, Debug)]
-pub struct Asked<'a> {
+pub struct FunctionalRequest<'a> {
     /// The arguments.
     pub arguments: &'a [Matrix],
     /// The argument and the direction of each derivative.
@@ -18,7 +18,7 @@ pub struct Asked<'a> {
 }
 
 /// The function that answers a request. None if it lacks the derivative.
-type Answers = dyn Fn(&Asked) -> Option<Matrix> + Send + Sync;
+type Answers = dyn Fn(&FunctionalRequest) -> Option<Matrix> + Send + Sync;
 
 /// Functions by name.
 #[derive(Clone, Default)]
@@ -37,7 +37,7 @@ impl Assignment {
     pub fn define(
         &mut self,
         name: &str,
-        f: impl Fn(&Asked) -> Option<Matrix> + Send + Sync + 'static,
+        f: impl Fn(&FunctionalRequest) -> Option<Matrix> + Send + Sync + 'static,
     ) {
         let table = &mut self.functionals.0;
         table.retain(|(known, _)| known != name);
@@ -60,7 +60,7 @@ impl Assignment {
         let along: Vec<(usize, Matrix)> =
             along.map(|(i, x)| (usize::from(*i), x.clone())).collect();
         let seed = call.back.zip(rest.last());
-        let asked = Asked {
+        let asked = FunctionalRequest {
             arguments,
             along: &along,
             back: seed.map(|(i, seed)| (usize::from(i), seed)),

@@ -3,7 +3,7 @@
 
 use super::mesh::Mesh;
 use crate::diagnostic::{Diagnostic, Errors, Place, closest};
-use crate::syntax::ast::{Alternative, At, Extent, Kindred, Model, Name, Site, Statement};
+use crate::syntax::ast::{Alternative, At, Extent, Model, Name, Site, SizedName, Statement};
 use std::collections::BTreeSet;
 
 /// The kinds of sites of a label.
@@ -59,7 +59,7 @@ pub struct Quantity {
     /// Its kind.
     pub kind: Kind,
     /// Its shape or group.
-    pub shape: Kindred,
+    pub shape: SizedName,
     /// The amount by which it grows once around a ring.
     pub offset: Option<Name>,
     /// For positions of particles, the domain of its values.
@@ -290,7 +290,7 @@ impl Lattice {
         self.numbers.insert(time_step);
     }
 
-    fn shaped(&mut self, names: &[Name], shape: &Kindred) {
+    fn shaped(&mut self, names: &[Name], shape: &SizedName) {
         if shape.name.text == "Real" {
             self.numbers.extend(names.iter().map(|n| n.text.clone()));
         }
@@ -371,7 +371,7 @@ impl Lattice {
     pub(super) fn quantities_at(
         &mut self,
         names: &[Name],
-        shape: &Kindred,
+        shape: &SizedName,
         at: Option<&At>,
         kind: Kind,
         errors: &mut Errors,

@@ -29,12 +29,12 @@ pub struct Mesh {
     /// Its arguments in order. The first is the quantity it depends on; the others are parameters.
     pub arguments: Vec<Name>,
     /// Its known properties.
-    pub kind: Known,
+    pub kind: FunctionalKind,
 }
 
 /// The known properties of a functional.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Known {
+pub enum FunctionalKind {
     /// It belongs to cells and particles, and is invariant when all positions move by the same amount.
     Cells,
     /// It belongs to grids, made for the dimension of the domain.
@@ -51,12 +51,12 @@ struct Supplied {
     /// How many parameters it takes.
     data: usize,
     /// Whether it is for cells and particles in the plane, or for grids.
-    kind: Known,
+    kind: FunctionalKind,
 }
 
 /// A functional of cells in the plane, which is invariant under equal shifts of all positions.
 const fn cells(name: &'static str, data: usize) -> Supplied {
-    let (of_functional, kind) = (false, Known::Cells);
+    let (of_functional, kind) = (false, FunctionalKind::Cells);
     Supplied {
         name,
         of_functional,
@@ -67,7 +67,7 @@ const fn cells(name: &'static str, data: usize) -> Supplied {
 
 /// A functional on a grid.
 const fn grid(name: &'static str, of_functional: bool) -> Supplied {
-    let (data, kind) = (1, Known::Grid);
+    let (data, kind) = (1, FunctionalKind::Grid);
     Supplied {
         name,
         of_functional,
@@ -281,7 +281,7 @@ impl Lattice {
                 );
             }
         }
-        let mesh = |path: String, kind: Known| Mesh {
+        let mesh = |path: String, kind: FunctionalKind| Mesh {
             name: name.clone(),
             path,
             of: of.clone(),
@@ -289,7 +289,7 @@ impl Lattice {
             kind,
         };
         if path.text.contains("::") {
-            return Ok(mesh(path.text.clone(), Known::Path));
+            return Ok(mesh(path.text.clone(), FunctionalKind::Path));
         }
         let Some(known) = SUPPLIED.iter().find(|s| s.name == path.text) else {
             let d = Diagnostic::new(
@@ -362,7 +362,7 @@ impl Lattice {
             false => "a field",
         };
         let write = || example(&path.text);
-        let of_cells = known.kind == Known::Cells;
+        let of_cells = known.kind == FunctionalKind::Cells;
         if known.of_functional != matches!(of, Source::Functional(_)) {
             let message = format!("the first argument of `{}` must be {what}", path.text);
             return refused(path.place, message, write());

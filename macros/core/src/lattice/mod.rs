@@ -3,26 +3,26 @@
 //! like any other model. The equations printed for every number of sites are recovered from a short chain, on which
 //! each equation already has all its neighbours.
 
-mod choice;
+mod chain_config;
 mod declared;
 mod mesh;
 mod names;
 mod parts;
-mod put;
 mod range;
+mod substitution;
 mod summands;
 #[cfg(test)]
 mod tests;
 mod unfold;
 pub mod value;
 
-pub use choice::{Choice, Refusal};
+pub use chain_config::{ChainConfig, Refusal};
 pub use declared::{Kind, Label, Lattice, Quantity, Sites};
-pub use mesh::{Known, Mesh, Source};
+pub use mesh::{FunctionalKind, Mesh, Source};
 pub use names::{Copied, copy_name};
 pub(crate) use parts::holds_sums;
-pub(crate) use put::any_name;
 pub use range::Range;
+pub(crate) use substitution::any_name;
 pub use unfold::{ExpandedModel, StatedHold, StatedTotal, Summand, Summed, unfold};
 pub(crate) use unfold::{LARGEST, definitions, inlined};
 

@@ -1,6 +1,6 @@
 //! The range of a term: the sites at which all its letters exist.
 
-use super::choice::Choice;
+use super::chain_config::ChainConfig;
 use super::declared::{Lattice, Sites};
 use super::parts::{LINEAR, has_sum, parts};
 use crate::diagnostic::{Diagnostic, Place};
@@ -259,7 +259,7 @@ fn summed_over(sites: &Expression) -> Result<Sites, Diagnostic> {
 
 impl Reach {
     /// The range of a term on this chain; `None` if the term is not summed.
-    pub(super) fn range(&self, lattice: &Lattice, choice: &Choice) -> Option<Range> {
+    pub(super) fn range(&self, lattice: &Lattice, choice: &ChainConfig) -> Option<Range> {
         let label = self.label?;
         let whole = Range {
             label,

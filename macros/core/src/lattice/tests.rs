@@ -1,6 +1,6 @@
 //! Compares expanded chains with models of several bodies written by hand, and checks rejected models.
 
-use super::{Choice, Lattice};
+use super::{ChainConfig, Lattice};
 use crate::derive::warnings::Topic;
 use crate::document;
 use crate::pipeline::{derive_lattice, derive_source, parse_source, representative};
@@ -299,7 +299,7 @@ fn what_is_too_large_or_does_not_move_is_refused() {
     let refused = |source: &str, count: usize, ends: [&str; 2]| {
         let model = parse_source(source).unwrap();
         let lattice = Lattice::read(&model).unwrap();
-        let choice = Choice::representative(&lattice, 1);
+        let choice = ChainConfig::representative(&lattice, 1);
         let choice = choice.with_count(&lattice, "i", count).unwrap();
         let choice = choice.with_end(&lattice, false, ends[0]).unwrap();
         let choice = choice.with_end(&lattice, true, ends[1]).unwrap();
@@ -315,7 +315,7 @@ fn what_is_too_large_or_does_not_move_is_refused() {
 fn a_choice_is_one_of_those_stated() {
     let model = parse_source(CHAIN).unwrap();
     let lattice = Lattice::read(&model).unwrap();
-    let choice = Choice::representative(&lattice, 1);
+    let choice = ChainConfig::representative(&lattice, 1);
     assert!(choice.clone().with_count(&lattice, "j", 3).is_err());
     assert!(choice.clone().with_count(&lattice, "i", 0).is_err());
     assert!(choice.clone().with_end(&lattice, true, "spring").is_err());
@@ -323,7 +323,7 @@ fn a_choice_is_one_of_those_stated() {
     let model = parse_source(&CHAIN.replace("periodic;", "")).unwrap();
     let lattice = Lattice::read(&model).unwrap();
     assert!(
-        Choice::representative(&lattice, 1)
+        ChainConfig::representative(&lattice, 1)
             .with_ring(&lattice)
             .is_err()
     );

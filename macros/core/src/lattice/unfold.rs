@@ -6,28 +6,30 @@ mod holds;
 mod lagrangian;
 mod mesh;
 mod motionless;
-mod pinned;
+mod prescribed;
 #[cfg(test)]
-mod pinned_tests;
+mod prescribed_tests;
 mod totals;
-mod warned;
+mod warnings;
 #[cfg(test)]
-mod warned_tests;
+mod warnings_tests;
 
-use super::choice::Choice;
+use super::chain_config::ChainConfig;
 use super::declared::{Lattice, Quantity, Sites};
 use super::names::{Copied, copy, copy_name};
-use super::put::{Pinned, SiteSubstitution, Still, any_name};
 use super::range::{Range, reach};
+use super::substitution::{FixedCopy, PrescribedCopies, SiteSubstitution, any_name};
 use crate::check::circular_definitions;
 use crate::derive::warnings::Warning;
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::expr::symbol::ascii;
-use crate::syntax::ast::{Alternative, Expression, Extent, Kind, Kindred, Model, Name, Statement};
+use crate::syntax::ast::{
+    Alternative, Expression, Extent, Kind, Model, Name, SizedName, Statement,
+};
 pub(crate) use definitions::{definitions, inlined};
 use std::collections::BTreeMap;
 pub use totals::{StatedTotal, Summed};
-use warned::without_a_ring;
+use warnings::without_a_ring;
 
 /// The largest expanded Lagrangian, in quantities, numbers and operations.
 pub(crate) const LARGEST: usize = 60_000;
@@ -87,14 +89,18 @@ pub struct ExpandedModel {
     /// Warnings about terms that are probably not intended.
     pub warnings: Vec<Warning>,
     /// The names in all statements, including the end conditions that were not chosen.
-    named: warned::Named,
+    named: warnings::StatementNames,
 }
 
 /// Expands a model.
 ///
 /// # Errors
 /// Mistakes in the model, with the tokens where they occur.
-pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<ExpandedModel, Errors> {
+pub fn unfold(
+    model: &Model,
+    lattice: &Lattice,
+    choice: &ChainConfig,
+) -> Result<ExpandedModel, Errors> {
     let mut errors = Errors::new();
     circular_definitions(model, &mut errors);
     errors.propagate()?;
@@ -114,7 +120,7 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Expan
         lattice,
         choice,
         lets: &lets,
-        pinned: Pinned::new(),
+        pinned: PrescribedCopies::new(),
         errors: Errors::new(),
         out: ExpandedModel {
             model: Model {
@@ -128,8 +134,8 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Expan
             summands: Vec::new(),
             holds: Vec::new(),
             totals: Vec::new(),
-            warnings: warned::without_use(model),
-            named: warned::Named::of(model),
+            warnings: warnings::without_use(model),
+            named: warnings::StatementNames::of(model),
         },
     };
     writer.pin(model);
@@ -155,15 +161,15 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Expan
 
 struct Writer<'a> {
     lattice: &'a Lattice,
-    choice: &'a Choice,
+    choice: &'a ChainConfig,
     lets: &'a BTreeMap<String, Expression>,
-    pinned: Pinned,
+    pinned: PrescribedCopies,
     errors: Errors,
     out: ExpandedModel,
 }
 
 impl<'a> Writer<'a> {
-    fn put(&self, site: isize) -> SiteSubstitution<'_> {
+    fn substitution(&self, site: isize) -> SiteSubstitution<'_> {
         SiteSubstitution {
             lattice: self.lattice,
             choice: self.choice,
@@ -292,13 +298,13 @@ impl<'a> Writer<'a> {
     }
 
     fn declare_number(&mut self, name: &Name, docs: &[String]) {
-        let shape = Kindred::number(name.place);
+        let shape = SizedName::number(name.place);
         let names = vec![name.clone()];
         let at = None;
         self.push(Statement::Param { names, shape, at }, docs);
     }
 
-    fn declare(&mut self, name: &Name, shape: &Kindred) {
+    fn declare(&mut self, name: &Name, shape: &SizedName) {
         let known = |s: &Statement| match s {
             Statement::Param { names, .. } => names.iter().any(|n| n.text == name.text),
             _ => false,
@@ -364,7 +370,7 @@ impl<'a> Writer<'a> {
             for site in 0..self.choice.sites_of(self.lattice, q) {
                 let own = copy_name(&q.name.text, site);
                 let one = match self.pinned.get(&own) {
-                    Some(Still::Given) => {
+                    Some(FixedCopy::Given) => {
                         let (names, shape) = (vec![self.copied(q, site)], q.shape.clone());
                         Statement::Param {
                             names,
@@ -399,7 +405,10 @@ impl<'a> Writer<'a> {
                 let index = isize::try_from(site).ok()?;
                 let definition = match definition {
                     None => None,
-                    Some(value) => match self.put(index).put(&inlined(value, self.lets)) {
+                    Some(value) => match self
+                        .substitution(index)
+                        .substitute(&inlined(value, self.lets))
+                    {
                         Ok(e) => Some(e),
                         Err(d) => {
                             self.errors.push(*d);
@@ -459,7 +468,7 @@ impl<'a> Writer<'a> {
             let Ok(index) = isize::try_from(site) else {
                 continue;
             };
-            match self.put(index).put(value) {
+            match self.substitution(index).substitute(value) {
                 Ok(value) => {
                     let stated = Statement::Constraint {
                         name: own,
@@ -508,7 +517,7 @@ impl<'a> Writer<'a> {
         };
         let mut out = Vec::new();
         for site in range.indices(self.choice.count(range.label)) {
-            let put = |e| self.put(site).put(e).ok();
+            let put = |e| self.substitution(site).substitute(e).ok();
             out.extend(put(left).zip(put(right)));
         }
         out

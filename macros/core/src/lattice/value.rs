@@ -63,7 +63,7 @@ impl SiteData {
     /// # Errors
     /// As [`SiteData::value`]; an undefined slope.
     pub fn value_and_slopes(&self, of: &Names<'_>, slope: &Slopes<'_>) -> Result<f64, String> {
-        value(&self.expression, &Given { of, slope })
+        value(&self.expression, &ValuesAndSlopes { of, slope })
     }
 
     /// The names in it, including the names in slopes.
@@ -103,7 +103,7 @@ pub type Slopes<'a> = dyn Fn(&str, u64) -> Option<f64> + 'a;
 /// The function `slope`, the derivative of a mesh along a direction.
 const SLOPE: &str = "slope";
 
-struct Given<'a> {
+struct ValuesAndSlopes<'a> {
     of: &'a Names<'a>,
     slope: &'a Slopes<'a>,
 }
@@ -130,7 +130,7 @@ fn slope_of(arguments: &[Expression]) -> Result<(&str, u64), String> {
     Ok((name, along))
 }
 
-fn value(e: &Expression, of: &Given<'_>) -> Result<f64, String> {
+fn value(e: &Expression, of: &ValuesAndSlopes<'_>) -> Result<f64, String> {
     Ok(match &e.kind {
         Kind::Number(q) => q.value(),
         Kind::Constant(c) => c.value(),

@@ -11,7 +11,7 @@ use crate::derive::balance::{pairing, shorter};
 use crate::derive::holds;
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
-use crate::groups::Kept;
+use crate::groups::ElementStorage;
 use crate::lattice::{Lattice, Sites, StatedHold, StatedTotal};
 use crate::print::formula::Formula;
 use crate::syntax::ast::{self as syntax, Expression};
@@ -210,8 +210,8 @@ fn admitted(
     };
     let c = &own.d.spec.configurations[mover.index];
     match c.group.kept() {
-        Kept::Rotation => Ok(()),
-        Kept::Field(shape) if shape.is_scalar() || shape.is_vector() => Ok(()),
+        ElementStorage::Rotation => Ok(()),
+        ElementStorage::Field(shape) if shape.is_scalar() || shape.is_vector() => Ok(()),
         _ => refused(format!(
             "`{name}` constrains `{}`: chains support constraints on numbers, vectors and rotations",
             reach.on

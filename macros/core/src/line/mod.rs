@@ -19,12 +19,12 @@ mod velocity;
 mod velocity_coupling;
 
 pub use chain_constraint::{ChainConstraint, ConstraintResponse, Matrix, Reach};
-pub use coordinates::{By, Coordinates, restated};
+pub use coordinates::{CoordinateKind, Coordinates, restated};
 pub use functional_force::FunctionalForce;
 pub use inertia::{Inertia, of_site as inertia_of_site};
 pub use neighbour_force::{EndTerm, Force, NeighbourForce};
 pub use signs::{Signs, Wall, signs};
-pub use site::{BASE, Sited};
+pub use site::{BASE, SiteCopy};
 pub use site_model::{SiteModel, SiteSolve, SiteUnknown};
 pub use total::{Density, Total, totals_on};
 pub use velocity_coupling::{Part, VelocityCoupling};
@@ -34,7 +34,7 @@ use crate::derive::Outline;
 use crate::diagnostic::Errors;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr};
-use crate::lattice::{Choice, ExpandedModel, Lattice, any_name};
+use crate::lattice::{ChainConfig, ExpandedModel, Lattice, any_name};
 use crate::pipeline;
 use crate::syntax::ast::{Model, NodeRule, Statement};
 
@@ -74,7 +74,7 @@ pub struct Line {
 /// One choice of sites and ends, expanded.
 pub struct RepresentativeChain {
     /// The choice.
-    pub choice: Choice,
+    pub choice: ChainConfig,
     /// The expanded model of that choice.
     pub unfolded: ExpandedModel,
     /// The variations of its copies, and their equations.
@@ -270,7 +270,7 @@ impl RepresentativeChain {
 fn written(
     model: &Model,
     lattice: &Lattice,
-    choice: Choice,
+    choice: ChainConfig,
 ) -> Result<RepresentativeChain, Errors> {
     let (unfolded, d) = pipeline::outline_lattice(model, lattice, &choice)?;
     Ok(RepresentativeChain {

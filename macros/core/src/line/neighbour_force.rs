@@ -12,7 +12,7 @@ use crate::derive::reduction::is_singular;
 use crate::expr::shape::Shape;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
-use crate::lattice::{Choice, Lattice, Sites, Summand};
+use crate::lattice::{ChainConfig, Lattice, Sites, Summand};
 use crate::syntax::ast::Model;
 use crate::{algebra::Algebra, check};
 
@@ -136,7 +136,7 @@ pub(super) fn pulls(
         if !edge.is_zero()
             && let Some(placed) = placed(lattice, part, summand, &edge)?
         {
-            velocity_coupling::put(&mut ties, part, placed);
+            velocity_coupling::add_coupling(&mut ties, part, placed);
         }
         if nodal.is_zero() {
             continue;
@@ -372,7 +372,7 @@ pub(super) fn collecting(
 pub(super) fn ends(
     model: &Model,
     lattice: &Lattice,
-    open: &Choice,
+    open: &ChainConfig,
 ) -> Result<Vec<EndTerm>, Refused> {
     let mut out = Vec::new();
     for last in [false, true] {

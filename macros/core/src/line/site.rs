@@ -18,14 +18,14 @@ const VELOCITY: &str = "velocity of ";
 
 /// A copy of a quantity, the node momentum of a configuration, or the velocity of a field.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub struct Sited {
+pub struct SiteCopy {
     /// The name of the quantity as stated.
     pub of: String,
     /// Its site.
     pub site: usize,
 }
 
-impl Sited {
+impl SiteCopy {
     /// The name of the declared quantity.
     pub fn plain(&self) -> &str {
         let of = self.momentum_of().or_else(|| self.velocity_of());
@@ -45,11 +45,11 @@ impl Sited {
 
 impl RepresentativeChain {
     /// The quantity and the site of a letter, if it is a copy.
-    pub fn sited(&self, symbol: SymbolId) -> Option<Sited> {
+    pub fn sited(&self, symbol: SymbolId) -> Option<SiteCopy> {
         let name = &self.d.letters.symbols.get(symbol).name;
         if let Some(copy) = self.unfolded.copy(name) {
             let (of, site) = (copy.of.clone(), copy.site);
-            return Some(Sited { of, site });
+            return Some(SiteCopy { of, site });
         }
         let momenta = &self.d.letters.node_momentum;
         let all = &self.d.spec.configurations;
@@ -63,7 +63,7 @@ impl RepresentativeChain {
         let c = all.get(i)?;
         let element = &self.d.letters.symbols.get(c.element).name;
         let copy = self.unfolded.copy(element)?;
-        Some(Sited {
+        Some(SiteCopy {
             of: format!("{what}{}", copy.of),
             site: copy.site,
         })

@@ -14,9 +14,9 @@ use crate::derive::{self, Derivation, Outline};
 use crate::diagnostic::Errors;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter};
-use crate::groups::{self, Kept};
-use crate::lattice::{Kind as Standing, Lattice, Sites, definitions, inlined};
-use crate::syntax::ast::{Expression, Kind, Kindred, Model, Name, Statement};
+use crate::groups::{self, ElementStorage};
+use crate::lattice::{Kind as QuantityKind, Lattice, Sites, definitions, inlined};
+use crate::syntax::ast::{Expression, Kind, Model, Name, SizedName, Statement};
 
 /// The model of one site.
 pub struct SiteModel {
@@ -108,7 +108,7 @@ pub(super) fn lone(
     let mut kinds: Vec<(usize, Sites)> = Vec::new();
     for q in &lattice.quantities {
         let at = (q.label, q.sites);
-        if q.kind == Standing::Configuration && !kinds.contains(&at) {
+        if q.kind == QuantityKind::Configuration && !kinds.contains(&at) {
             kinds.push(at);
         }
     }
@@ -325,7 +325,7 @@ fn is_empty(statement: &Statement) -> bool {
 fn number(name: &Name) -> Statement {
     Statement::Param {
         names: vec![name.clone()],
-        shape: Kindred::number(name.place),
+        shape: SizedName::number(name.place),
         at: None,
     }
 }
@@ -347,10 +347,10 @@ fn how(
         }
         let group = c.group.name(&|n| s.dim_text(n));
         Err(Refused::Form(match (c.group.kept(), c.side) {
-            (Kept::Rotation | Kept::Quaternion, Side::Spatial) => format!(
+            (ElementStorage::Rotation | ElementStorage::Quaternion, Side::Spatial) => format!(
                 "`{name}` is spatial, `next({name}) = ω*{name}`: loops over sites support rotations on the body side"
             ),
-            (Kept::Quaternion, Side::Body) => format!(
+            (ElementStorage::Quaternion, Side::Body) => format!(
                 "the velocity of `{name}` is found by Newton's method: loops over sites support unit quaternions whose kinetic \
                  energy is a quadratic form of im and a multiple of re, with parameters as coefficients"
             ),
@@ -380,11 +380,11 @@ fn how(
     };
     let alone = c.side.is_body() && block.len() == 1;
     match (c.group.kept(), &d.solve.riccati[i]) {
-        (Kept::Rotation, StepEquation::Exact(mv)) if alone => turning(mv, None),
-        (Kept::Quaternion, StepEquation::Quaternionic(q)) if alone => {
+        (ElementStorage::Rotation, StepEquation::Exact(mv)) if alone => turning(mv, None),
+        (ElementStorage::Quaternion, StepEquation::Quaternionic(q)) if alone => {
             turning(&q.edge, Some(&q.real))
         }
-        (Kept::Field(_), StepEquation::Linear(form)) if block.len() == 1 => {
+        (ElementStorage::Field(_), StepEquation::Linear(form)) if block.len() == 1 => {
             let b = &d.balances[i];
             let straight = expr::sub(b.edge_in.clone(), b.edge_out.clone());
             let free = !moving(&b.node_in) && !moving(&b.node_out);
@@ -396,7 +396,7 @@ fn how(
                 false => system(d, i, block),
             }
         }
-        (Kept::Field(_), _) => system(d, i, block),
+        (ElementStorage::Field(_), _) => system(d, i, block),
         _ => together(),
     }
 }

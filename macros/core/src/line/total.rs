@@ -10,7 +10,9 @@ use crate::document::default_choice;
 use crate::expr::shape::Shape;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
-use crate::lattice::{Choice, ExpandedModel, Known, Lattice, Mesh, Sites, Source, holds_sums};
+use crate::lattice::{
+    ChainConfig, ExpandedModel, FunctionalKind, Lattice, Mesh, Sites, Source, holds_sums,
+};
 use crate::pipeline;
 use crate::print::{Format, Style, expression};
 use crate::syntax::ast::{Extent, Model};
@@ -98,7 +100,7 @@ pub(super) fn totals(
     lattice: &Lattice,
     part: &RepresentativeChain,
 ) -> Result<Vec<Total>, Refused> {
-    let written = |choice: Choice| -> Result<Vec<Total>, Refused> {
+    let written = |choice: ChainConfig| -> Result<Vec<Total>, Refused> {
         let (unfolded, d) = pipeline::derive_lattice(model, lattice, &choice)?;
         let whole = RepresentativeChain {
             choice,
@@ -107,7 +109,7 @@ pub(super) fn totals(
         };
         Ok(of_part(lattice, &whole, &d.invariants, part))
     };
-    let on = |choice: Choice| -> Result<Vec<Total>, Refused> {
+    let on = |choice: ChainConfig| -> Result<Vec<Total>, Refused> {
         let own = written(choice.clone())?;
         // A constraint on a sum may introduce the number of sites into a total, which then differs on a longer chain.
         match lattice
@@ -142,7 +144,7 @@ pub(super) fn totals(
 }
 
 /// These end conditions with more sites; the number of sites of a ring stays odd.
-fn longer(mut choice: Choice, line: usize) -> Choice {
+fn longer(mut choice: ChainConfig, line: usize) -> ChainConfig {
     if let Some(count) = choice.counts.get_mut(line) {
         *count += if choice.periodic { 2 } else { 1 };
     }
@@ -150,7 +152,7 @@ fn longer(mut choice: Choice, line: usize) -> Choice {
 }
 
 /// For each other set of prescribed configurations, the choice of ends that adds the fewest terms.
-fn holding_others(lattice: &Lattice, choice: &Choice) -> Vec<Choice> {
+fn holding_others(lattice: &Lattice, choice: &ChainConfig) -> Vec<ChainConfig> {
     if choice.periodic {
         return Vec::new();
     }
@@ -176,7 +178,7 @@ fn holding_others(lattice: &Lattice, choice: &Choice) -> Vec<Choice> {
         let each = lasts.iter().filter_map(move |(held_last, last)| {
             let ends = [first, *last];
             let none = held_first.is_empty() && held_last.is_empty();
-            (!none && ends != choice.ends).then(|| Choice {
+            (!none && ends != choice.ends).then(|| ChainConfig {
                 ends,
                 ..choice.clone()
             })
@@ -187,7 +189,7 @@ fn holding_others(lattice: &Lattice, choice: &Choice) -> Vec<Choice> {
 }
 
 /// The end conditions that prescribe the same configurations as the chosen ones.
-fn holding_alike(lattice: &Lattice, choice: &Choice) -> [Vec<usize>; 2] {
+fn holding_alike(lattice: &Lattice, choice: &ChainConfig) -> [Vec<usize>; 2] {
     [0, 1].map(|end| {
         let given = |i: usize| -> BTreeSet<&str> {
             let own = lattice.ends[end].get(i).into_iter();
@@ -281,7 +283,7 @@ fn is_pushed_evenly(
         .meshes
         .iter()
         .filter(|m| of_field(m))
-        .all(|m| m.kind == Known::Cells);
+        .all(|m| m.kind == FunctionalKind::Cells);
     let through = |e: &Expr| {
         let mut all = Vec::new();
         outside(&part.d.letters.symbols, e, &mut all);
@@ -361,7 +363,7 @@ fn of_part(
 /// The totals of an expanded chain, by name, with the text of their densities. A total includes every site.
 pub fn totals_on(
     lattice: &Lattice,
-    choice: &Choice,
+    choice: &ChainConfig,
     unfolded: &ExpandedModel,
     d: &Derivation,
 ) -> Vec<(String, String)> {

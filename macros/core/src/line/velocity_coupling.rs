@@ -48,7 +48,11 @@ pub struct Part {
 }
 
 /// Adds a term to the coupling with the same range.
-pub(super) fn put(ties: &mut Vec<VelocityCoupling>, part: &RepresentativeChain, placed: Placed) {
+pub(super) fn add_coupling(
+    ties: &mut Vec<VelocityCoupling>,
+    part: &RepresentativeChain,
+    placed: Placed,
+) {
     let s = &part.d.letters.symbols;
     let term = expr::substitute(s, &placed.term, &part.d.spec.end_of_edge());
     let mut known = ties.iter_mut();

@@ -33,18 +33,18 @@ pub(super) enum Level {
 
 /// A layout and its precedence.
 #[derive(Clone, Debug)]
-pub(super) struct Laid {
+pub(super) struct RankedLayout {
     pub layout: Layout,
     pub level: Level,
 }
 
-impl Laid {
-    pub fn new(layout: Layout, level: Level) -> Laid {
-        Laid { layout, level }
+impl RankedLayout {
+    pub fn new(layout: Layout, level: Level) -> RankedLayout {
+        RankedLayout { layout, level }
     }
 
-    pub fn atom(layout: Layout) -> Laid {
-        Laid::new(layout, Level::Atom)
+    pub fn atom(layout: Layout) -> RankedLayout {
+        RankedLayout::new(layout, Level::Atom)
     }
 
     fn bracketed_unless(self, bare: bool) -> Layout {
@@ -98,7 +98,7 @@ impl Laid {
     }
 
     /// With a superscript.
-    pub fn raised(self, sup: Layout) -> Laid {
-        Laid::atom(self.base().superscript(sup))
+    pub fn raised(self, sup: Layout) -> RankedLayout {
+        RankedLayout::atom(self.base().superscript(sup))
     }
 }

@@ -53,7 +53,7 @@ fn statement(line: &str, limit: usize, measure: &dyn Fn(char) -> usize) -> Vec<S
 }
 
 /// A possible break.
-struct Cut {
+struct LineBreak {
     /// The byte offset before which the line breaks.
     at: usize,
     /// The number of open brackets there.
@@ -67,11 +67,11 @@ fn cheapest(
     room: usize,
     limit: usize,
     measure: &dyn Fn(char) -> usize,
-) -> Option<Cut> {
+) -> Option<LineBreak> {
     let mut depth = open;
     let mut used = 0;
     let mut quoted = false;
-    let mut best: Option<(usize, Cut)> = None;
+    let mut best: Option<(usize, LineBreak)> = None;
     for (at, c) in rest.char_indices() {
         let (before, after) = rest.split_at(at);
         let inside = match quoted {
@@ -86,7 +86,7 @@ fn cheapest(
             let percent = DEPTH_COST * depth + if inside { INSIDE_COST } else { 0 };
             let cost = empty + percent * limit / 100;
             if best.as_ref().is_none_or(|(least, _)| cost <= *least) {
-                best = Some((cost, Cut { at, depth }));
+                best = Some((cost, LineBreak { at, depth }));
             }
         }
         used += measure(c);

@@ -26,14 +26,14 @@ enum Tightness {
     Operand,
 }
 
-struct Written {
+struct RankedText {
     text: String,
     tightness: Tightness,
 }
 
-impl Written {
-    fn new(text: String, tightness: Tightness) -> Written {
-        Written { text, tightness }
+impl RankedText {
+    fn new(text: String, tightness: Tightness) -> RankedText {
+        RankedText { text, tightness }
     }
 
     fn at_least(self, wanted: Tightness) -> String {
@@ -51,9 +51,9 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    fn write(&self, e: &Expr) -> Written {
+    fn write(&self, e: &Expr) -> RankedText {
         use Tightness::{Minus, Operand, Postfix, Product, Sum};
-        let operand = |text: String| Written::new(text, Operand);
+        let operand = |text: String| RankedText::new(text, Operand);
         match e.node() {
             Node::Number(q) => {
                 let text = rational(*q);
@@ -62,7 +62,7 @@ impl Writer<'_> {
                     (false, 1) => Operand,
                     (false, _) => Product,
                 };
-                Written::new(text, tightness)
+                RankedText::new(text, tightness)
             }
             Node::Constant(c) => operand(c.to_string()),
             Node::Letter(at) => {
@@ -80,13 +80,13 @@ impl Writer<'_> {
             Node::Unit(_, axis) => operand(format!("E{}", u32::from(*axis) + 1)),
             // Only derived expressions contain inclusions; statements do not.
             Node::Inclusion(..) => operand("ι".to_owned()),
-            Node::Sum(terms) => Written::new(self.sum(terms), Sum),
-            Node::Neg(a) => Written::new(self.negated(a), Minus),
-            Node::Product(factors) => Written::new(self.product(factors), Product),
-            Node::Quotient(a, b) => Written::new(self.quotient(a, b), Product),
+            Node::Sum(terms) => RankedText::new(self.sum(terms), Sum),
+            Node::Neg(a) => RankedText::new(self.negated(a), Minus),
+            Node::Product(factors) => RankedText::new(self.product(factors), Product),
+            Node::Quotient(a, b) => RankedText::new(self.quotient(a, b), Product),
             Node::Power(a, q) => self.power(a, *q),
-            Node::Transpose(a) => Written::new(format!("{}^T", self.base(a)), Postfix),
-            Node::Inverse(a) => Written::new(format!("{}^-1", self.base(a)), Postfix),
+            Node::Transpose(a) => RankedText::new(format!("{}^T", self.base(a)), Postfix),
+            Node::Inverse(a) => RankedText::new(format!("{}^-1", self.base(a)), Postfix),
             Node::Trace(a) => operand(self.call("tr", &[a])),
             Node::Det(a) => operand(self.call("det", &[a])),
             // The language does not have a word for the adjugate, and statements do not contain one.
@@ -94,7 +94,7 @@ impl Writer<'_> {
                 operand(format!("(det({})*{}^-1)", self.write(a).text, self.base(a)))
             }
             Node::Dot(a, b) => match self.component(a, b) {
-                Some(text) => Written::new(text, Postfix),
+                Some(text) => RankedText::new(text, Postfix),
                 None => operand(self.call("dot", &[a, b])),
             },
             Node::Cross(a, b) => operand(self.call("cross", &[a, b])),
@@ -170,16 +170,16 @@ impl Writer<'_> {
         self.write(a).at_least(Tightness::Operand)
     }
 
-    fn power(&self, a: &Expr, q: Rational) -> Written {
+    fn power(&self, a: &Expr, q: Rational) -> RankedText {
         if q == Rational::HALF {
-            return Written::new(self.call("sqrt", &[a]), Tightness::Operand);
+            return RankedText::new(self.call("sqrt", &[a]), Tightness::Operand);
         }
         let exponent = if q.denominator() == 1 {
             q.numerator().to_string()
         } else {
             format!("({})", rational(q))
         };
-        Written::new(format!("{}^{exponent}", self.base(a)), Tightness::Postfix)
+        RankedText::new(format!("{}^{exponent}", self.base(a)), Tightness::Postfix)
     }
 
     /// A minus sign and its operand. The minus binds to the first factor only. The constructors move it out of a

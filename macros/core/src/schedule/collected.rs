@@ -7,7 +7,7 @@ use crate::expr::{self, Expr, Hashed, Node};
 
 /// The expressions with like terms combined.
 pub fn collected(symbols: &Symbols, results: &[Expr]) -> Vec<Expr> {
-    let mut like = Like {
+    let mut like = LikeTerms {
         symbols,
         numbers: Hashed::default(),
         done: Hashed::default(),
@@ -22,14 +22,14 @@ struct Term {
     word: Vec<Expr>,
 }
 
-struct Like<'a> {
+struct LikeTerms<'a> {
     symbols: &'a Symbols,
     /// A number per factor, in order of occurrence.
     numbers: Hashed<usize>,
     done: Hashed<Expr>,
 }
 
-impl Like<'_> {
+impl LikeTerms<'_> {
     fn collect(&mut self, e: &Expr) -> Expr {
         if let Some(known) = self.done.get(e) {
             return known.clone();

@@ -50,14 +50,14 @@ impl Pairs {
 
     /// The most frequent pair; the first one of several.
     fn most_frequent(&self, refused: &HashSet<[Expr; 2]>) -> Option<[Expr; 2]> {
-        let mut found = Found {
+        let mut found = PairCounts {
             symbols: &self.symbols,
             met: Exprs::default(),
             order: Vec::new(),
             counts: HashMap::new(),
         };
         self.all().for_each(|e| found.visit(e));
-        let Found { order, counts, .. } = found;
+        let PairCounts { order, counts, .. } = found;
         let mut most: Option<(usize, [Expr; 2])> = None;
         for pair in order {
             let count = counts.get(&pair).copied().unwrap_or(0);
@@ -77,7 +77,7 @@ impl Pairs {
         let name = symbols.fresh_name(&format!("{prefix}{}", self.list.len() + 1));
         let id = symbols.add(&name, value.shape(), Structure::General, Role::Derived);
         let named = expr::here(&symbols, id);
-        let mut put = Put {
+        let mut put = PairReplacement {
             symbols: &symbols,
             turned: turned(&symbols, pair),
             pair,
@@ -116,14 +116,14 @@ fn is_named(e: &Expr) -> bool {
     plain && e.shape().is_square() && !e.shape().is_scalar()
 }
 
-struct Found<'a> {
+struct PairCounts<'a> {
     symbols: &'a Symbols,
     met: Exprs,
     order: Vec<[Expr; 2]>,
     counts: HashMap<[Expr; 2], usize>,
 }
 
-impl Found<'_> {
+impl PairCounts<'_> {
     fn visit(&mut self, e: &Expr) {
         if super::increment_form::stays_whole(self.symbols, e) || !self.met.insert(e.clone()) {
             return;
@@ -163,7 +163,7 @@ impl Found<'_> {
     }
 }
 
-struct Put<'a> {
+struct PairReplacement<'a> {
     symbols: &'a Symbols,
     pair: &'a [Expr; 2],
     turned: [Expr; 2],
@@ -172,7 +172,7 @@ struct Put<'a> {
     done: Hashed<Expr>,
 }
 
-impl Put<'_> {
+impl PairReplacement<'_> {
     fn put(&mut self, e: &Expr) -> Expr {
         if let Some(known) = self.done.get(e) {
             return known.clone();

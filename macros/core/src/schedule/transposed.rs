@@ -9,7 +9,7 @@ use std::collections::HashMap;
 /// The expressions, in which products of matrices and sums of them are written as transposes if their transposes
 /// occurred earlier.
 pub fn aligned(symbols: &Symbols, results: &[Expr]) -> Vec<Expr> {
-    let mut met = Met {
+    let mut met = TransposeAlignment {
         symbols,
         numbers: Hashed::default(),
         first: HashMap::new(),
@@ -18,7 +18,7 @@ pub fn aligned(symbols: &Symbols, results: &[Expr]) -> Vec<Expr> {
     results.iter().map(|e| met.align(e)).collect()
 }
 
-struct Met<'a> {
+struct TransposeAlignment<'a> {
     symbols: &'a Symbols,
     /// A number per term, in order of occurrence.
     numbers: Hashed<usize>,
@@ -27,7 +27,7 @@ struct Met<'a> {
     done: Hashed<Expr>,
 }
 
-impl Met<'_> {
+impl TransposeAlignment<'_> {
     fn align(&mut self, e: &Expr) -> Expr {
         if let Some(known) = self.done.get(e) {
             return known.clone();

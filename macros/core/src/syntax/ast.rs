@@ -43,7 +43,7 @@ pub enum Kind {
     /// A name.
     Name(String),
     /// An expression with a required shape: the argument or value of a user-defined function.
-    Shaped(Box<Expression>, Kindred),
+    Shaped(Box<Expression>, SizedName),
     /// A sum of signed terms: `true` marks a term that is subtracted.
     Sum(Vec<(bool, Expression)>),
     /// A product in order.
@@ -73,7 +73,7 @@ pub enum Size {
 
 /// A shape or a group: a name with sizes, `Sym<3>`.
 #[derive(Clone, Debug)]
-pub struct Kindred {
+pub struct SizedName {
     /// `Real`, `Vec`, `SO`, ...
     pub name: Name,
     /// Its sizes.
@@ -82,7 +82,7 @@ pub struct Kindred {
     pub place: Place,
 }
 
-impl Kindred {
+impl SizedName {
     /// Its text: `Vec<3>`.
     pub fn text(&self) -> String {
         let sizes = self.sizes.iter().map(|size| match size {
@@ -106,8 +106,8 @@ impl Kindred {
     }
 
     /// The shape of a scalar, at this position.
-    pub fn number(place: Place) -> Kindred {
-        Kindred {
+    pub fn number(place: Place) -> SizedName {
+        SizedName {
             name: Name {
                 text: "Real".to_owned(),
                 place,
@@ -185,7 +185,7 @@ pub struct Alternative {
     /// Its name, by which a case chooses it.
     pub name: Name,
     /// Parameters of its own.
-    pub params: Vec<(Vec<Name>, Kindred)>,
+    pub params: Vec<(Vec<Name>, SizedName)>,
     /// Configurations that are prescribed at this end.
     pub given: Vec<Name>,
     /// Its terms in the Lagrangian.
@@ -245,7 +245,7 @@ pub enum Statement {
         /// The names.
         names: Vec<Name>,
         /// Their shape.
-        shape: Kindred,
+        shape: SizedName,
         /// Its sites along a label.
         at: Option<At>,
     },
@@ -265,7 +265,7 @@ pub enum Statement {
         /// The element.
         name: Name,
         /// The group.
-        group: Kindred,
+        group: SizedName,
         /// Its sites along a label.
         at: Option<At>,
         /// Its velocity.
@@ -276,7 +276,7 @@ pub enum Statement {
         /// The configurations, each in the additive group of the shape.
         names: Vec<Name>,
         /// Their shape.
-        shape: Kindred,
+        shape: SizedName,
         /// Its sites along a label.
         at: Option<At>,
         /// The parameter by which the value grows once around a ring.
@@ -289,7 +289,7 @@ pub enum Statement {
         /// The quantities; only one if there is a definition.
         names: Vec<Name>,
         /// Their shape.
-        shape: Kindred,
+        shape: SizedName,
         /// Its sites along a label.
         at: Option<At>,
         /// The definition.
@@ -320,9 +320,9 @@ pub enum Statement {
         /// The name in the model.
         name: Name,
         /// Its arguments.
-        arguments: Vec<Kindred>,
+        arguments: Vec<SizedName>,
         /// Its value.
-        value: Kindred,
+        value: SizedName,
         /// The Rust path of the function; its own name if it is defined by a formula.
         path: Name,
         /// Its formulas, one expression for each component; empty if it is not defined by a formula.
@@ -339,7 +339,7 @@ pub enum Statement {
         /// The name of its values.
         name: Name,
         /// Its shape at one site.
-        shape: Kindred,
+        shape: SizedName,
         /// Its sites.
         at: Option<At>,
         /// The functional that computes it: a name of the runtime, or a Rust path.

@@ -1,7 +1,7 @@
 //! Expands calls of functions that are defined by a formula. Each call in the model becomes the formula at its
 //! argument, so that the engine can differentiate it.
 
-use super::ast::{Expression, Kind, Kindred, Model, Name, Statement};
+use super::ast::{Expression, Kind, Model, Name, SizedName, Statement};
 use super::formula::{foreign, names, signature};
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::lattice::LARGEST;
@@ -10,8 +10,8 @@ use std::cell::Cell;
 /// A function defined by a formula.
 struct Formula {
     name: Name,
-    argument: Kindred,
-    value: Kindred,
+    argument: SizedName,
+    value: SizedName,
     components: Vec<Expression>,
 }
 
@@ -20,7 +20,7 @@ impl Formula {
     fn called(&self, argument: &Expression) -> Expression {
         let names = names(&self.argument);
         let place = argument.place;
-        let shaped = |e: Expression, shape: &Kindred| Expression {
+        let shaped = |e: Expression, shape: &SizedName| Expression {
             kind: Kind::Shaped(Box::new(e), shape.clone()),
             place,
         };

@@ -1,6 +1,6 @@
 //! Functions defined by a formula in quotes, in the model or in a case: `given b(Vec<2>): Real = "A*cos(2*pi*x/L)";`.
 
-use super::ast::{Expression, Kind, Kindred, Model, Name, Statement};
+use super::ast::{Expression, Kind, Model, Name, SizedName, Statement};
 use super::token::{Cursor, Token};
 use crate::diagnostic::{Diagnostic, Place};
 
@@ -83,9 +83,9 @@ pub fn in_quotes(components: &[String]) -> String {
 /// The argument of such a function, and the number of components of its value; an error for other functions.
 pub(super) fn signature<'k>(
     name: &Name,
-    arguments: &'k [Kindred],
-    value: &Kindred,
-) -> Result<(&'k Kindred, usize), Diagnostic> {
+    arguments: &'k [SizedName],
+    value: &SizedName,
+) -> Result<(&'k SizedName, usize), Diagnostic> {
     match (arguments, value.components()) {
         ([argument], Some(n)) if argument.components().is_some() => Ok((argument, n)),
         _ => Err(Diagnostic::new(name.place, ONLY).help(OTHERWISE)),
@@ -94,7 +94,7 @@ pub(super) fn signature<'k>(
 
 /// The declarations of such functions, without the final `;`.
 pub fn stated(model: &Model) -> Vec<String> {
-    let kind = |k: &Kindred| match k.components() {
+    let kind = |k: &SizedName| match k.components() {
         Some(n) if k.name.text == "Vec" => format!("Vec<{n}>"),
         _ => k.name.text.clone(),
     };
@@ -128,7 +128,7 @@ pub struct Open {
     /// Its name.
     pub name: Name,
     /// Its argument, a scalar or a vector.
-    pub argument: Kindred,
+    pub argument: SizedName,
     /// The number of components of its value.
     pub components: usize,
     /// Whether its definition is already filled in.
@@ -171,7 +171,7 @@ pub fn open(model: &Model) -> Result<Vec<Open>, Diagnostic> {
 ///
 /// # Errors
 /// A text that cannot be parsed, or the first unknown name.
-pub fn check(text: &str, argument: &Kindred, known: &dyn Fn(&str) -> bool) -> Result<(), String> {
+pub fn check(text: &str, argument: &SizedName, known: &dyn Fn(&str) -> bool) -> Result<(), String> {
     let parsed = read(text).map_err(|wrong| wrong.text())?;
     if let Some(name) = parsed.call_that(&|n| !super::FUNCTIONS.contains(&n)) {
         return Err(format!(
@@ -188,7 +188,7 @@ pub fn check(text: &str, argument: &Kindred, known: &dyn Fn(&str) -> bool) -> Re
 /// The error if an expression contains a name that is neither a component of the argument nor `known`.
 pub(super) fn foreign(
     e: &Expression,
-    argument: &Kindred,
+    argument: &SizedName,
     known: &dyn Fn(&str) -> bool,
 ) -> Option<String> {
     if let Some(shift) = e.call_of(&["next", "prev"]) {
@@ -211,7 +211,7 @@ pub(super) fn foreign(
 }
 
 /// The names of each component of the argument.
-pub(super) fn names(argument: &Kindred) -> Vec<Vec<String>> {
+pub(super) fn names(argument: &SizedName) -> Vec<Vec<String>> {
     let n = argument.components().unwrap_or(0);
     (0..n)
         .map(|i| {

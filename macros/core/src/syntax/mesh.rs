@@ -1,7 +1,7 @@
 //! Parses `mesh`, the declaration of a functional of all sites, and `on` after a field of positions. A smoother
 //! without a length uses `alpha`.
 
-use super::ast::{Extent, Kindred, Model, Name, Statement};
+use super::ast::{Extent, Model, Name, SizedName, Statement};
 use super::label;
 use super::statement::{kindred, path_goes_on};
 use super::token::Cursor;
@@ -73,7 +73,7 @@ pub(super) fn with_lengths(mut model: Model) -> Model {
         };
         let length = Statement::Param {
             names: vec![name],
-            shape: Kindred::number(place),
+            shape: SizedName::number(place),
             at: None,
         };
         model.statements.insert(0, length);

@@ -1,7 +1,7 @@
 //! Parses the model and its statements, with one function for each keyword. A faulty statement is reported and
 //! skipped up to its `;`, so that one run reports every mistake.
 
-use super::ast::{Comparison, Expression, Kindred, Model, Name, NodeRule, Size, Statement};
+use super::ast::{Comparison, Expression, Model, Name, NodeRule, Size, SizedName, Statement};
 use super::called;
 use super::circle;
 use super::expression::expression;
@@ -218,7 +218,7 @@ pub(super) fn names(c: &mut Cursor) -> Result<Vec<Name>, Diagnostic> {
 }
 
 /// `Real`, `Vec<3>`, `SO<n>`, `Mat<3, 2>`.
-pub(super) fn kindred(c: &mut Cursor) -> Result<Kindred, Diagnostic> {
+pub(super) fn kindred(c: &mut Cursor) -> Result<SizedName, Diagnostic> {
     let name = c.name("a shape such as Real, Vec<3> or Sym<3>")?;
     let mut sizes = Vec::new();
     if c.take_punct('<') {
@@ -235,7 +235,7 @@ pub(super) fn kindred(c: &mut Cursor) -> Result<Kindred, Diagnostic> {
         c.punct('>')?;
     }
     let place = name.place.to(c.last_place());
-    Ok(Kindred { name, sizes, place })
+    Ok(SizedName { name, sizes, place })
 }
 
 /// The `:` between names and their shape.

@@ -3,7 +3,7 @@
 
 use super::numbers::{Matrix, Sequence, value};
 use super::{Desk, Limits};
-use crate::conditions::{Given, View, decide, put};
+use crate::conditions::{RuleCondition, View, decide, put};
 use crate::language::Term;
 use crate::rules::{Row, TABLE};
 use crate::{check, leaves, rulebook, search, translate};
@@ -46,20 +46,20 @@ impl View for Sample<'_> {
     }
 }
 
-fn candidates(given: &[Given<Var>], v: Var, random: &mut Sequence) -> Vec<Candidate> {
+fn candidates(given: &[RuleCondition<Var>], v: Var, random: &mut Sequence) -> Vec<Candidate> {
     let m = random.matrix(3, 3);
     for condition in given {
         match condition {
-            Given::Orthogonal(w) if *w == v => return vec![plain(random.rotation())],
-            Given::Symmetric(w) if *w == v => return vec![plain(m.plus(&m.transposed()))],
-            Given::Skew(w) if *w == v => {
+            RuleCondition::Orthogonal(w) if *w == v => return vec![plain(random.rotation())],
+            RuleCondition::Symmetric(w) if *w == v => return vec![plain(m.plus(&m.transposed()))],
+            RuleCondition::Skew(w) if *w == v => {
                 return vec![plain(m.plus(&m.transposed().scaled(-1.0)))];
             }
-            Given::Diagonal(w) if *w == v => {
+            RuleCondition::Diagonal(w) if *w == v => {
                 let diagonal = |i, j| if i == j { m.at(i, j) } else { 0.0 };
                 return vec![plain(Matrix::from(3, 3, diagonal))];
             }
-            Given::Number(w) if *w == v => {
+            RuleCondition::Number(w) if *w == v => {
                 return [(2, 1), (-1, 1), (1, 2), (3, 1), (0, 1)]
                     .iter()
                     .map(|(n, d)| {
@@ -84,7 +84,7 @@ fn candidates(given: &[Given<Var>], v: Var, random: &mut Sequence) -> Vec<Candid
 fn try_row((name, left, right, given, _): &Row, random: &mut Sequence) -> Result<usize, String> {
     let left: PatternAst<Term> = left.parse().unwrap();
     let right: PatternAst<Term> = right.parse().unwrap();
-    let given: Vec<Given<Var>> = given
+    let given: Vec<RuleCondition<Var>> = given
         .iter()
         .map(|g| g.renamed(|v| v.parse::<Var>()).unwrap())
         .collect();
@@ -235,7 +235,7 @@ fn conditions_are_checked_on_the_terms() {
     commute.name = "commute".into();
     commute.left = "(* ?a ?b)".parse().unwrap();
     commute.right = "(* ?b ?a)".parse().unwrap();
-    let scalar = Given::Scalar("?a".parse().unwrap());
+    let scalar = RuleCondition::Scalar("?a".parse().unwrap());
     for (given, holds) in [(vec![], true), (vec![scalar], false)] {
         commute.given = given;
         rules.push(commute.clone());

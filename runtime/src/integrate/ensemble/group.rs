@@ -26,12 +26,12 @@ pub(super) struct Steps<C> {
 #[derive(Clone, Debug)]
 pub(super) struct Group<M: Model<Scalar = f64>, const N: usize> {
     model: Wide<M, N>,
-    moving: Together<M, N>,
+    moving: BodyStates<M, N>,
 }
 
 /// The states of the bodies, with their workspaces.
 #[derive(Clone, Debug)]
-enum Together<M: Model<Scalar = f64>, const N: usize> {
+enum BodyStates<M: Model<Scalar = f64>, const N: usize> {
     /// In the lanes.
     Lanes {
         state: <Wide<M, N> as Stepper>::State,
@@ -79,13 +79,13 @@ impl<M: Model<Scalar = f64>, const N: usize> Group<M, N> {
             let moving = if M::SIDE_BY_SIDE {
                 let state = gather(|i| M::at_node(body(i).1, 0));
                 let workspace = model.prepare(&state, Lanes([steps.h; N]), steps.choice)?;
-                Together::Lanes {
+                BodyStates::Lanes {
                     state,
                     workspace,
                     begun: from_fn(|i| M::node(&body(i).1)),
                 }
             } else {
-                Together::Alone(
+                BodyStates::Alone(
                     bodies
                         .iter()
                         .map(alone)
@@ -94,17 +94,16 @@ impl<M: Model<Scalar = f64>, const N: usize> Group<M, N> {
             };
             Ok(Self { model, moving })
         };
-        Some(
-            begun()
-                .map_err(|cause| told(bodies.iter().map(|b| alone(b).map(|_| ())), first, cause)),
-        )
+        Some(begun().map_err(|cause| {
+            ensemble_error(bodies.iter().map(|b| alone(b).map(|_| ())), first, cause)
+        }))
     }
 
     /// Steps of all bodies. After an error the states are unchanged.
     #[inline(always)]
     pub(super) fn advance(&mut self, count: u64) -> Result<(), StepError> {
         match &mut self.moving {
-            Together::Lanes {
+            BodyStates::Lanes {
                 state, workspace, ..
             } if M::SIDE_BY_SIDE => {
                 let mut moving = *state;
@@ -112,8 +111,8 @@ impl<M: Model<Scalar = f64>, const N: usize> Group<M, N> {
                 *state = moving;
                 Ok(())
             }
-            Together::Lanes { .. } => Ok(()),
-            Together::Alone(bodies) => one_by_one(bodies, count),
+            BodyStates::Lanes { .. } => Ok(()),
+            BodyStates::Alone(bodies) => one_by_one(bodies, count),
         }
     }
 
@@ -140,14 +139,14 @@ impl<M: Model<Scalar = f64>, const N: usize> Group<M, N> {
                 .map_err(refused)?;
             model.advance_many(&mut state, &mut workspace, count)
         };
-        told((0..bodies).map(alone), first, cause)
+        ensemble_error((0..bodies).map(alone), first, cause)
     }
 
     /// The model and the state in the lanes, for reading.
     pub(super) fn shown(&self) -> (&Wide<M, N>, <Wide<M, N> as Stepper>::State) {
         let state = match &self.moving {
-            Together::Lanes { state, .. } => *state,
-            Together::Alone(bodies) => gather(|i| {
+            BodyStates::Lanes { state, .. } => *state,
+            BodyStates::Alone(bodies) => gather(|i| {
                 let last = bodies.len().saturating_sub(1);
                 M::at_node(bodies[i.min(last)].state, 0)
             }),
@@ -158,12 +157,12 @@ impl<M: Model<Scalar = f64>, const N: usize> Group<M, N> {
     /// The body in a lane.
     pub(super) fn body(&self, at: usize) -> Option<Body<M>> {
         let state = match &self.moving {
-            Together::Lanes { state, begun, .. } => {
+            BodyStates::Lanes { state, begun, .. } => {
                 let begun = begun.get(at).copied()?;
                 let node = begun.saturating_add(Wide::<M, N>::node(state));
                 M::at_node(lane::<M::State, N>(state, at), node)
             }
-            Together::Alone(bodies) => bodies.get(at)?.state,
+            BodyStates::Alone(bodies) => bodies.get(at)?.state,
         };
         Some((lane::<M::Parameters, N>(self.model.given(), at), state))
     }
@@ -191,7 +190,7 @@ fn one_by_one<M: Model<Scalar = f64>>(
 }
 
 /// The first body that fails alone, how many do, or all of them when none does.
-fn told<E>(
+fn ensemble_error<E>(
     alone: impl ExactSizeIterator<Item = Result<(), E>>,
     first: usize,
     cause: E,

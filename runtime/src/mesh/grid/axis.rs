@@ -130,7 +130,7 @@ impl Axis {
     /// The interval that contains a coordinate, given in intervals from the origin: wrapped if periodic,
     /// mirrored if it is beyond a wall by at most one interval.
     #[inline(always)]
-    pub(super) fn locate<T: Real>(&self, mut along: T) -> Result<Spot<T>, Beyond> {
+    pub(super) fn locate<T: Real>(&self, mut along: T) -> Result<Spot<T>, OutsideReason> {
         let n = self.intervals as f64;
         let mut at = along.value();
         let mut mirrored = false;
@@ -149,11 +149,11 @@ impl Axis {
     /// The coordinate mapped into the axis, and whether it is mirrored.
     #[cold]
     #[inline(never)]
-    fn returned<T: Real>(&self, along: T) -> Result<(T, bool), Beyond> {
+    fn returned<T: Real>(&self, along: T) -> Result<(T, bool), OutsideReason> {
         let n = self.intervals as f64;
         let at = along.value();
         if !at.is_finite() {
-            return Err(Beyond::Nowhere);
+            return Err(OutsideReason::Nowhere);
         }
         match self.wall {
             Wall::Periodic => {
@@ -168,21 +168,21 @@ impl Axis {
             Wall::Solid if at == n => Ok((along, false)),
             Wall::Solid if (-1.0..0.0).contains(&at) => Ok((-along, true)),
             Wall::Solid if at > n && at <= n + 1.0 => Ok((T::from_f64(2.0 * n) - along, true)),
-            Wall::Solid => Err(Beyond::By(self.spacing() * (-at).max(at - n))),
+            Wall::Solid => Err(OutsideReason::By(self.spacing() * (-at).max(at - n))),
         }
     }
 }
 
 /// Why no interval contains a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Beyond {
+pub(super) enum OutsideReason {
     /// It is NaN or infinite.
     Nowhere,
     /// It is beyond a wall by this length.
     By(f64),
 }
 
-impl Beyond {
+impl OutsideReason {
     /// This error, for the particle `site`.
     #[cold]
     pub(super) fn of(self, site: usize) -> MeshError {

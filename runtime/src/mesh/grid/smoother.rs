@@ -13,7 +13,7 @@ use crate::{ParameterError, Real};
 
 /// The smoother of one direction.
 #[derive(Clone, Debug)]
-enum Along<T> {
+enum AxisSmoother<T> {
     Bounded(Bounded<T>),
     Periodic(Periodic<T>),
 }
@@ -21,7 +21,7 @@ enum Along<T> {
 /// One-dimensional smoothers along each direction.
 #[derive(Clone, Debug)]
 pub(super) struct Directions<T, const D: usize> {
-    along: [Along<T>; D],
+    along: [AxisSmoother<T>; D],
     /// Nodes along each direction.
     nodes: [usize; D],
 }
@@ -31,8 +31,8 @@ impl<T: Real, const D: usize> Directions<T, D> {
     pub fn new(setting: &Setting<D>, nodes: &Nodes<D>, alpha: T) -> Result<Self, ParameterError> {
         check_length(alpha, &setting.domain)?;
         let along = nodes.axes().map(|axis| match axis.wall() {
-            Wall::Solid => Along::Bounded(Bounded::new(&axis, alpha)),
-            Wall::Periodic => Along::Periodic(Periodic::new(&axis, alpha)),
+            Wall::Solid => AxisSmoother::Bounded(Bounded::new(&axis, alpha)),
+            Wall::Periodic => AxisSmoother::Periodic(Periodic::new(&axis, alpha)),
         });
         let nodes = nodes.axes().map(|axis| axis.nodes());
         Ok(Self { along, nodes })
@@ -42,13 +42,13 @@ impl<T: Real, const D: usize> Directions<T, D> {
     pub fn smooth(&mut self, d: usize, values: &mut [T]) {
         let width = self.nodes.iter().skip(d + 1).product();
         match (&mut self.along[d], width) {
-            (Along::Bounded(one), 1) => one.along(values),
-            (Along::Periodic(one), 1) => one.along(values),
+            (AxisSmoother::Bounded(one), 1) => one.along(values),
+            (AxisSmoother::Periodic(one), 1) => one.along(values),
             (one, _) => {
                 for block in values.chunks_exact_mut(self.nodes[d] * width) {
                     match one {
-                        Along::Bounded(one) => one.across(block, width),
-                        Along::Periodic(one) => one.across(block, width),
+                        AxisSmoother::Bounded(one) => one.across(block, width),
+                        AxisSmoother::Periodic(one) => one.across(block, width),
                     }
                 }
             }

@@ -1,7 +1,7 @@
 //! The error of a failed solve of the Moser-Veselov equation, with its numbers.
 
 use crate::groups::Part;
-use crate::said::{Times, in_lane, instead};
+use crate::number_format::{Times, in_lane, instead};
 use crate::solvers::Method;
 use crate::solvers::largest_step::largest_step;
 use core::fmt;

@@ -91,13 +91,13 @@ impl<T: Real> Polynomial<T> {
 }
 
 /// A body as the series see it: its energy, `M`, and the symmetric functions of its inverse moments.
-struct Seen<T> {
+struct BodySeries<T> {
     energy: Polynomial<T>,
     momentum: Polynomial<T>,
     symmetric: [Polynomial<T>; 3],
 }
 
-impl<T: Real> Seen<T> {
+impl<T: Real> BodySeries<T> {
     /// The body with inverse moments `s r + d`, where `r` has these symmetric functions.
     fn of(s: &Polynomial<T>, d: &Polynomial<T>, symmetric: [T; 3]) -> Self {
         let [energy, momentum] = Polynomial::variables();
@@ -140,7 +140,7 @@ pub(super) fn factor<T: Real>(body: &Poinsot<T>, u: [T; 3], order: Order) -> T {
     let one = Polynomial::constant(T::one());
     let invariants = Invariants::of(body, u);
     let symmetric = invariants.symmetric;
-    let given = Seen::of(&one, &Polynomial::constant(T::zero()), symmetric);
+    let given = BodySeries::of(&one, &Polynomial::constant(T::zero()), symmetric);
     let taken = order.terms();
     let (s, d) = (
         one.plus(&given.series(&FACTOR[..taken])),
@@ -149,7 +149,7 @@ pub(super) fn factor<T: Real>(body: &Poinsot<T>, u: [T; 3], order: Order) -> T {
     // Each pass makes one more power exact.
     let (mut effective_s, mut effective_d) = (one, Polynomial::constant(T::zero()));
     for _ in 0..POWERS {
-        let effective = Seen::of(&effective_s, &effective_d, symmetric);
+        let effective = BodySeries::of(&effective_s, &effective_d, symmetric);
         let inverse = Polynomial::inverse_of_one_plus(&effective.series(&FACTOR));
         let shift = effective.series(&SHIFT).scaled(-T::one());
         effective_s = s.times(&inverse);

@@ -3,7 +3,7 @@
 
 use super::forced::{principal_at_once, turn};
 use super::{MoserVeselovError, Poinsot};
-use crate::scalar::one::{in_lanes, set_all};
+use crate::scalar::lane_view::{in_lanes, set_all};
 use crate::solvers::Method;
 use crate::solvers::left_factor::rotation_at;
 use crate::{Real, Rotation, TurnedRotation};

@@ -5,7 +5,7 @@ use super::forced::turn;
 use super::preprocess::preprocessed;
 use super::{Order, Poinsot, largest_step, reach};
 use crate::Real;
-use crate::said::{Short, Times, in_lane, not_finite, shorter};
+use crate::number_format::{Short, Times, in_lane, not_finite, shorter};
 use crate::solvers::Method;
 use core::fmt;
 use nalgebra::Vector3;

@@ -7,8 +7,8 @@
 
 use super::Poinsot;
 use crate::Real;
+use crate::scalar::lane_view::in_lanes;
 use crate::scalar::of_scalars;
-use crate::scalar::one::in_lanes;
 
 /// Below this, `s2 e / s3` leaves the quartic so close to its linear part that the series start is
 /// inside the basin of the smallest root: in units of `e` it reads `1 - w + y w^2 - ...` with

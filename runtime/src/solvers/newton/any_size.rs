@@ -9,7 +9,7 @@ mod saved;
 
 pub use chart::{Chart, Lane};
 
-use super::corrections::{Corrections, Next, Residual};
+use super::corrections::{Corrections, NextAction, Residual};
 use super::principal::{Fold, Traced, trace};
 use super::scale::{Tangent, measure};
 use super::{
@@ -394,7 +394,7 @@ impl<C: Chart> AnyNewton<'_, C> {
             f64::abs(terms.fold(0.0, |sum, (x, r)| sum + x * r))
         };
         let next = self.corrections.next::<f64>(self.seen(), moved, decrement);
-        if next == Next::End {
+        if next == NextAction::End {
             return self.solved_unless_outdated();
         }
         let Work { trial, moved, .. } = &mut self.search.work;
@@ -404,7 +404,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         }
         core::mem::swap(trial, moved);
         self.has_moved = true;
-        if next == Next::CorrectAndEnd && !self.is_outdated() {
+        if next == NextAction::CorrectAndEnd && !self.is_outdated() {
             return self.solved(self.iteration + 1);
         }
         self.previous = size;

@@ -33,7 +33,7 @@ pub(super) struct Residual {
 
 /// The next action after a correction is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Next {
+pub(super) enum NextAction {
     /// Apply the correction and continue.
     Correct,
     /// Apply the correction and stop.
@@ -45,7 +45,7 @@ pub(super) enum Next {
 
 /// The assessment of a correction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Judged {
+enum CorrectionAssessment {
     /// Another correction is needed.
     More,
     /// The correction is rounding of the velocity, and therefore the last.
@@ -93,7 +93,7 @@ impl Corrections {
         r: Residual,
         moved: f64,
         decrement: impl FnOnce() -> f64,
-    ) -> Next {
+    ) -> NextAction {
         // If no velocity was known, as at rest, every correction counts as large.
         let fall = moved / self.last.min(1.0);
         self.last = moved;
@@ -102,28 +102,30 @@ impl Corrections {
             || (r.size <= STAGNATED_ROUNDINGS * unit && r.size >= 0.5 * r.previous);
         let judged = match is_rounding {
             true => self.judged::<T>(decrement),
-            false => Judged::More,
+            false => CorrectionAssessment::More,
         };
         // A correction is needed to make derivatives exact.
         let may_end = T::ORDER == 0 && r.iteration > 0;
-        if may_end && r.size <= POLISHED_ROUNDINGS * unit && judged == Judged::Last {
-            return Next::End;
+        if may_end && r.size <= POLISHED_ROUNDINGS * unit && judged == CorrectionAssessment::Last {
+            return NextAction::End;
         }
         // Predicts the residual after this correction, if it is as good as the last one. The decrease of the residual
         // alone can be too optimistic: if one equation dominated at the first trial, it hides the others.
         let factor = FORESIGHT * (r.size / r.previous).max(fall);
         let is_foreseen = may_end && r.size * factor <= POLISHED_ROUNDINGS * unit;
-        match judged != Judged::More || (is_foreseen && self.leave_rounding::<T>(factor)) {
-            true => Next::CorrectAndEnd,
-            false => Next::Correct,
+        match judged != CorrectionAssessment::More
+            || (is_foreseen && self.leave_rounding::<T>(factor))
+        {
+            true => NextAction::CorrectAndEnd,
+            false => NextAction::Correct,
         }
     }
 
     /// Judges the last correction, if the residual is rounding.
     #[inline(always)]
-    fn judged<T: Real>(&mut self, decrement: impl FnOnce() -> f64) -> Judged {
+    fn judged<T: Real>(&mut self, decrement: impl FnOnce() -> f64) -> CorrectionAssessment {
         if self.last <= ROUNDINGS * T::EPSILON {
-            return Judged::Last;
+            return CorrectionAssessment::Last;
         }
         let decrement = decrement();
         if decrement < 0.25 * self.least {
@@ -135,8 +137,8 @@ impl Corrections {
         let stands_still = (self.last <= SMALL && self.without_fall > 0)
             || (self.without_fall >= MOST_WITHOUT_FALL && self.last.is_finite());
         match stands_still {
-            true => Judged::Noise,
-            false => Judged::More,
+            true => CorrectionAssessment::Noise,
+            false => CorrectionAssessment::More,
         }
     }
 
@@ -150,7 +152,7 @@ impl Corrections {
 
 #[cfg(test)]
 mod tests {
-    use super::{Corrections, Judged, Next, ROUNDINGS, Residual};
+    use super::{CorrectionAssessment, Corrections, NextAction, ROUNDINGS, Residual};
     use crate::groups::{Additive, Group};
     use crate::solvers::newton::{Solved, solve};
     use nalgebra::SMatrix;
@@ -160,7 +162,7 @@ mod tests {
         let mut corrections = Corrections::none();
         let found = moved.iter().position(|m| {
             corrections.last = *m / length;
-            corrections.judged::<f64>(|| m * m) != Judged::More
+            corrections.judged::<f64>(|| m * m) != CorrectionAssessment::More
         });
         found.map(|i| i + 1)
     }
@@ -185,7 +187,7 @@ mod tests {
         let next = |moved: [f64; 2]| {
             let mut corrections = Corrections::none();
             let sizes = [7e8, 2.5e-4];
-            let mut found = Next::Correct;
+            let mut found = NextAction::Correct;
             for (iteration, moved) in moved.into_iter().enumerate() {
                 let r = Residual {
                     size: sizes[iteration],
@@ -198,11 +200,11 @@ mod tests {
         };
         // An equation without terms at rest has a large residual relative to its scale; the other corrections decrease
         // quadratically.
-        assert_eq!(next([2.9e-2, 8.4e-7]), Next::Correct);
+        assert_eq!(next([2.9e-2, 8.4e-7]), NextAction::Correct);
         // At zero velocity, the first correction cannot be compared with a length.
-        assert_eq!(next([4.7e307, 1.1e-6]), Next::Correct);
+        assert_eq!(next([4.7e307, 1.1e-6]), NextAction::Correct);
         // Corrections that decrease as much as the residual are not rounding.
-        assert_eq!(next([2.9e-2, 1e-14]), Next::CorrectAndEnd);
+        assert_eq!(next([2.9e-2, 1e-14]), NextAction::CorrectAndEnd);
     }
 
     /// Solves `v + 4 b v^3 = p` from rest, with the sizes of the terms multiplied by `factor`. Returns this root and

@@ -4,7 +4,7 @@
 
 use super::{Fold, Found, LAST_ATTEMPT, MOST_ITERATIONS, Newton, Progress, Search};
 use crate::groups::{Coordinate, Group};
-use crate::said::{AtMost, Plain, Times, in_lane, instead};
+use crate::number_format::{AtMost, Plain, Times, in_lane, instead};
 use crate::scalar::Real;
 use crate::solvers::largest_step::confirmed_step;
 use crate::{StepCause, StepError};

@@ -1,7 +1,7 @@
 //! Groups the coordinates of a velocity into parts, each measured by its own length, because angles and translations
 //! cannot be added. Takes coordinates and a tangent; gives lengths, the units of parts, and the course of a stage.
 
-use super::looks::{Left, looks, shared_noise};
+use super::checked_points::{Remainders, looks, shared_noise};
 use super::principal::FALLS;
 use crate::groups::Group;
 use crate::linalg::Reals;
@@ -31,14 +31,14 @@ const OPEN_ASIDE: f64 = 1e-3;
 
 /// The kind of test that selects the fraction by which slow parts are measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Aside {
+pub(super) enum SlowPartTest {
     /// A step judged by one correction.
     OfStep,
     /// A stage, which also checks the tangent of all parts.
     OfStage,
 }
 
-impl Aside {
+impl SlowPartTest {
     /// The fraction for a part; `open` if the part lacks a natural scale.
     pub(super) fn of(self, open: bool) -> f64 {
         match self {
@@ -110,7 +110,7 @@ impl Parts {
     }
 
     /// The unit of length of each part: see [`Kinds::units_into`].
-    pub(super) fn units(&self, entry: &dyn Fn(usize, usize) -> f64, aside: Aside) -> Reals {
+    pub(super) fn units(&self, entry: &dyn Fn(usize, usize) -> f64, aside: SlowPartTest) -> Reals {
         let mut units = Reals::from_elem(1.0, self.count());
         self.kinds().units_into(entry, aside, &mut units);
         units
@@ -136,7 +136,13 @@ impl Parts {
     ) -> Reals {
         let mut course = Reals::from_elem(0.0, self.count());
         let kinds = self.kinds();
-        course_into(&kinds, Aside::OfStage, [lengths, units], noise, &mut course);
+        course_into(
+            &kinds,
+            SlowPartTest::OfStage,
+            [lengths, units],
+            noise,
+            &mut course,
+        );
         course
     }
 
@@ -204,7 +210,7 @@ impl Kinds<'_> {
     pub(super) fn units_into(
         &self,
         entry: &dyn Fn(usize, usize) -> f64,
-        aside: Aside,
+        aside: SlowPartTest,
         units: &mut [f64],
     ) {
         for (b, own) in units.iter_mut().enumerate() {
@@ -250,7 +256,7 @@ pub(super) fn with_kinds<T, G: Group<T>, R, const D: usize>(
 /// Writes the course of [`Parts::course`] into `course`, which has one entry for each part.
 fn course_into(
     Kinds { pure, open, .. }: &Kinds<'_>,
-    aside: Aside,
+    aside: SlowPartTest,
     [lengths, units]: [&[f64]; 2],
     noise: impl Fn(usize) -> f64,
     course: &mut [f64],
@@ -290,7 +296,7 @@ fn are_near_beside(
     for (way, [square, _]) in ways.iter_mut().zip(squares) {
         *way = square.sqrt();
     }
-    course_into(kinds, Aside::OfStep, [ways, units], noise, course);
+    course_into(kinds, SlowPartTest::OfStep, [ways, units], noise, course);
     let pure = kinds.pure;
     let mut each = squares.iter().zip(course.iter()).enumerate();
     each.all(|(b, ([way, off], course))| {
@@ -373,7 +379,7 @@ pub(super) fn varies_little<T: Real, G: Group<T>, const D: usize>(
     let noises: [f64; D] = core::array::from_fn(|b| larger(noise[b], shared * units[b]));
     // If the rounding error is unknown, differences may be only rounding.
     let known = shared > 0.0;
-    let mut so_far = Left::nothing(SVector::zeros());
+    let mut so_far = Remainders::nothing(SVector::zeros());
     looks(reach::<T, G, D>(correction, solution)).all(|look| {
         let at = G::identity().retract((-*correction * T::from_f64(look.share)).as_slice());
         let Some(off) = left(look.share, &at) else {

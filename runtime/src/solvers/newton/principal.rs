@@ -12,8 +12,8 @@
 //!
 //! Takes the equations of one lane; gives the root, or how far the curve could be followed.
 
+use super::continuation_stage::{AIM, Stage, StageEnd, ended, ratio, times};
 use super::parts::{Parts, squares};
-use super::stage::{AIM, Ended, Stage, ended, ratio, times};
 use crate::groups::Group;
 use crate::linalg::{Dense, Reals};
 use nalgebra::{SMatrix, SVector};
@@ -143,7 +143,7 @@ pub(super) fn trace<C: Curve>(
         length = end - share;
         let goal = times(&at_rest, 1.0 - end);
         match ended(curve, &stage, &goal, last, end >= LOOKED_AT) {
-            Ok(Ended {
+            Ok(StageEnd {
                 velocity: root,
                 course,
                 ..
@@ -155,7 +155,7 @@ pub(super) fn trace<C: Curve>(
                     _ => Traced::Elsewhere { root, reach },
                 });
             }
-            Ok(Ended {
+            Ok(StageEnd {
                 velocity: next,
                 tangent,
                 fall,

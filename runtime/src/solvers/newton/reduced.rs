@@ -1,7 +1,7 @@
 //! Equations in which some unknowns are eliminated in closed form; Newton's method finds the others. Takes an element
 //! with all unknowns; gives the unknowns that Newton's method finds.
 
-use super::parts::{Aside, comes_near, with_kinds};
+use super::parts::{SlowPartTest, comes_near, with_kinds};
 use super::{Newton, Progress, Solved};
 use crate::groups::{Group, RigidMotion, Rotation};
 use crate::linalg::Factors;
@@ -36,7 +36,7 @@ impl<T: Real, W, const E: usize> AtRest<T, W, E> {
     {
         let units = &mut self.units[..W::PARTS.min(E)];
         let entry = |i, j| tangent[(i, j)].lane(0);
-        with_kinds::<T, W, _, E>(|kinds| kinds.units_into(&entry, Aside::OfStep, units));
+        with_kinds::<T, W, _, E>(|kinds| kinds.units_into(&entry, SlowPartTest::OfStep, units));
         let mut factors = Factors::none();
         factors.set(tangent, W::DIMENSION);
         for (k, mut column) in self.inverse.column_iter_mut().enumerate() {

@@ -3,7 +3,7 @@
 //! terms suggest. Takes the absolute values of the last factored tangent, and scales; raises the scales. Gives the
 //! lengths for corrections.
 
-use super::parts::{Aside, Kinds};
+use super::parts::{Kinds, SlowPartTest};
 use crate::scalar::larger;
 
 /// The square root of the rounding unit.
@@ -21,7 +21,7 @@ pub(super) fn measure(
     weights: &[f64],
     [units, noise]: [&mut [f64]; 2],
 ) {
-    kinds.units_into(entry, Aside::OfStep, units);
+    kinds.units_into(entry, SlowPartTest::OfStep, units);
     // The coordinate's own equation, and equations without a diagonal entry, such as constraints.
     let of = |k: usize| {
         let rows = (0..kinds.size).filter(|i| *i == k || entry(*i, *i) == 0.0);
@@ -44,7 +44,8 @@ pub(super) fn measure(
     // A multiplier has the relative uncertainty of the parts on which it acts.
     for (b, (own, unit)) in noise.iter_mut().zip(units.iter()).enumerate() {
         if kinds.own(b).all(|k| entry(k, k) == 0.0) {
-            let [step, stage] = [Aside::OfStep, Aside::OfStage].map(|x| x.of(kinds.open[b]));
+            let [step, stage] =
+                [SlowPartTest::OfStep, SlowPartTest::OfStage].map(|x| x.of(kinds.open[b]));
             *own = larger(*own, most * unit * (step / stage));
         }
     }

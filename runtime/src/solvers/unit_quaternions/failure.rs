@@ -4,7 +4,7 @@
 use super::QuaternionBody;
 use super::branch::followed;
 use crate::Real;
-use crate::said::{Times, in_lane, not_finite, shorter};
+use crate::number_format::{Times, in_lane, not_finite, shorter};
 use crate::solvers::moser_veselov::{fastest, index, largest_step};
 use core::fmt;
 use nalgebra::Vector3;

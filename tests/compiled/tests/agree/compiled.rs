@@ -34,16 +34,16 @@ pub struct Compiled {
     /// The seed of the model.
     pub seed: u64,
     /// The residual at three nodes; the first argument is the step size.
-    pub residual: fn(f64, &Given) -> Result<Vec<f64>, String>,
+    pub residual: fn(f64, &NamedValues) -> Result<Vec<f64>, String>,
     /// The card through which the test steps the model.
     pub card: &'static Card,
 }
 
 /// Values by name and level, row by row.
 #[derive(Clone, Debug)]
-pub struct Given(pub Vec<(String, i8, Vec<f64>)>);
+pub struct NamedValues(pub Vec<(String, i8, Vec<f64>)>);
 
-impl Given {
+impl NamedValues {
     /// Returns the value as type `V`.
     ///
     /// # Errors

@@ -10,7 +10,7 @@ use clebsch_oracle::oracle::wide::grid::Grid;
 use clebsch_oracle::oracle::wide::grow::AROUND;
 use clebsch_oracle::oracle::wide::model::{Family, Model};
 use clebsch_oracle::oracle::wide::point::{Node, Point};
-use compiled::{Compiled, Given, MODELS};
+use compiled::{Compiled, MODELS, NamedValues};
 
 /// Random points per model.
 const POINTS: u64 = 4;
@@ -22,9 +22,9 @@ const SOLVED: f64 = 1e-11;
 /// Step size of the two steps, small enough for the kinetic terms to dominate.
 const STEP: f64 = 0.02;
 
-fn given(point: &Point<'_>, nodes: &[Node; 3]) -> Given {
+fn given(point: &Point<'_>, nodes: &[Node; 3]) -> NamedValues {
     let list = point.given(nodes).into_iter();
-    Given(list.map(|g| (g.name, g.shift, g.data)).collect())
+    NamedValues(list.map(|g| (g.name, g.shift, g.data)).collect())
 }
 
 /// The largest disagreement of residuals.

@@ -5,19 +5,19 @@ use clebsch::nalgebra::{Matrix3, SVector, Vector3};
 use clebsch::of_numbers::Shown;
 use clebsch::{BodyMomentum, Dual, Rotation};
 
-mod bent;
-mod beta;
+mod beta_plane;
 mod bodies;
 mod cells;
 mod chain;
 mod charges;
 pub mod cloud;
+mod coupled_velocities;
 mod dense;
-mod fast;
 pub mod grid;
 mod kirchhoff;
-mod linked;
-mod named;
+mod name_collisions;
+mod newton_sites;
+mod non_quadratic;
 mod quartic;
 mod quaternions;
 mod rod;
@@ -28,21 +28,21 @@ mod toda;
 mod tops;
 mod water;
 
-pub use bent::Bent;
-pub use beta::Beta;
+pub use beta_plane::Beta;
 pub use bodies::{Beaded, Bodies, Dragged};
 pub use cells::{Cells, Smoothed};
 pub use chain::Chain;
 pub use charges::Charges;
 pub use cloud::Cloud;
-pub use fast::Fast;
+pub use coupled_velocities::{Linked, LinkedChainState, Woven};
 pub use grid::{Basin, Plane};
 pub use kirchhoff::{Ends, Kirchhoff};
-pub use linked::{Linked, LinkedChainState, Woven};
-pub use named::Named;
+pub use name_collisions::Named;
+pub use newton_sites::Bent;
+pub use non_quadratic::Fast;
 pub use quartic::Quartic;
 pub use quaternions::{QRod, Spins, TwistedSpinsOf, turn};
-pub use rod::{Held, Rod};
+pub use rod::{EndCondition, Rod};
 pub use sine::Sine;
 pub use toda::Toda;
 pub use tops::Tops;
@@ -157,8 +157,10 @@ pub fn all(n: usize) -> Vec<Box<dyn Line>> {
     out.push(Box::new(Rod::free(n)));
     if n > 1 {
         out.push(Box::new(Rod::new(n, None)));
-        let ends = Held::FIRST.iter().flat_map(|f| Held::LAST.map(|l| [*f, l]));
-        for ends in ends.filter(|ends| *ends != [Held::Free; 2]) {
+        let ends = EndCondition::FIRST
+            .iter()
+            .flat_map(|f| EndCondition::LAST.map(|l| [*f, l]));
+        for ends in ends.filter(|ends| *ends != [EndCondition::Free; 2]) {
             out.push(Box::new(Rod::new(n, Some(ends))));
         }
     }

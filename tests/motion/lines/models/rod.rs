@@ -8,39 +8,48 @@ use clebsch_models::lattices::geometrically_exact_rod::*;
 
 /// The condition at an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Held {
+pub enum EndCondition {
     Free,
     Pinned,
     Clamped,
     Load,
 }
 
-impl Held {
-    pub const FIRST: [Held; 3] = [Held::Free, Held::Pinned, Held::Clamped];
-    pub const LAST: [Held; 4] = [Held::Free, Held::Pinned, Held::Clamped, Held::Load];
+impl EndCondition {
+    pub const FIRST: [EndCondition; 3] = [
+        EndCondition::Free,
+        EndCondition::Pinned,
+        EndCondition::Clamped,
+    ];
+    pub const LAST: [EndCondition; 4] = [
+        EndCondition::Free,
+        EndCondition::Pinned,
+        EndCondition::Clamped,
+        EndCondition::Load,
+    ];
 
     fn holds(self) -> bool {
-        matches!(self, Held::Pinned | Held::Clamped)
+        matches!(self, EndCondition::Pinned | EndCondition::Clamped)
     }
 }
 
 /// An elastic rod, open or closed to a ring; once around the ring, the centreline advances by a constant vector.
 pub struct Rod {
     pub n: usize,
-    ends: Option<[Held; 2]>,
+    ends: Option<[EndCondition; 2]>,
 }
 
 impl Rod {
     pub fn free(n: usize) -> Self {
-        Self::new(n, Some([Held::Free; 2]))
+        Self::new(n, Some([EndCondition::Free; 2]))
     }
-    pub fn new(n: usize, ends: Option<[Held; 2]>) -> Self {
+    pub fn new(n: usize, ends: Option<[EndCondition; 2]>) -> Self {
         Self { n, ends }
     }
     fn nodes(&self) -> usize {
         self.n + usize::from(self.ends.is_some())
     }
-    fn is(&self, end: usize, held: Held) -> bool {
+    fn is(&self, end: usize, held: EndCondition) -> bool {
         self.ends.is_some_and(|ends| ends[end] == held)
     }
     fn mass(&self, i: usize) -> f64 {
@@ -72,17 +81,19 @@ impl Rod {
             None => GeometricallyExactRodEnds::Ring { X: self.grows() },
             Some([first, last]) => GeometricallyExactRodEnds::Open {
                 first: match first {
-                    Held::Pinned => GeometricallyExactRodFirst::Pinned,
-                    Held::Clamped => GeometricallyExactRodFirst::Clamped { Λw: Self::wall() },
+                    EndCondition::Pinned => GeometricallyExactRodFirst::Pinned,
+                    EndCondition::Clamped => {
+                        GeometricallyExactRodFirst::Clamped { Λw: Self::wall() }
+                    }
                     _ => GeometricallyExactRodFirst::Free,
                 },
                 last: match last {
-                    Held::Free => GeometricallyExactRodLast::Free,
-                    Held::Pinned => GeometricallyExactRodLast::Pinned,
-                    Held::Clamped => GeometricallyExactRodLast::Clamped {
+                    EndCondition::Free => GeometricallyExactRodLast::Free,
+                    EndCondition::Pinned => GeometricallyExactRodLast::Pinned,
+                    EndCondition::Clamped => GeometricallyExactRodLast::Clamped {
                         Λw: Self::wall().transpose(),
                     },
-                    Held::Load => GeometricallyExactRodLast::Load {
+                    EndCondition::Load => GeometricallyExactRodLast::Load {
                         force: Self::force(),
                     },
                 },
@@ -129,8 +140,10 @@ impl Line for Rod {
         format!("rod {} ends {:?}", self.n, self.ends)
     }
     fn terms(&self) -> usize {
-        let clamps = (0..2).filter(|end| self.is(*end, Held::Clamped)).count();
-        5 + clamps + usize::from(self.is(1, Held::Load))
+        let clamps = (0..2)
+            .filter(|end| self.is(*end, EndCondition::Clamped))
+            .count();
+        5 + clamps + usize::from(self.is(1, EndCondition::Load))
     }
     fn weighed(&self, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D {
         let (h, l) = (0.02, 0.5);
@@ -169,20 +182,22 @@ impl Line for Rod {
                 .into_iter()
                 .enumerate()
             {
-                if self.is(end, Held::Clamped) {
+                if self.is(end, EndCondition::Clamped) {
                     let by = wall.map(c).transpose() * q.r[end * (self.n - 1)];
                     s += c(w[term] * half * 2.0 / l) * trace(&bend, &by);
                     term += 1;
                 }
             }
-            if self.is(1, Held::Load) {
+            if self.is(1, EndCondition::Load) {
                 s += c(w[term] * half) * vector(&Self::force()).dot(&at(&q.x, self.n));
             }
         }
         s
     }
     fn held(&self, at: usize) -> bool {
-        let [first, last] = self.ends.map_or([false; 2], |ends| ends.map(Held::holds));
+        let [first, last] = self
+            .ends
+            .map_or([false; 2], |ends| ends.map(EndCondition::holds));
         let fields = 3 * self.nodes();
         first && at < 3 || last && at >= fields - 3 && at < fields
     }

@@ -148,7 +148,7 @@ impl Variation {
 
 /// The value of one name of a model.
 #[derive(Clone, Debug)]
-pub struct Given {
+pub struct NamedValue {
     /// The name as written in the model.
     pub name: String,
     /// The node relative to the node of the residual: -1, 0 or 1; 0 for parameters.
@@ -161,7 +161,7 @@ pub struct Given {
     pub data: Vec<f64>,
 }
 
-impl Given {
+impl NamedValue {
     /// A scalar parameter.
     #[must_use]
     pub fn scalar(name: &str, value: f64) -> Self {

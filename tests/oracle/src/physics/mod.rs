@@ -3,12 +3,12 @@
 
 pub mod against_reference;
 pub mod cases;
-pub mod draws;
-pub mod faults;
+pub mod drift_detection;
+pub mod faulty_steppers;
 pub mod measure;
 pub mod motion;
 pub mod order;
+pub mod random_states;
 pub mod symplectic;
 pub mod systems;
-pub mod trend;
-pub mod truth;
+pub mod taylor_reference;

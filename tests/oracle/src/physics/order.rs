@@ -3,7 +3,7 @@
 
 use super::measure::worse;
 use super::motion::Motion;
-use super::truth::Phase;
+use super::taylor_reference::Phase;
 
 /// Errors of a motion at a fixed time for a sequence of halved step sizes.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ use super::Ends;
 use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, number};
 use clebsch_oracle::oracle::dual::Number;
-use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::points::{NamedValue, Source};
 
 const TEXT: &str = "model Beam {
     label i in 0..N step s; periodic;
@@ -77,26 +77,30 @@ impl Typed for Beam {
         &self.bodies
     }
 
-    fn parameters(&self) -> Vec<Given> {
+    fn parameters(&self) -> Vec<NamedValue> {
         let named = [
             ("w", self.w),
             ("h", self.h),
             ("s", self.s),
             ("L", self.once_around),
         ];
-        let mut all: Vec<Given> = named.map(|(n, v)| Given::scalar(n, v)).to_vec();
+        let mut all: Vec<NamedValue> = named.map(|(n, v)| NamedValue::scalar(n, v)).to_vec();
         for (i, place) in self.places.iter().enumerate() {
-            all.push(Given::scalar(&format!("m_{i}"), self.m[i]));
-            all.push(Given::scalar(&format!("c_{i}"), self.c[i]));
-            all.extend(place.err().map(|u| Given::scalar(&format!("u_{i}"), u)));
+            all.push(NamedValue::scalar(&format!("m_{i}"), self.m[i]));
+            all.push(NamedValue::scalar(&format!("c_{i}"), self.c[i]));
+            all.extend(
+                place
+                    .err()
+                    .map(|u| NamedValue::scalar(&format!("u_{i}"), u)),
+            );
         }
         for i in 0..self.segments {
-            all.push(Given::scalar(&format!("k_{i}"), self.k[i]));
-            all.push(Given::scalar(&format!("p_{i}"), self.p[i]));
+            all.push(NamedValue::scalar(&format!("k_{i}"), self.k[i]));
+            all.push(NamedValue::scalar(&format!("p_{i}"), self.p[i]));
         }
         let [first, last] = self.springs;
-        all.push(Given::scalar("c0_0", first));
-        all.push(Given::scalar(&format!("c0_{}", self.segments), last));
+        all.push(NamedValue::scalar("c0_0", first));
+        all.push(NamedValue::scalar(&format!("c0_{}", self.segments), last));
         all
     }
 

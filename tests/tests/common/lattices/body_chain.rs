@@ -4,7 +4,7 @@ use super::FREE;
 use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, fixed, number, turn};
 use clebsch_oracle::oracle::dual::Number;
-use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::points::{NamedValue, Source};
 use clebsch_oracle::oracle::square::{Square, dot};
 
 const TEXT: &str = "model CoupledBodyChain {
@@ -44,12 +44,12 @@ impl Typed for Chain {
         &self.bodies
     }
 
-    fn parameters(&self) -> Vec<Given> {
+    fn parameters(&self) -> Vec<NamedValue> {
         vec![
-            Given::scalar("h", self.h),
-            Given::scalar("eps", self.eps),
-            Given::square("J", 0, &self.j),
-            Given::column("d", 0, &self.d),
+            NamedValue::scalar("h", self.h),
+            NamedValue::scalar("eps", self.eps),
+            NamedValue::square("J", 0, &self.j),
+            NamedValue::column("d", 0, &self.d),
         ]
     }
 

@@ -8,7 +8,7 @@ use clebsch_core::interpret::evaluate;
 use clebsch_core::{Assignment, Derivation};
 use clebsch_oracle::oracle::action::rotations;
 use clebsch_oracle::oracle::dual::{Dual, Number};
-use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::points::{NamedValue, Source};
 use clebsch_oracle::physics::measure::worse;
 
 /// The variation of an action at the configurations of one node, one component per direction.
@@ -96,19 +96,19 @@ pub fn typed(model: &impl Typed, nodes: &[Vec<f64>; 3], change: Change) -> [Vari
     [start, end, both]
 }
 
-fn set(values: &mut Assignment, given: &[Given]) {
+fn set(values: &mut Assignment, given: &[NamedValue]) {
     for g in given {
         values.set(&g.name, g.shift, g.rows, g.cols, &g.data);
     }
 }
 
-fn configuration(body: &Body, shift: i8, x: &[f64]) -> Given {
+fn configuration(body: &Body, shift: i8, x: &[f64]) -> NamedValue {
     let (rows, cols) = match body.kind {
         Kind::Rotation | Kind::Spatial => (3, 3),
         Kind::Vector(n) => (n, 1),
         Kind::Number => (1, 1),
     };
-    Given {
+    NamedValue {
         name: body.name.clone(),
         shift,
         rows,
@@ -123,7 +123,7 @@ pub fn values(model: &impl Typed, nodes: &[Vec<f64>; 3]) -> Assignment {
     set(&mut values, &model.parameters());
     for (shift, x) in (-1..=1).zip(nodes) {
         let each = model.bodies().0.iter();
-        let each: Vec<Given> = each.map(|b| configuration(b, shift, x)).collect();
+        let each: Vec<NamedValue> = each.map(|b| configuration(b, shift, x)).collect();
         set(&mut values, &each);
         set(&mut values, &model.advected(shift, x));
     }

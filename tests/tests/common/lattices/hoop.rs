@@ -5,7 +5,7 @@ use super::Ends;
 use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, column, fixed, minus, number, turn};
 use clebsch_oracle::oracle::dual::Number;
-use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::points::{NamedValue, Source};
 use clebsch_oracle::oracle::square::{Square, dot};
 use std::array::from_fn;
 
@@ -80,20 +80,20 @@ impl Typed for Hoop {
         &self.bodies
     }
 
-    fn parameters(&self) -> Vec<Given> {
+    fn parameters(&self) -> Vec<NamedValue> {
         let mut all = vec![
-            Given::scalar("h", self.h),
-            Given::scalar("s", self.s),
-            Given::square("C0", 0, &self.c0),
-            Given::column("g", 0, &self.g),
-            Given::column("A", 0, &self.once_around),
+            NamedValue::scalar("h", self.h),
+            NamedValue::scalar("s", self.s),
+            NamedValue::square("C0", 0, &self.c0),
+            NamedValue::column("g", 0, &self.g),
+            NamedValue::column("A", 0, &self.once_around),
         ];
         for (j, m) in self.m.iter().enumerate() {
-            all.push(Given::scalar(&format!("m_{j}"), *m));
+            all.push(NamedValue::scalar(&format!("m_{j}"), *m));
         }
         for j in 0..self.segments {
-            all.push(Given::square(&format!("I0_{j}"), 0, &self.i0[j]));
-            all.push(Given::square(&format!("Cs_{j}"), 0, &self.cs[j]));
+            all.push(NamedValue::square(&format!("I0_{j}"), 0, &self.i0[j]));
+            all.push(NamedValue::square(&format!("Cs_{j}"), 0, &self.cs[j]));
         }
         all
     }

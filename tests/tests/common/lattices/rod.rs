@@ -4,7 +4,7 @@ use super::Ends;
 use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, column, fixed, minus, number, turn};
 use clebsch_oracle::oracle::dual::Number;
-use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::points::{NamedValue, Source};
 use clebsch_oracle::oracle::square::{Square, dot};
 
 const TEXT: &str = "model GeometricallyExactRod {
@@ -100,26 +100,26 @@ impl Typed for Rod {
         &self.bodies
     }
 
-    fn parameters(&self) -> Vec<Given> {
+    fn parameters(&self) -> Vec<NamedValue> {
         let n = self.segments;
         let mut all = vec![
-            Given::scalar("h", self.h),
-            Given::scalar("s", self.s),
-            Given::square("C0", 0, &self.c0),
-            Given::column("g", 0, &self.g),
-            Given::square("Λw_0", 0, &self.walls[0]),
-            Given::square(&format!("Λw_{n}"), 0, &self.walls[1]),
-            Given::column(&format!("force_{n}"), 0, &self.force),
+            NamedValue::scalar("h", self.h),
+            NamedValue::scalar("s", self.s),
+            NamedValue::square("C0", 0, &self.c0),
+            NamedValue::column("g", 0, &self.g),
+            NamedValue::square("Λw_0", 0, &self.walls[0]),
+            NamedValue::square(&format!("Λw_{n}"), 0, &self.walls[1]),
+            NamedValue::column(&format!("force_{n}"), 0, &self.force),
         ];
         for (j, place) in self.places.iter().enumerate() {
-            all.push(Given::scalar(&format!("m_{j}"), self.m[j]));
+            all.push(NamedValue::scalar(&format!("m_{j}"), self.m[j]));
             if let Place::Held(place) = place {
-                all.push(Given::column(&format!("φ_{j}"), 0, place));
+                all.push(NamedValue::column(&format!("φ_{j}"), 0, place));
             }
         }
         for j in 0..n {
-            all.push(Given::square(&format!("I0_{j}"), 0, &self.i0[j]));
-            all.push(Given::square(&format!("Cs_{j}"), 0, &self.cs[j]));
+            all.push(NamedValue::square(&format!("I0_{j}"), 0, &self.i0[j]));
+            all.push(NamedValue::square(&format!("Cs_{j}"), 0, &self.cs[j]));
         }
         all
     }

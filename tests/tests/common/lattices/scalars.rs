@@ -5,7 +5,7 @@ use super::Ends;
 use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, number};
 use clebsch_oracle::oracle::dual::Number;
-use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::points::{NamedValue, Source};
 
 const TODA: &str = "model TodaChain {
     label i in 0..N; periodic;
@@ -65,7 +65,7 @@ impl Typed for Toda {
             .collect()
     }
 
-    fn parameters(&self) -> Vec<Given> {
+    fn parameters(&self) -> Vec<NamedValue> {
         let named = [
             ("m", self.m),
             ("a", self.a),
@@ -73,7 +73,7 @@ impl Typed for Toda {
             ("h", self.h),
             ("L", self.once_around),
         ];
-        named.map(|(n, v)| Given::scalar(n, v)).to_vec()
+        named.map(|(n, v)| NamedValue::scalar(n, v)).to_vec()
     }
 
     fn action<T: Number>(&self, tail: &[T], head: &[T], sum: &mut Sum<T>) {
@@ -148,13 +148,13 @@ impl Typed for Pendulums {
         each.map(|_| source.between(-3.0, 3.0)).collect()
     }
 
-    fn parameters(&self) -> Vec<Given> {
+    fn parameters(&self) -> Vec<NamedValue> {
         let named = [("w", self.w), ("h", self.h), ("s", self.s)];
         let held = self.angles.iter().enumerate().filter_map(|(i, u)| {
             let u = u.err()?;
-            Some(Given::scalar(&format!("u_{i}"), u))
+            Some(NamedValue::scalar(&format!("u_{i}"), u))
         });
-        let named = named.map(|(n, v)| Given::scalar(n, v)).into_iter();
+        let named = named.map(|(n, v)| NamedValue::scalar(n, v)).into_iter();
         named.chain(held).collect()
     }
 

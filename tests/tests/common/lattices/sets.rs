@@ -4,7 +4,7 @@ use super::Ends;
 use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, column, fixed, minus, number, turn};
 use clebsch_oracle::oracle::dual::Number;
-use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::points::{NamedValue, Source};
 use clebsch_oracle::oracle::square::{Square, dot};
 
 const TEXT: &str = "model CloudAndString {
@@ -66,21 +66,21 @@ impl Typed for Cloud {
         &self.bodies
     }
 
-    fn parameters(&self) -> Vec<Given> {
+    fn parameters(&self) -> Vec<NamedValue> {
         let mut all = vec![
-            Given::scalar("h", self.h),
-            Given::scalar("s", self.s),
-            Given::square("J", 0, &self.j),
-            Given::column("e", 0, &self.e),
-            Given::column("z", 0, &self.z),
+            NamedValue::scalar("h", self.h),
+            NamedValue::scalar("s", self.s),
+            NamedValue::square("J", 0, &self.j),
+            NamedValue::column("e", 0, &self.e),
+            NamedValue::column("z", 0, &self.z),
         ];
         for a in 0..self.particles {
-            all.push(Given::column(&format!("r_{a}"), 0, &self.r[a]));
-            all.push(Given::scalar(&format!("m_{a}"), self.m[a]));
-            all.push(Given::scalar(&format!("k_{a}"), self.k[a]));
+            all.push(NamedValue::column(&format!("r_{a}"), 0, &self.r[a]));
+            all.push(NamedValue::scalar(&format!("m_{a}"), self.m[a]));
+            all.push(NamedValue::scalar(&format!("k_{a}"), self.k[a]));
         }
         for i in 0..self.segments {
-            all.push(Given::scalar(&format!("c_{i}"), self.c[i]));
+            all.push(NamedValue::scalar(&format!("c_{i}"), self.c[i]));
         }
         all
     }

@@ -5,7 +5,7 @@ use super::Ends;
 use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, number};
 use clebsch_oracle::oracle::dual::Number;
-use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::points::{NamedValue, Source};
 
 const TEXT: &str = "model ShallowWater1D {
     time k step dt; label i in 0..N; periodic;
@@ -63,7 +63,7 @@ impl Typed for Water {
         all
     }
 
-    fn parameters(&self) -> Vec<Given> {
+    fn parameters(&self) -> Vec<NamedValue> {
         let named = [
             ("g", self.g),
             ("f", self.f),
@@ -71,8 +71,8 @@ impl Typed for Water {
             ("L", self.once_around()),
         ];
         let masses = self.m.iter().enumerate();
-        let masses = masses.map(|(i, m)| Given::scalar(&format!("m_{i}"), *m));
-        let named = named.map(|(n, v)| Given::scalar(n, v)).into_iter();
+        let masses = masses.map(|(i, m)| NamedValue::scalar(&format!("m_{i}"), *m));
+        let named = named.map(|(n, v)| NamedValue::scalar(n, v)).into_iter();
         named.chain(masses).collect()
     }
 

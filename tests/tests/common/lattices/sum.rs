@@ -2,7 +2,7 @@
 
 use super::change::Change;
 use clebsch_oracle::oracle::dual::Number;
-use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::points::{NamedValue, Source};
 use clebsch_oracle::oracle::square::Square;
 use std::array::from_fn;
 
@@ -81,10 +81,10 @@ pub trait Typed {
     }
 
     /// Values of parameters and of the step size.
-    fn parameters(&self) -> Vec<Given>;
+    fn parameters(&self) -> Vec<NamedValue>;
 
     /// Values of advected quantities at this time level.
-    fn advected(&self, _shift: i8, _x: &[f64]) -> Vec<Given> {
+    fn advected(&self, _shift: i8, _x: &[f64]) -> Vec<NamedValue> {
         Vec::new()
     }
 

@@ -4,7 +4,7 @@ use super::Ends;
 use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, fixed, number, turn};
 use clebsch_oracle::oracle::dual::Number;
-use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::points::{NamedValue, Source};
 use clebsch_oracle::oracle::square::{Square, dot};
 
 const TEXT: &str = "model CoupledTops {
@@ -53,20 +53,20 @@ impl Typed for Tops {
         &self.bodies
     }
 
-    fn parameters(&self) -> Vec<Given> {
+    fn parameters(&self) -> Vec<NamedValue> {
         vec![
-            Given::scalar("h", self.h),
-            Given::scalar("s", self.s),
-            Given::square("J", 0, &self.j),
-            Given::square("C0", 0, &self.c0),
-            Given::column("gU", 0, &self.gu),
-            Given::column("z", 0, &self.z),
+            NamedValue::scalar("h", self.h),
+            NamedValue::scalar("s", self.s),
+            NamedValue::square("J", 0, &self.j),
+            NamedValue::square("C0", 0, &self.c0),
+            NamedValue::column("gU", 0, &self.gu),
+            NamedValue::column("z", 0, &self.z),
         ]
     }
 
-    fn advected(&self, shift: i8, x: &[f64]) -> Vec<Given> {
+    fn advected(&self, shift: i8, x: &[f64]) -> Vec<NamedValue> {
         let seen = |i: usize| turn(x, self.tops[i]).transpose().apply(&self.z);
-        let each = (0..self.nodes).map(|i| Given::column(&format!("Γ_{i}"), shift, &seen(i)));
+        let each = (0..self.nodes).map(|i| NamedValue::column(&format!("Γ_{i}"), shift, &seen(i)));
         each.collect()
     }
 

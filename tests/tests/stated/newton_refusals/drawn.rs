@@ -19,7 +19,7 @@ use clebsch_models::kirchhoff_body::{
     KirchhoffBody, KirchhoffBodyConfiguration, KirchhoffBodyInitial, KirchhoffBodyParameters,
     KirchhoffBodyState,
 };
-use clebsch_oracle::physics::draws::Draws;
+use clebsch_oracle::physics::random_states::Draws;
 
 clebsch::model! {
     /// Not separable: the potential of an edge depends on how far the body turns in it.

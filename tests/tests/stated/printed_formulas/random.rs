@@ -5,7 +5,7 @@ use clebsch_core::derive::invariants::Kind;
 use clebsch_core::expr::shape::Dim;
 use clebsch_core::interpret::{Assignment, evaluate};
 use clebsch_core::{Derivation, derive_source};
-use clebsch_oracle::physics::draws::Draws;
+use clebsch_oracle::physics::random_states::Draws;
 use clebsch_oracle::printed::{Value, quaternion};
 
 /// A random Lagrangian over one or two groups, with kinetic energies, linear terms and potentials of either sign.

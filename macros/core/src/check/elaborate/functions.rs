@@ -147,7 +147,7 @@ impl Elaborator<'_> {
         expected: Option<Shape>,
     ) -> Elaborated {
         if let Some(given) = self.names.symbols.functional_named(&name.text) {
-            return self.given(given, args, place);
+            return self.user_function_call(given, args, place);
         }
         if let Some(d) = self.no_function(name) {
             return fail(d);

@@ -4,7 +4,7 @@ mod elsewhere;
 
 use crate::pipeline::derive_source;
 
-fn said(statements: &str, term: &str) -> String {
+fn message(statements: &str, term: &str) -> String {
     let text = format!(
         "model M {{ time k step dt; param m: Real; field q: Real; field x: Vec<3>; {statements} \
          lagrangian = m*(next(q) - q)^2/(2*dt) + m*dot(next(x) - x, next(x) - x)/(2*dt) - dt*({term}); }}"
@@ -49,7 +49,7 @@ fn notation_of_papers_is_told_with_what_to_write() {
         ("let u: Real = q;", "u", "write `=` before an expression"),
         ("hamiltonian = q;", "q", "the discrete Lagrangian of a step"),
     ] {
-        let found = said(statements, term);
+        let found = message(statements, term);
         assert!(found.contains(wanted), "{statements} {term}\n{found}");
     }
 }
@@ -57,7 +57,7 @@ fn notation_of_papers_is_told_with_what_to_write() {
 #[test]
 fn unit_vectors_have_the_size_of_what_is_beside_them() {
     // The first configuration is a scalar field, which does not have unit vectors.
-    let found = said(
+    let found = message(
         "group U: SU<2> velocity V; constraint next(U) = U*V;",
         "dot(rot(U)*E1 - rot(U)*E2, rot(U)*E1 - x) + 2*dot(im(V), im(V))/dt^2",
     );
@@ -74,7 +74,7 @@ fn names_that_are_nearly_right_are_told_with_those_that_are_meant() {
         ("param gravity: Real;", "gravtyy*q", Some("`gravity`")),
         ("param mass: Real;", "mqqs*q", None),
     ] {
-        let found = said(statements, term);
+        let found = message(statements, term);
         match wanted {
             Some(name) => {
                 let wanted = format!("did you mean {name}?");

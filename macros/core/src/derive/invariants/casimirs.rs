@@ -3,8 +3,8 @@
 //! quantities that are conserved for every Lagrangian.
 
 use super::independence::tangents;
-use super::passage::RandomStep;
-use super::{Family, Inputs, Invariant, Kind, here, is_conserved, words};
+use super::random_step::RandomStep;
+use super::{Family, Inputs, Invariant, Kind, casimir_candidates, here, is_conserved};
 use crate::algebra::assumed::{self, Independent, rank};
 use crate::algebra::exact::{ATTEMPTS, Matrix, Point, add, mul, negate, paired};
 use crate::derive::bracket::{Element, Numbers, Space};
@@ -62,11 +62,11 @@ pub(super) fn casimirs(x: &Inputs, equations: &[Expr], passages: &[RandomStep]) 
     };
     let (dimension, size) = (first.matrix.len(), rank(&first.matrix));
     let mut differentials = Independent::default();
-    for c in words::candidates(x, passages) {
+    for c in casimir_candidates::candidates(x, passages) {
         if differentials.len() == dimension - size {
             break;
         }
-        debug_assert!(words::is_reduced(x, &c.value));
+        debug_assert!(casimir_candidates::is_reduced(x, &c.value));
         // The cheapest test first, because most candidates fail it.
         if !passages.first().is_some_and(|p| p.keeps(&c.value)) {
             continue;
@@ -162,7 +162,7 @@ fn general<'a>(x: &Inputs<'a>, equations: &[Expr], attempt: u64) -> Option<Gener
 }
 
 fn at_point<'a>(x: &Inputs<'a>, mut point: Point<'a>) -> Option<General<'a>> {
-    for id in words::letters(x) {
+    for id in casimir_candidates::letters(x) {
         let value = point.letter(here(id))?;
         point.set(here(id), value);
     }
@@ -179,7 +179,7 @@ fn at_point<'a>(x: &Inputs<'a>, mut point: Point<'a>) -> Option<General<'a>> {
 fn differential(x: &Inputs, point: &Point, value: &Expr) -> Option<Vec<u64>> {
     let s = &x.letters.symbols;
     let mut out = Vec::new();
-    for id in words::letters(x) {
+    for id in casimir_candidates::letters(x) {
         let tangents = tangents(point, here(id), s.get(id).structure)?;
         let gradient = match expr::contains(value, here(id)) {
             true => expr::gradient(s, value, here(id)),

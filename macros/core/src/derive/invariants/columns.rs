@@ -7,7 +7,7 @@ use super::Inputs;
 use super::mixed::Component;
 use super::motions::{Motion, Sort, Way};
 use super::noether::components;
-use super::passage::RandomStep;
+use super::random_step::RandomStep;
 use crate::check::spec::CopyOf;
 
 /// The largest number of configurations whose momenta are combined individually; otherwise, all coupled ones

@@ -4,7 +4,7 @@
 
 use super::motions::Motion;
 use super::noether::{Term, combined};
-use super::passage::RandomStep;
+use super::random_step::RandomStep;
 use super::{Inputs, here};
 use crate::check::spec::Configuration;
 use crate::derive::action::summands;

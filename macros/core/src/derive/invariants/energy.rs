@@ -2,7 +2,7 @@
 //! momentum, plus the potential. The discrete energy on an edge is the negative derivative of the action of the step
 //! with respect to the step size. Both are bounded, as for every symplectic step, or exact if that is proved.
 
-use super::passage::RandomStep;
+use super::random_step::RandomStep;
 use super::{Family, Inputs, Invariant, Kind, Lax, here, is_conserved};
 use crate::algebra::Rational;
 use crate::algebra::assumed::eliminate;

@@ -1,8 +1,8 @@
 //! Homogeneous vectors, planes and points that rigid motions advect, and the quantities that they determine. Takes
 //! the advected vectors of a model; gives parts of candidates for invariants.
 
+use super::casimir_candidates::Piece;
 use super::motions::space_of;
-use super::words::Piece;
 use super::{Candidate, Inputs};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, last_axis, within};

@@ -1,7 +1,7 @@
 //! Decides whether a momentum is independent of others as a function on the phase space. Takes invariants and a
 //! general point; compares ranks of differentials in exact arithmetic.
 
-use super::passage::RandomStep;
+use super::random_step::RandomStep;
 use super::{Family, Inputs, Invariant, here};
 use crate::algebra::assumed::rank;
 use crate::algebra::exact::{Matrix, Point};

@@ -2,7 +2,7 @@
 //! integrals, the coefficients of `det(ν + M + λ C²)`. Takes the Riccati factor and the balance; gives the Lax pair
 //! and the integrals.
 
-use super::passage::RandomStep;
+use super::random_step::RandomStep;
 use super::{Family, Inputs, Invariant, Kind, here, is_conserved, length};
 use crate::algebra::Rational;
 use crate::algebra::exact::{Matrix, Point};

@@ -5,7 +5,7 @@
 use super::columns::Columns;
 use super::draws::Roots;
 use super::motions::{Motion, Sort};
-use super::passage::{RandomStep, completed, start};
+use super::random_step::{RandomStep, completed, start};
 use super::{Inputs, here};
 use crate::algebra::assumed::{Independent, eliminate, rank};
 use crate::algebra::exact::{Matrix, Point, add, mul, negate, rational};

@@ -3,6 +3,7 @@
 //! for Noether momenta of every group, frame and axis, and for Manakov integrals if the step has a Lax form. The
 //! energy is exact if that is proved, otherwise bounded.
 
+mod casimir_candidates;
 mod casimirs;
 mod columns;
 mod difference;
@@ -13,15 +14,14 @@ mod independence;
 mod isospectral;
 mod kernel;
 mod mixed;
+mod momentum_components;
 mod motions;
 mod noether;
-pub(crate) mod passage;
-mod readings;
+mod noether_description;
+pub(crate) mod random_step;
 #[cfg(test)]
 mod tests;
-mod told;
 mod totals;
-mod words;
 
 use super::Letters;
 use super::action::Action;
@@ -35,7 +35,7 @@ use crate::check::spec::Spec;
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::work;
-use passage::RandomStep;
+use random_step::RandomStep;
 
 pub use casimirs::Count;
 pub use energy::DiscreteEnergy;
@@ -98,7 +98,7 @@ pub struct Invariant {
 #[derive(Clone, Debug)]
 pub struct Integrability {
     /// The Casimirs: their number, or why the search was skipped.
-    pub casimirs: Known,
+    pub casimirs: CasimirSearch,
     /// The Lax form of the step, if one was found.
     pub lax: Option<Lax>,
     /// The discrete energy of an edge.
@@ -107,7 +107,7 @@ pub struct Integrability {
 
 /// The result of the search for the Casimirs of a model.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub enum Known {
+pub enum CasimirSearch {
     /// The numbers of existing and of found Casimirs, at each size that was searched.
     Counted(Vec<Count>),
     /// No search, with the reason.
@@ -119,11 +119,11 @@ impl Integrability {
     /// that was searched.
     pub fn rank(&self) -> Option<(usize, usize)> {
         match &self.casimirs {
-            Known::Counted(counts) => match counts.as_slice() {
+            CasimirSearch::Counted(counts) => match counts.as_slice() {
                 [one] if one.size.is_none() => Some((one.dimension, one.rank)),
                 _ => None,
             },
-            Known::NotSought(_) => None,
+            CasimirSearch::NotSought(_) => None,
         }
     }
 }
@@ -164,7 +164,7 @@ struct Candidate {
 /// The invariants that can be proved.
 pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
     let roots = draws::Roots::of(x);
-    let passages = passage::passages(x, &roots, x.assumed);
+    let passages = random_step::random_steps(x, &roots, x.assumed);
     let mut out = Vec::new();
     let large = too_large(x);
     let small = large.is_none();
@@ -180,7 +180,7 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
                 ..*x
             };
             let roots = draws::Roots::of(x);
-            noether::momenta(x, &roots, &passage::passages(x, &roots, x.assumed))
+            noether::momenta(x, &roots, &random_step::random_steps(x, &roots, x.assumed))
         }
     };
     out.extend(momenta.of_sites);
@@ -220,16 +220,16 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
     distinguish(&mut out);
     let known = Integrability {
         casimirs: match large {
-            _ if elements => Known::NotSought(
+            _ if elements => CasimirSearch::NotSought(
                 "the equations contain the configuration itself, not only reduced variables"
                     .to_owned(),
             ),
-            Some(why) => Known::NotSought(why),
-            None if work::cut_short() => Known::NotSought(format!(
+            Some(why) => CasimirSearch::NotSought(why),
+            None if work::cut_short() => CasimirSearch::NotSought(format!(
                 "the search needs more than {} products of numbers",
                 work::products()
             )),
-            None => Known::Counted(counts),
+            None => CasimirSearch::Counted(counts),
         },
         discrete_energy: energy::discrete(x, &passages, lax.as_ref()),
         lax,

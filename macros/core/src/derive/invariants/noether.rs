@@ -6,10 +6,10 @@ use super::columns::{Column, Columns};
 use super::difference;
 use super::draws::Roots;
 use super::kernel::{Kernel, Samples};
+use super::momentum_components::{MomentumComponent, momentum_components};
 use super::motions::{Motion, Sort, Way, motions};
-use super::passage::RandomStep;
-use super::readings::{MomentumComponent, readings};
-use super::told::{name, reason};
+use super::noether_description::{name, reason};
+use super::random_step::RandomStep;
 use super::{Family, Inputs, Invariant, Kind, is_conserved, length};
 use crate::algebra::exact::Matrix;
 use crate::derive::action::summands;
@@ -101,7 +101,7 @@ pub(super) fn momenta(x: &Inputs, roots: &Roots, passages: &[RandomStep]) -> Mom
     if !kernels.is_empty() && kernels.iter().all(|k| k.dimension == 0) {
         return Momenta::default();
     }
-    let readings = readings(x, &columns.sorts());
+    let readings = momentum_components(x, &columns.sorts());
     let mut search = Search {
         x,
         passages,

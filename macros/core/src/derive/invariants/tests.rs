@@ -7,7 +7,7 @@ mod singular;
 mod symmetries;
 mod totals;
 
-use super::{Family, Known};
+use super::{CasimirSearch, Family};
 use crate::derive::Derivation;
 use crate::pipeline::derive_source;
 
@@ -352,8 +352,10 @@ fn a_body_in_a_fluid_keeps_what_its_surroundings_leave_alone() {
 /// For each size: the number of Casimirs found, and their total number.
 fn casimirs(d: &Derivation) -> Vec<(Option<usize>, usize, usize)> {
     match &d.integrability.casimirs {
-        Known::Counted(counts) => counts.iter().map(|c| (c.size, c.found, c.all())).collect(),
-        Known::NotSought(_) => Vec::new(),
+        CasimirSearch::Counted(counts) => {
+            counts.iter().map(|c| (c.size, c.found, c.all())).collect()
+        }
+        CasimirSearch::NotSought(_) => Vec::new(),
     }
 }
 
@@ -382,7 +384,10 @@ fn casimirs_of_a_named_size_are_counted_at_every_size() {
     let wide = body_of("dim n in 3..=12;", "n", "Mat", "");
     assert_eq!(casimirs(&wide).last(), Some(&(Some(8), 4, 4)));
     let none = body_of("", "12", "Mat", "");
-    assert!(matches!(none.integrability.casimirs, Known::NotSought(_)));
+    assert!(matches!(
+        none.integrability.casimirs,
+        CasimirSearch::NotSought(_)
+    ));
     assert!(none.integrability.rank().is_none());
 }
 
@@ -448,8 +453,8 @@ fn what_is_the_same_number_for_every_state_is_not_listed() {
     let moments = ["spatial_momentum_skew_identity", "momentum_skew_identity"];
     assert_eq!(names(&metrics), [&["energy~"][..], &moments].concat());
     let same = |d: &Derivation| match &d.integrability.casimirs {
-        Known::Counted(counts) => counts.iter().map(|c| (c.found, c.same)).collect(),
-        Known::NotSought(_) => Vec::new(),
+        CasimirSearch::Counted(counts) => counts.iter().map(|c| (c.found, c.same)).collect(),
+        CasimirSearch::NotSought(_) => Vec::new(),
     };
     assert_eq!(same(&metrics), [(2, 2)]);
     let spring = derive(

@@ -3,9 +3,9 @@
 //! configurations and the constraints; gives vectors for candidates for Casimirs.
 
 use super::Inputs;
+use super::casimir_candidates::Piece;
 use super::noether::components;
-use super::passage::RandomStep;
-use super::words::Piece;
+use super::random_step::RandomStep;
 use crate::algebra::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::SymbolId;
@@ -23,7 +23,7 @@ struct Carrier {
 }
 
 /// The momentum of a body in the frame of another.
-struct Carried {
+struct MomentumInFrame {
     body: usize,
     /// The rotations on the path, the last one first.
     by: Vec<Expr>,
@@ -47,7 +47,7 @@ pub(super) fn totals(x: &Inputs, passages: &[RandomStep]) -> Vec<Piece> {
     sets.retain(|set| !coupled.contains(set));
     let space = coupled.iter().flat_map(|set| {
         set.iter().map(move |frame| {
-            let plain = |i: &usize| Carried {
+            let plain = |i: &usize| MomentumInFrame {
                 body: *i,
                 by: Vec::new(),
                 opposite: false,
@@ -61,7 +61,7 @@ pub(super) fn totals(x: &Inputs, passages: &[RandomStep]) -> Vec<Piece> {
         set.iter()
             .map(move |frame| (set, in_frame(carriers, *frame)))
     });
-    let piece = |(set, list): (&Vec<usize>, Vec<Carried>)| {
+    let piece = |(set, list): (&Vec<usize>, Vec<MomentumInFrame>)| {
         let terms = list.into_iter().map(|c| {
             let turned = expr::product(c.by.into_iter().chain([momentum(x, c.body)]));
             match c.opposite {
@@ -168,8 +168,8 @@ fn joined(x: &Inputs, carriers: &[Carrier]) -> Vec<Vec<usize>> {
 }
 
 /// The bodies that rotations connect to a frame, with these rotations. The frame itself comes first.
-fn in_frame(carriers: &[Carrier], frame: usize) -> Vec<Carried> {
-    let mut reached = vec![Carried {
+fn in_frame(carriers: &[Carrier], frame: usize) -> Vec<MomentumInFrame> {
+    let mut reached = vec![MomentumInFrame {
         body: frame,
         by: Vec::new(),
         opposite: false,
@@ -179,7 +179,7 @@ fn in_frame(carriers: &[Carrier], frame: usize) -> Vec<Carried> {
         let (to, by, opposite) = (here.body, here.by.clone(), here.opposite);
         for c in carriers.iter().filter(|c| c.to == to) {
             if reached.iter().all(|r| r.body != c.from) {
-                reached.push(Carried {
+                reached.push(MomentumInFrame {
                     body: c.from,
                     by: by.iter().cloned().chain([c.rotation.clone()]).collect(),
                     opposite: opposite != c.opposite,

@@ -2,7 +2,7 @@
 //! structure, definition and constraint. Takes segments; gives letters.
 
 use super::relative::Frame;
-use super::terms::{Carried, Reducer};
+use super::terms::{ReducedQuantity, Reducer};
 use crate::algebra::{Factor, Word};
 use crate::expr::shape::{Dim, Structure};
 use crate::expr::symbol::{Role, SymbolId};
@@ -125,7 +125,7 @@ impl Reducer<'_> {
                 .chain(right)
                 .collect::<Vec<_>>(),
         );
-        self.carried.push(Carried {
+        self.carried.push(ReducedQuantity {
             quantity,
             word: w.to_vec(),
             definition,

@@ -2,12 +2,12 @@
 //! Λ`), and parameters such as `z` absorb the remaining `Λ`: `Λ^T z` becomes an advected quantity. Takes a checked
 //! model; gives the reduced model with these advected quantities. For fields, `next(X)` becomes `X + ΔX`.
 
+mod cancelled_elements;
 mod carry;
 mod element;
 mod increments;
 mod relative;
 mod segments;
-mod settle;
 mod terms;
 #[cfg(test)]
 mod tests;

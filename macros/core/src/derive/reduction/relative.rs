@@ -2,8 +2,8 @@
 //! and the relative motions. If the first one cancels, the relative motions are the advected quantities. Takes
 //! scalars; gives them in relative motions, which it declares.
 
-use super::settle::settled;
-use super::terms::{Carried, Reducer};
+use super::cancelled_elements::settled;
+use super::terms::{ReducedQuantity, Reducer};
 use crate::check::spec::Configuration;
 use crate::derive::variation::at;
 use crate::expr::shape::Structure;
@@ -92,7 +92,7 @@ impl<'a> Reducer<'a> {
         let quantity = self.symbols.add(&name, shape, structure, Role::Advected);
         let own = expr::here(&self.symbols, quantity);
         let update = between(&self.symbols, a.velocity, Some(own.clone()), b.velocity);
-        self.carried.push(Carried {
+        self.carried.push(ReducedQuantity {
             quantity,
             word: word.unwrap_or_default(),
             definition,
@@ -125,7 +125,7 @@ impl<'a> Reducer<'a> {
     }
 
     /// An advected relative element as a step between two bodies, in both directions.
-    fn steps(&self, c: &Carried, rotation: bool) -> Vec<(Frame, Frame, Expr)> {
+    fn steps(&self, c: &ReducedQuantity, rotation: bool) -> Vec<(Frame, Frame, Expr)> {
         let [a, b] = c.word.as_slice() else {
             return Vec::new();
         };

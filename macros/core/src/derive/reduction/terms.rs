@@ -2,8 +2,8 @@
 //! form, word by word. Takes expressions in elements and velocities; gives them in velocities and advected
 //! quantities, or the word that still contains an element.
 
+use super::cancelled_elements::settled;
 use super::element::Open;
-use super::settle::settled;
 use crate::algebra::{Algebra, Atom, Factor, Poly, Rational, Source, Term};
 use crate::check::spec::{Configuration, Spec};
 use crate::derive::action::summands;
@@ -13,7 +13,7 @@ use crate::expr::{self, Expr, Letter, Node};
 
 /// A quantity that the reduction found.
 #[derive(Clone)]
-pub(super) struct Carried {
+pub(super) struct ReducedQuantity {
     pub(super) quantity: SymbolId,
     /// Its definition as a word, by which it is found again.
     pub(super) word: Vec<Factor>,
@@ -33,7 +33,7 @@ pub(super) struct Reducer<'a> {
     pub(super) algebra: &'a Algebra<'a>,
     /// The symbols, including the quantities found.
     pub(super) symbols: Symbols,
-    pub(super) carried: Vec<Carried>,
+    pub(super) carried: Vec<ReducedQuantity>,
 }
 
 impl<'a> Reducer<'a> {
@@ -285,7 +285,7 @@ impl<'a> Reducer<'a> {
             || expr::integer(1),
             |v| expr::det(expr::here(&self.symbols, v)),
         );
-        self.carried.push(Carried {
+        self.carried.push(ReducedQuantity {
             quantity,
             word,
             definition: expr::det(element),

@@ -5,10 +5,10 @@ use super::invariants::total;
 use super::{ranged, sites, stated_configurations};
 use crate::derive::Derivation;
 use crate::derive::invariants::{Invariant, Kind as InvariantKind};
-use crate::document::folded::{From, IndexedNotation, Part};
+use crate::document::indexed_notation::{IndexOrigin, IndexedNotation, Part};
 use crate::document::riccati_words;
 use crate::expr::{self, Expr, Node};
-use crate::lattice::{Choice, ExpandedModel, Lattice};
+use crate::lattice::{ChainConfig, ExpandedModel, Lattice};
 use crate::print::formula::Formula;
 use crate::print::{Format, Style, expression, formula};
 
@@ -35,7 +35,7 @@ pub struct InvariantWords {
 /// The description of a derived lattice; `solver` names the solvers of its copies.
 pub fn card_words(
     lattice: &Lattice,
-    choice: &Choice,
+    choice: &ChainConfig,
     unfolded: ExpandedModel,
     d: &Derivation,
     solver: &str,
@@ -54,7 +54,7 @@ pub fn card_words(
         |folded: &IndexedNotation, f: &Formula| formula(f, &folded.symbols, &style, Format::Text);
     lines.push(format!("Lagrangian           {}", text(&folded, &terms)));
     for s in stated_configurations(&part) {
-        let from = From::Site(s.site);
+        let from = IndexOrigin::Site(s.site);
         let Some(m) = d.momenta.get(s.shown) else {
             continue;
         };
@@ -134,7 +134,7 @@ pub fn card_words(
 fn explicit(folded: &mut IndexedNotation, part: &Part, e: &Expr) -> (Formula, bool) {
     match total(folded, part, e) {
         Some(sum) => (sum, true),
-        None => (folded.derived(part, e, From::First), false),
+        None => (folded.derived(part, e, IndexOrigin::First), false),
     }
 }
 

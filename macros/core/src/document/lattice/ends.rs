@@ -1,7 +1,7 @@
 //! The ends of a chain: for each end condition, the equations of the sites that differ from the interior.
 
 use super::{equations, like_the_middle, say, stated_configurations};
-use crate::document::folded::{From, IndexedNotation, Part};
+use crate::document::indexed_notation::{IndexOrigin, IndexedNotation, Part};
 use crate::lattice::Lattice;
 use crate::print::document::{Document, Inline};
 use crate::print::formula::Formula;
@@ -40,7 +40,11 @@ fn end(
     title: &str,
     doc: &mut Document,
 ) {
-    let from = if last { From::Last } else { From::First };
+    let from = if last {
+        IndexOrigin::Last
+    } else {
+        IndexOrigin::First
+    };
     let terms = folded.terms(part);
     let section = doc.section(title);
     let lattice: &Lattice = folded.lattice;

@@ -1,7 +1,7 @@
 //! Prints functionals of all sites: the value at a site as a letter, `A_{a,k}`, and the pull-back as a transposed
 //! derivative, with arguments that have no site index.
 
-use super::super::folded::{From, IndexedNotation, Part};
+use super::super::indexed_notation::{IndexOrigin, IndexedNotation, Part};
 use crate::check;
 use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, Symbols};
@@ -16,7 +16,7 @@ impl IndexedNotation<'_> {
         &mut self,
         part: &Part,
         e: &Expr,
-        from: From,
+        from: IndexOrigin,
     ) -> Expr {
         let functionals = self.symbols.functionals();
         if !functionals.iter().any(|f| f.reach == Reach::Sites) {
@@ -60,7 +60,7 @@ impl IndexedNotation<'_> {
         let Node::Given(applied) = value.node() else {
             return None;
         };
-        let letter = self.with_functionals(part, &value, From::Site(0));
+        let letter = self.with_functionals(part, &value, IndexOrigin::Site(0));
         let kind = (value.shape(), Structure::General, Role::Parameter);
         let seed = self.named("s", kind, None, &[]);
         let arguments = applied
@@ -143,7 +143,7 @@ pub(super) fn functionals(folded: &mut IndexedNotation, part: &Part, doc: &mut D
         let what = mesh.path.rsplit("::").next().unwrap_or(&mesh.path);
         let arguments: Vec<&str> = mesh.arguments.iter().map(|a| a.text.as_str()).collect();
         let label = folded.lattice.find(&f.name).map_or(0, |q| q.label);
-        let index = folded.index(part, label, 0, From::Site(0));
+        let index = folded.index(part, label, 0, IndexOrigin::Site(0));
         told.push(vec![
                 value.into(),
                 format!(" is the value at {index} of {what}({}), ", arguments.join(", ")).into(),

@@ -3,10 +3,10 @@
 
 use super::{beyond, stated_configurations, sums};
 use crate::check::spec::Hold;
-use crate::document::folded::{From, IndexedNotation, Part};
 use crate::document::holds::{
-    ALONG, MIDDLE, ON_ARRIVAL, no_change, projected, rate_on_arrival, told,
+    ALONG, MIDDLE, ON_ARRIVAL, no_change, projected, rate_on_arrival, reported_multiplier,
 };
+use crate::document::indexed_notation::{IndexOrigin, IndexedNotation, Part};
 use crate::expr::{self, Expr, Shift};
 use crate::lattice::StatedTotal;
 use crate::print::document::{Document, Inline, Section};
@@ -18,7 +18,7 @@ pub(super) fn holds(folded: &mut IndexedNotation, part: &Part, section: &mut Sec
         let Some(hold) = part.d.spec.holds.get(stated.shown) else {
             continue;
         };
-        let from = From::Site(stated.site);
+        let from = IndexOrigin::Site(stated.site);
         let multiplier = folded.letter(part, hold.multiplier, Shift::HERE, from);
         let mut line: Vec<Inline> = vec![
             "The multiplier ".into(),
@@ -45,15 +45,15 @@ pub(super) fn holds(folded: &mut IndexedNotation, part: &Part, section: &mut Sec
         let Some(hold) = number_of(part, stated).map(|j| &part.d.spec.holds[j]) else {
             continue;
         };
-        let multiplier = folded.letter(part, hold.multiplier, Shift::HERE, From::First);
+        let multiplier = folded.letter(part, hold.multiplier, Shift::HERE, IndexOrigin::First);
         section.paragraph(vec![
             "The multiplier ".into(),
             multiplier.into(),
             ", one for all sites, enforces:".into(),
         ]);
-        let mut side = |e: &Expr| match sums::told(folded, part, e) {
+        let mut side = |e: &Expr| match sums::as_sums(folded, part, e) {
             Some(sum) => sum,
-            None => folded.derived(part, e, From::First),
+            None => folded.derived(part, e, IndexOrigin::First),
         };
         let both = [side(&hold.left), side(&hold.right)];
         let [left, right] = both;
@@ -77,7 +77,7 @@ pub(super) fn held(folded: &mut IndexedNotation, part: &Part, doc: &mut Document
     };
     section.text(ON_ARRIVAL);
     for stated in stated_configurations(part) {
-        let from = From::Site(stated.site);
+        let from = IndexOrigin::Site(stated.site);
         if let Some([left, right]) = projected(d, limit, stated.shown) {
             let both = [left, right].map(|e| folded.derived(part, &e, from));
             let [left, right] = both;
@@ -90,26 +90,26 @@ pub(super) fn held(folded: &mut IndexedNotation, part: &Part, doc: &mut Document
         let rate = rate_on_arrival(d, &d.spec.holds[*j]);
         let zero = expr::zero(rate.shape());
         let sum = match from {
-            From::Site(_) => None,
-            _ => sums::told(folded, part, &rate),
+            IndexOrigin::Site(_) => None,
+            _ => sums::as_sums(folded, part, &rate),
         };
         let rate = sum.unwrap_or_else(|| folded.derived(part, &rate, *from));
         section.equation(Formula::equal(rate, Formula::Expr(zero)));
     }
     section.text(&no_change(d));
     for (j, from) in &shown {
-        let told = folded.expression(part, &told(d, *j), *from);
+        let told = folded.expression(part, &reported_multiplier(d, *j), *from);
         section.equation(Formula::Expr(told));
     }
     section.text(MIDDLE);
 }
 
 /// Numbers of the displayed constraints, and the origins of their indices.
-fn shown(part: &Part) -> Vec<(usize, From)> {
+fn shown(part: &Part) -> Vec<(usize, IndexOrigin)> {
     let of_sites = stated_holds(part).into_iter();
-    let of_sites = of_sites.map(|h| (h.shown, From::Site(h.site)));
+    let of_sites = of_sites.map(|h| (h.shown, IndexOrigin::Site(h.site)));
     let totals = part.unfolded.totals.iter();
-    let of_totals = totals.filter_map(|total| Some((number_of(part, total)?, From::First)));
+    let of_totals = totals.filter_map(|total| Some((number_of(part, total)?, IndexOrigin::First)));
     of_sites.chain(of_totals).collect()
 }
 

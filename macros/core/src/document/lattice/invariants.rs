@@ -1,7 +1,7 @@
 //! The invariants of a lattice for the open chain, the ring and each end condition, with totals as sums over sites.
 
 use crate::derive::invariants::{Family, Invariant, Kind as InvariantKind};
-use crate::document::folded::{From, IndexedNotation, Part};
+use crate::document::indexed_notation::{IndexOrigin, IndexedNotation, Part};
 use crate::document::lattice::{holds::stated_holds, sites, sums};
 use crate::expr::{self, Expr};
 use crate::lattice::Lattice;
@@ -40,7 +40,7 @@ pub(super) fn invariants(
             .filter(|v| !by_walls(v) && !is_of_site(v));
         let kept: Vec<&Invariant> = kept.collect();
         let (told, others) = known(folded, part, &kept);
-        items.extend(told.into_iter().map(Known::words));
+        items.extend(told.into_iter().map(CommonInvariant::words));
         for stated in &at_sites {
             let Some(hold) = part.d.spec.holds.get(stated.shown) else {
                 continue;
@@ -48,7 +48,7 @@ pub(super) fn invariants(
             items.push(vec![
                 format!("constraint {}: ", stated.name).into(),
                 folded
-                    .derived(part, &hold.value, From::Site(stated.site))
+                    .derived(part, &hold.value, IndexOrigin::Site(stated.site))
                     .into(),
                 " and its rate of change, at every site (exact: enforced by the multiplier)".into(),
             ]);
@@ -103,7 +103,7 @@ fn beside_functionals(
             let Some(e) = of_density else {
                 continue;
             };
-            let of = folded.derived(part, &e, From::Site(0));
+            let of = folded.derived(part, &e, IndexOrigin::Site(0));
             let Some(l) = folded.lattice.labels.get(density.label) else {
                 continue;
             };
@@ -139,7 +139,7 @@ fn heading(lattice: &Lattice, part: &Part) -> String {
 }
 
 /// An invariant that holds for every number of sites.
-struct Known {
+struct CommonInvariant {
     name: String,
     value: Vec<Inline>,
     /// The value as text, to match it with an invariant of a longer lattice.
@@ -148,7 +148,7 @@ struct Known {
     reason: String,
 }
 
-impl Known {
+impl CommonInvariant {
     fn words(self) -> Vec<Inline> {
         let mut line: Vec<Inline> = vec![format!("{}: ", self.name).into()];
         line.extend(self.value);
@@ -159,7 +159,11 @@ impl Known {
 
 /// The invariants of a part that hold for every number of sites, that is, those that read alike on a longer lattice;
 /// and whether there are others.
-fn known(folded: &mut IndexedNotation, part: &Part, kept: &[&Invariant]) -> (Vec<Known>, bool) {
+fn known(
+    folded: &mut IndexedNotation,
+    part: &Part,
+    kept: &[&Invariant],
+) -> (Vec<CommonInvariant>, bool) {
     let (own, others) = of_part(folded, part, kept);
     // If the search found nothing on the longer lattice, it made too few draws for that many sites. The comparison
     // then proves nothing, and the ranges from end to end are kept.
@@ -170,7 +174,7 @@ fn known(folded: &mut IndexedNotation, part: &Part, kept: &[&Invariant]) -> (Vec
     let all: Vec<&Invariant> = longer.d.invariants.iter().collect();
     let (there, _) = of_part(folded, longer, &all);
     let count = own.len();
-    let alike: Vec<Known> = own
+    let alike: Vec<CommonInvariant> = own
         .into_iter()
         .filter(|v| there.iter().any(|o| o.text == v.text))
         .collect();
@@ -179,7 +183,7 @@ fn known(folded: &mut IndexedNotation, part: &Part, kept: &[&Invariant]) -> (Vec
 }
 
 /// Distinguishes invariants of equal name by numbers.
-fn numbered(mut list: Vec<Known>) -> Vec<Known> {
+fn numbered(mut list: Vec<CommonInvariant>) -> Vec<CommonInvariant> {
     for i in 1..list.len() {
         let (before, rest) = list.split_at_mut(i);
         let Some(own) = rest.first_mut() else { break };
@@ -195,9 +199,13 @@ fn numbered(mut list: Vec<Known>) -> Vec<Known> {
 
 /// The invariants of one lattice that are sums over sites. Invariants that are not, but share a reason, are added;
 /// the result includes their total if that is such a sum. Also returns whether an invariant is not a sum by itself.
-fn of_part(folded: &mut IndexedNotation, part: &Part, kept: &[&Invariant]) -> (Vec<Known>, bool) {
+fn of_part(
+    folded: &mut IndexedNotation,
+    part: &Part,
+    kept: &[&Invariant],
+) -> (Vec<CommonInvariant>, bool) {
     let style = Style::new(&part.d.spec.time_index);
-    let mut out: Vec<Known> = Vec::new();
+    let mut out: Vec<CommonInvariant> = Vec::new();
     let mut untold: Vec<&Invariant> = Vec::new();
     let told = |folded: &IndexedNotation,
                 v: &Invariant,
@@ -208,7 +216,7 @@ fn of_part(folded: &mut IndexedNotation, part: &Part, kept: &[&Invariant]) -> (V
         let mut value: Vec<Inline> = vec![before.into()];
         value.extend(f.map(Inline::Math));
         value.push(after.into());
-        Known {
+        CommonInvariant {
             name: part.unfolded.plain(&v.name),
             value,
             text: format!("{before}{text}{after}"),
@@ -270,10 +278,10 @@ fn of_part(folded: &mut IndexedNotation, part: &Part, kept: &[&Invariant]) -> (V
 pub(super) fn total(folded: &mut IndexedNotation, part: &Part, e: &Expr) -> Option<Formula> {
     let lattice = folded.lattice;
     let of_line = lattice.line.is_some() && lattice.labels.len() == 1;
-    match sums::told(folded, part, e).filter(|_| lattice.labels.len() == 1) {
+    match sums::as_sums(folded, part, e).filter(|_| lattice.labels.len() == 1) {
         Some(sum) => Some(sum),
         None if of_line => None,
         // With several labels, the expression at one site represents all sites.
-        None => Some(folded.derived(part, e, From::First)),
+        None => Some(folded.derived(part, e, IndexOrigin::First)),
     }
 }

@@ -3,7 +3,7 @@
 
 use super::beyond;
 use crate::derive::invariants::{Family, Invariant};
-use crate::document::folded::{From, IndexedNotation, Part};
+use crate::document::indexed_notation::{IndexOrigin, IndexedNotation, Part};
 use crate::expr::{self, Expr};
 use crate::print::formula::Formula;
 use crate::print::{Format, Style, expression};
@@ -50,7 +50,7 @@ pub(super) fn of_sites(
         let Some((label, site)) = only_site(folded, part, e) else {
             continue;
         };
-        let seen = folded.expression(part, e, From::End(site));
+        let seen = folded.expression(part, e, IndexOrigin::End(site));
         let text = expression(&seen, &folded.symbols, &style, Format::Text);
         let name = part.unfolded.plain(&v.name);
         let alike = |o: &&mut OfSites| {
@@ -63,7 +63,7 @@ pub(super) fn of_sites(
             }
             None => out.push(OfSites {
                 name,
-                value: folded.derived(part, e, From::End(site)),
+                value: folded.derived(part, e, IndexOrigin::End(site)),
                 at: String::new(),
                 members: vec![i],
                 reason: v.reason.clone(),

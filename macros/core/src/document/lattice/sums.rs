@@ -3,7 +3,7 @@
 //! the expression cannot be written so, because it differs on another chain.
 
 use crate::algebra::Rational;
-use crate::document::folded::{From, IndexedNotation, Part};
+use crate::document::indexed_notation::{IndexOrigin, IndexedNotation, Part};
 use crate::expr::{self, Expr, Node};
 use crate::print::formula::Formula;
 use crate::print::{Format, Style, expression};
@@ -16,23 +16,23 @@ mod tests;
 const FEWEST: usize = 3;
 
 /// The expression as sums over sites; `None` if it does not hold for every number of sites.
-pub(super) fn told(folded: &mut IndexedNotation, part: &Part, e: &Expr) -> Option<Formula> {
+pub(super) fn as_sums(folded: &mut IndexedNotation, part: &Part, e: &Expr) -> Option<Formula> {
     match e.node() {
-        Node::Neg(a) => Some(Formula::neg(told(folded, part, a)?)),
+        Node::Neg(a) => Some(Formula::neg(as_sums(folded, part, a)?)),
         // A component of a total along, or its cross product with, a vector that does not depend on sites.
         Node::Dot(a, b) if !varies(folded, part, b) => {
             let sum = shortest(folded, part, a, Some(b))?;
-            let axis = folded.derived(part, b, From::End(0));
+            let axis = folded.derived(part, b, IndexOrigin::End(0));
             Some(Formula::Dot(Box::new(sum), Box::new(axis)))
         }
         Node::Dot(a, b) if !varies(folded, part, a) => {
             let sum = shortest(folded, part, b, Some(a))?;
-            let axis = folded.derived(part, a, From::End(0));
+            let axis = folded.derived(part, a, IndexOrigin::End(0));
             Some(Formula::Dot(Box::new(axis), Box::new(sum)))
         }
         Node::Cross(a, b) if !varies(folded, part, a) && matches!(b.node(), Node::Sum(_)) => {
             let sum = shortest(folded, part, b, None)?;
-            let axis = folded.derived(part, a, From::End(0));
+            let axis = folded.derived(part, a, IndexOrigin::End(0));
             Some(Formula::Cross(Box::new(axis), Box::new(sum)))
         }
         Node::Sum(list) => match apart(folded, part, list) {
@@ -57,7 +57,7 @@ fn apart(folded: &mut IndexedNotation, part: &Part, list: &[Expr]) -> Option<For
     let shape = list.first()?.shape();
     let mut out = Vec::new();
     for e in &axial {
-        out.push(told(folded, part, e)?);
+        out.push(as_sums(folded, part, e)?);
     }
     match (axial.is_empty(), rest.is_empty()) {
         (true, _) => return None,
@@ -136,18 +136,18 @@ fn summed(
                     index: index.clone(),
                     from: Some(a.to_string()),
                     to: Some(super::beyond(&count, by)),
-                    of: Box::new(folded.derived(part, &term, From::End(*a))),
+                    of: Box::new(folded.derived(part, &term, IndexOrigin::End(*a))),
                 }
             }
             ([only], ..) if !set && (*only <= 1 || *only + 1 >= many) => {
                 let from = if 2 * only > many {
-                    From::Last
+                    IndexOrigin::Last
                 } else {
-                    From::First
+                    IndexOrigin::First
                 };
                 folded.derived(part, &term, from)
             }
-            ([], ..) => folded.derived(part, &term, From::End(0)),
+            ([], ..) => folded.derived(part, &term, IndexOrigin::End(0)),
             _ => return None,
         };
         out.push(match form.times.is_negative() {
@@ -169,7 +169,7 @@ fn forms(
     let mut single: Vec<(String, Option<usize>, Rational, Expr)> = Vec::new();
     for (times, term) in terms {
         let site = base(folded, part, &term)?;
-        let seen = folded.expression(part, &term, From::End(site.unwrap_or(0)));
+        let seen = folded.expression(part, &term, IndexOrigin::End(site.unwrap_or(0)));
         let text = expression(&seen, &folded.symbols, &style, Format::Text);
         match single
             .iter_mut()

@@ -4,7 +4,7 @@
 
 use super::Motions;
 use super::names::{Kind, Names};
-use super::read::{Blocks, written_in_points, written_in_twists};
+use super::rigid_motion_patterns::{Blocks, written_in_points, written_in_twists};
 use crate::expr::shape::Shape;
 use crate::expr::{self, Expr};
 use crate::print::formula::{Formula, Relation};

@@ -2,9 +2,9 @@
 //! document.
 
 use super::Motions;
-use super::found::Found;
+use super::document_scan::DocumentScan;
 use super::lets::Lets;
-use super::said::Said;
+use super::letter_definitions::LetterDefinitions;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::spelling::{self, Parsed};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
@@ -81,13 +81,13 @@ pub struct Names {
     /// Pairs of letters of parts, by the letter of the whole.
     pairs: BTreeMap<(Kind, String), (String, String)>,
     /// The result of the scan of the document.
-    found: Found,
+    found: DocumentScan,
     /// The letter that each part belongs to.
     pub(super) wholes: BTreeMap<SymbolId, (Kind, SymbolId)>,
     /// The names of the model.
     pub(super) lets: Lets,
     /// The letters that have been defined.
-    pub(super) said: Said,
+    pub(super) said: LetterDefinitions,
     /// How rigid motions are printed.
     pub(super) motions: Motions,
 }
@@ -101,7 +101,7 @@ impl Names {
         motions: Motions,
         sites: bool,
     ) -> Names {
-        let mut found = Found::in_document(doc);
+        let mut found = DocumentScan::in_document(doc);
         // The names of the model are reserved, printed or not.
         let own = lets.iter().map(|(name, _)| spelling::parse(name).base);
         found.names.extend(own);
@@ -112,7 +112,7 @@ impl Names {
             found,
             wholes: BTreeMap::new(),
             lets: Lets::default(),
-            said: Said::of(motions, sites),
+            said: LetterDefinitions::of(motions, sites),
             motions,
         };
         for (name, value) in lets {

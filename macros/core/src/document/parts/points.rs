@@ -2,7 +2,7 @@
 //! others, the upper left block and the column to its right.
 
 use super::names::{Kind, Names};
-use super::read::{Inclusion, factors, inclusion, is_last};
+use super::rigid_motion_patterns::{Inclusion, factors, inclusion, is_last};
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Node};

@@ -3,7 +3,7 @@
 //! its argument.
 
 use super::names::{Kind, Names};
-use super::read::{
+use super::rigid_motion_patterns::{
     Inclusion, factors, inclusion, is_last, is_unit, letter, taken, twist_rows, written_in_points,
     written_in_twists,
 };

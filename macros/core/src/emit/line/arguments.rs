@@ -1,7 +1,7 @@
 //! The arguments of a kernel: the values at sites in its expressions. Each argument names its list, which a loop over
 //! single sites indexes, and a loop over several sites reads through a window.
 
-use super::locals::{Known, Places};
+use super::locals::{Places, StatedLetter};
 use super::{Lines, Moving, number};
 use crate::emit::expression::{Bindings, ty};
 use crate::emit::names::local_name;
@@ -12,7 +12,7 @@ use quote::{format_ident, quote};
 
 /// The values of letters in a kernel.
 #[derive(Default)]
-pub(super) struct Read {
+pub(super) struct LetterValues {
     /// Parameters of the whole chain.
     pub lets: TokenStream,
     /// Values at sites.
@@ -130,8 +130,8 @@ pub(super) fn seen_at(window: &Ident, on: usize) -> TokenStream {
 
 impl Lines<'_> {
     /// The values of letters: parameters of the whole chain as `let` statements, values at sites as arguments.
-    pub(super) fn read(&self, s: &Symbols, letters: &[Known]) -> Read {
-        let mut read = Read::default();
+    pub(super) fn read(&self, s: &Symbols, letters: &[StatedLetter]) -> LetterValues {
+        let mut read = LetterValues::default();
         let mut used = Vec::new();
         for known in letters {
             let symbol = s.get(known.letter.symbol);

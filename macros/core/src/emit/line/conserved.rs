@@ -1,8 +1,8 @@
 //! Conserved totals of a chain: sums of densities over sites. Takes the totals; gives one function per name. If end
 //! conditions prescribe positions, the sum may differ, and the function selects it by the ends.
 
-use super::locals::{Known, Places, Stands};
-use super::pulls::known;
+use super::locals::{Places, QuaternionUse, StatedLetter};
+use super::neighbour_forces::stated_letters;
 use super::{Lines, Moving, number};
 use crate::emit::element;
 use crate::line::{Density, Total};
@@ -73,7 +73,7 @@ fn over_sites(l: &Lines, t: &Total, density: &Density) -> TokenStream {
     let s = &part.d.letters.symbols;
     let value = part.d.defined(&density.value);
     let values = [value.clone()];
-    let (held, letters): (Vec<Known>, Vec<Known>) = known(l, &values)
+    let (held, letters): (Vec<StatedLetter>, Vec<StatedLetter>) = stated_letters(l, &values)
         .into_iter()
         .partition(|k| t.places.iter().any(|(place, _)| *place == k.letter));
     let (momenta, letters): (Vec<_>, Vec<_>) = letters.into_iter().partition(|k| {
@@ -87,7 +87,11 @@ fn over_sites(l: &Lines, t: &Total, density: &Density) -> TokenStream {
         let last = place.is_some_and(|(_, last)| *last);
         let name = if last { "last" } else { "first" };
         let at = super::ends::place(l, last, &k.of, 0);
-        let one = (k.letter, k.of.as_str(), Stands::of(s, k.letter, &values));
+        let one = (
+            k.letter,
+            k.of.as_str(),
+            QuaternionUse::of(s, k.letter, &values),
+        );
         locals.extend(super::ends::held_at(l, s, one, &at, name, &mut bindings));
     }
     let moving: Vec<Moving> = l.moving().collect();

@@ -8,7 +8,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 /// The residuals and rates of change of the constraints at a state, over all sites, and the scales for both.
-pub(super) fn told(l: &Lines) -> TokenStream {
+pub(super) fn residual_functions(l: &Lines) -> TokenStream {
     if !l.is_held() {
         return TokenStream::new();
     }
@@ -99,7 +99,11 @@ pub(super) fn told(l: &Lines) -> TokenStream {
         }
     });
     let each: Vec<TokenStream> = match l.holds_sums() {
-        true => vec![super::totals::told(l, &none_reached, &none_moving)],
+        true => vec![super::totals::sum_constraint_functions(
+            l,
+            &none_reached,
+            &none_moving,
+        )],
         false => each.collect(),
     };
     quote! {
@@ -126,7 +130,7 @@ fn sizes(l: &Lines, k: usize, h: &ChainConstraint) -> TokenStream {
         let (body, by, row, rows) = (b.field(), number(reach.site), number(row), number(rows));
         let velocity =
             quote!(length(&velocities.#body[site + #by].fixed_rows::<#rows>(#row).into_owned()));
-        let size = super::held::size_of(l, reach, &list);
+        let size = super::constraint_kernels::size_of(l, reach, &list);
         Some(quote!(#velocity * #size))
     });
     let each: Vec<TokenStream> = each.collect();

@@ -1,18 +1,18 @@
 //! Domains that a step along a chain must not leave: the domains of functions, at every site and in every neighbour term.
 
-use super::locals::{Known, step};
-use super::pulls::{known, range_of};
+use super::locals::{StatedLetter, step};
+use super::neighbour_forces::{range_of, stated_letters};
 use super::{Lines, number};
 use crate::derive::{Derivation, Outline};
 use crate::emit::domain::{Tested, tested};
 use crate::emit::expression::Bindings;
 use crate::expr::Expr;
-use crate::line::{By, EndTerm, Line, SiteModel};
+use crate::line::{CoordinateKind, EndTerm, Line, SiteModel};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 /// The guards on the terms of one loop.
-struct Asked {
+struct LoopGuards {
     tests: Vec<Tested>,
     /// `let (first, last)`.
     range: TokenStream,
@@ -71,7 +71,7 @@ fn asked_of(d: &Outline, list: &[Expr]) -> Option<Vec<Tested>> {
     tested(&d.letters.symbols, &d.spec.time_index, list)
 }
 
-fn asked(l: &Lines) -> Vec<Asked> {
+fn asked(l: &Lines) -> Vec<LoopGuards> {
     let lone = l.line.lone.iter().filter_map(|lone| {
         let d = &lone.outline;
         let count = l.count(lone.label, lone.sites);
@@ -84,7 +84,7 @@ fn asked(l: &Lines) -> Vec<Asked> {
     let pulls = l.line.pulls.iter().filter_map(|pull| {
         let quantity = pull.forces.first()?.on.clone();
         let terms = std::slice::from_ref(&pull.terms);
-        let letters = |values: &[Expr]| known(l, values);
+        let letters = |values: &[Expr]| stated_letters(l, values);
         one(
             l,
             d,
@@ -104,8 +104,8 @@ fn one(
     terms: &[Expr],
     range: TokenStream,
     quantity: String,
-    letters: &dyn Fn(&[Expr]) -> Vec<Known>,
-) -> Option<Asked> {
+    letters: &dyn Fn(&[Expr]) -> Vec<StatedLetter>,
+) -> Option<LoopGuards> {
     let mut tests = asked_of(d, terms).unwrap_or_default();
     tests.retain(|t| !t.constant);
     if tests.is_empty() {
@@ -113,7 +113,7 @@ fn one(
     }
     let values: Vec<Expr> = tests.iter().map(|t| t.argument.clone()).collect();
     let body = l.computed(&d.letters.symbols, &letters(&values), &values);
-    Some(Asked {
+    Some(LoopGuards {
         tests,
         range,
         quantity,
@@ -160,7 +160,7 @@ pub(super) fn domain(l: &Lines) -> (TokenStream, TokenStream) {
         }});
     }
     for c in &l.line.coordinates {
-        if let By::Entries(_) = c.by {
+        if let CoordinateKind::Entries(_) = c.by {
             calls.extend(invertible(l, &c.name));
         }
     }
@@ -201,7 +201,7 @@ pub(super) fn of_parameters(l: &Lines) -> TokenStream {
             let one = std::slice::from_ref(&t.argument);
             let letters = match of_site {
                 true => l.of_site(d, one),
-                false => known(l, one),
+                false => stated_letters(l, one),
             };
             if seen.contains(&t.text) || letters.iter().any(|k| k.on.is_some()) {
                 continue;

@@ -1,8 +1,8 @@
 //! The forces of end conditions. They are added to the neighbour forces of the sites at the ends.
 
 use super::items::End;
-use super::locals::{Known, Places, Stands};
-use super::pulls::{computed, field, front};
+use super::locals::{Places, QuaternionUse, StatedLetter};
+use super::neighbour_forces::{computed, field, front};
 use super::{Lines, number};
 use crate::algebra::Algebra;
 use crate::emit::expression::Bindings;
@@ -131,7 +131,7 @@ fn values(l: &Lines, end: &EndTerm, values: &[Expr]) -> (TokenStream, Vec<TokenS
             Some((_, of, None)) => bindings.bind(*letter, end_local(of)),
             Some((_, of, Some(site))) => {
                 let at = place(l, end.last, of, *site);
-                let stands = Stands::of(s, *letter, values);
+                let stands = QuaternionUse::of(s, *letter, values);
                 let one = (*letter, of.as_str(), stands);
                 locals.extend(held_at(l, s, one, &at, &site.to_string(), &mut bindings));
             }
@@ -151,14 +151,14 @@ fn values(l: &Lines, end: &EndTerm, values: &[Expr]) -> (TokenStream, Vec<TokenS
 pub(super) fn held_at(
     l: &Lines,
     s: &Symbols,
-    (letter, of, stands): (Letter, &str, Stands),
+    (letter, of, stands): (Letter, &str, QuaternionUse),
     at: &TokenStream,
     name: &str,
     bindings: &mut Bindings,
 ) -> TokenStream {
     let mut locals = TokenStream::new();
-    let bound = |stands: Stands| {
-        let one = [Known {
+    let bound = |stands: QuaternionUse| {
+        let one = [StatedLetter {
             letter,
             of: of.to_owned(),
             on: Some(0),
@@ -167,9 +167,9 @@ pub(super) fn held_at(
         l.locals(s, &one, &Places::of_node(), at)
     };
     let alone = stands.alone || stands.parted;
-    let (lets, inner) = bound(Stands {
+    let (lets, inner) = bound(QuaternionUse {
         turned: stands.turned,
-        ..Stands::default()
+        ..QuaternionUse::default()
     });
     if let Some(turn) = inner.rotation(letter) {
         let local = format_ident!("__{of}_{name}_turn");
@@ -179,9 +179,9 @@ pub(super) fn held_at(
             return locals;
         }
     }
-    let (lets, inner) = bound(Stands {
+    let (lets, inner) = bound(QuaternionUse {
         alone: true,
-        ..Stands::default()
+        ..QuaternionUse::default()
     });
     let (local, own) = (format_ident!("__{of}_{name}"), inner.local(s, letter));
     locals.extend(quote!(let #local = { #lets #own };));

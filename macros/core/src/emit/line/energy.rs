@@ -2,7 +2,7 @@
 //! neighbour terms and of end conditions.
 
 use super::locals::Places;
-use super::pulls::{known, range_of};
+use super::neighbour_forces::{range_of, stated_letters};
 use super::{Lines, Moving, OfMeshes};
 use crate::algebra::{Algebra, Rational};
 use crate::derive::cancellation;
@@ -77,7 +77,7 @@ fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
         let energy = without_step(&algebra, &energy, &h)?;
         let kernel = format_ident!("potential_{}", n + 1);
         let values = [expr::quaternion_components(s, &energy)];
-        let (lets, results) = l.computed(s, &known(l, &values), &values);
+        let (lets, results) = l.computed(s, &stated_letters(l, &values), &values);
         kernels.extend(quote! {
             /// The potential energy of one term that couples neighbours.
             fn #kernel(&self, site: usize, at: &#places<T>) -> T {

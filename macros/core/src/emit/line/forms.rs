@@ -44,7 +44,8 @@ pub(super) fn forms(s: &Symbols, values: &[Expr], prefix: &str) -> Forms {
     let values = match names.is_empty() {
         true => values,
         false => {
-            let put = |e: &Expr| expr::quaternion_components(&symbols, &put(&symbols, e, &names));
+            let put =
+                |e: &Expr| expr::quaternion_components(&symbols, &named_pairs(&symbols, e, &names));
             values.iter().map(put).collect()
         }
     };
@@ -91,9 +92,9 @@ fn count(s: &Symbols, e: &Expr, met: &mut BTreeMap<(Letter, Letter), usize>) {
     }
 }
 
-fn put(s: &Symbols, e: &Expr, names: &BTreeMap<(Letter, Letter), SymbolId>) -> Expr {
+fn named_pairs(s: &Symbols, e: &Expr, names: &BTreeMap<(Letter, Letter), SymbolId>) -> Expr {
     let Node::Product(factors) = e.node() else {
-        return expr::rebuild(s, e, &mut |x| put(s, x, names));
+        return expr::rebuild(s, e, &mut |x| named_pairs(s, x, names));
     };
     let mut out: Vec<Expr> = Vec::new();
     let mut i = 0;
@@ -110,7 +111,7 @@ fn put(s: &Symbols, e: &Expr, names: &BTreeMap<(Letter, Letter), SymbolId>) -> E
                 i += 2;
             }
             None => {
-                out.push(put(s, &factors[i], names));
+                out.push(named_pairs(s, &factors[i], names));
                 i += 1;
             }
         }

@@ -1,10 +1,10 @@
 //! The kinetic energy of velocities that are coupled along the chain. Kernels give the momenta of a site and of a
 //! neighbour term, which are linear in the velocities; the runtime inverts this relation for all sites.
 
-use super::locals::{Known, Places};
-use super::pulls::{known, range_of};
+use super::coupled_velocities::{Derivatives, rows_of};
+use super::locals::{Places, StatedLetter};
+use super::neighbour_forces::{range_of, stated_letters};
 use super::step::range_name;
-use super::tied::{Derivatives, rows_of};
 use super::velocities::as_array;
 use super::{Lines, number};
 use crate::emit::element;
@@ -16,7 +16,7 @@ use quote::{format_ident, quote};
 
 /// The kernels, and the energy. None if there is no limit of small steps.
 pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
-    let (_, n, members) = super::tied::block(l)?;
+    let (_, n, members) = super::coupled_velocities::block(l)?;
     let first = members.first()?;
     let (places, size) = (l.item("Places"), number(n));
     let indices: Vec<usize> = members.iter().map(|m| m.mover.index).collect();
@@ -78,9 +78,9 @@ pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
             s,
             of_tie,
             &sites,
-            &|values| known(l, values),
+            &|values| stated_letters(l, values),
             &mut |pair, place, e, value| {
-                derivatives.put(pair, place, e, value);
+                derivatives.store_column(pair, place, e, value);
                 TokenStream::new()
             },
         );
@@ -97,7 +97,7 @@ pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
             }
         });
         let range = range_of(l, tie.label, tie.from, tie.to);
-        let touched = super::tied::touched(l, tie, &count);
+        let touched = super::coupled_velocities::touched(l, tie, &count);
         each.push(quote! {{
             #range
             rows.tie(
@@ -116,7 +116,7 @@ pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
         let value = m.array(value);
         quote!(known.fixed_view_mut::<#rows, 1>(#row, 0).copy_from(&(#value));)
     });
-    let (range, ring) = (range_name(first), super::tied::ring(l));
+    let (range, ring) = (range_name(first), super::coupled_velocities::ring(l));
     let energy = quote! {{
         let [first, last] = self.#range();
         line::Band::<T, #size, 0>::kinetic(
@@ -136,7 +136,7 @@ pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
 
 /// Stores a column of derivatives. The arguments are the two sites of its block; its first row, number of rows and
 /// column index; the expression; and its value.
-type Put<'a> = dyn FnMut([usize; 2], [usize; 3], &Expr, TokenStream) -> TokenStream + 'a;
+type StoreColumn<'a> = dyn FnMut([usize; 2], [usize; 3], &Expr, TokenStream) -> TokenStream + 'a;
 
 /// Fills `made` and stores the derivatives. `sites` gives, for each configuration, its site in the kernel, its first
 /// row and its number of rows.
@@ -145,8 +145,8 @@ fn filled(
     s: &Symbols,
     inertia: &Inertia,
     sites: &[[usize; 3]],
-    known: &dyn Fn(&[Expr]) -> Vec<Known>,
-    put: &mut Put,
+    known: &dyn Fn(&[Expr]) -> Vec<StatedLetter>,
+    put: &mut StoreColumn,
 ) -> TokenStream {
     let mut values = Vec::new();
     for (rest, columns) in inertia.at_rest.iter().zip(&inertia.columns) {

@@ -12,7 +12,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 /// A parameter: its name, its symbol, and its sites.
-pub(super) struct Given<'a> {
+pub(super) struct LineParameter<'a> {
     pub name: String,
     pub symbol: &'a Symbol,
     pub at: Option<(usize, Sites)>,
@@ -20,7 +20,7 @@ pub(super) struct Given<'a> {
 
 impl Lines<'_> {
     /// The parameters in the order of declaration, without the parameters of end conditions and offsets.
-    pub(super) fn given(&self) -> Vec<Given<'_>> {
+    pub(super) fn given(&self) -> Vec<LineParameter<'_>> {
         let part = &self.line.representative;
         let s = &part.d.letters.symbols;
         let of_end = |name: &str| {
@@ -33,7 +33,7 @@ impl Lines<'_> {
             let mut all = self.line.lattice.quantities.iter();
             all.any(|q| q.offset.as_ref().is_some_and(|o| o.text == name))
         };
-        let mut out: Vec<Given> = Vec::new();
+        let mut out: Vec<LineParameter> = Vec::new();
         for id in &part.d.spec.parameters {
             let symbol = s.get(*id);
             let (name, at) = match part.sited(*id) {
@@ -50,7 +50,7 @@ impl Lines<'_> {
             if known || of_end(&symbol.name) || offset(&symbol.name) {
                 continue;
             }
-            out.push(Given { name, symbol, at });
+            out.push(LineParameter { name, symbol, at });
         }
         out
     }

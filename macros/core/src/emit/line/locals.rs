@@ -12,16 +12,16 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 /// A letter as stated: its quantity, and the number of sites after the kernel's own.
-pub(super) struct Known {
+pub(super) struct StatedLetter {
     pub letter: Letter,
     pub of: String,
     pub on: Option<usize>,
-    pub stands: Stands,
+    pub stands: QuaternionUse,
 }
 
 /// How expressions use a unit quaternion.
 #[derive(Clone, Copy, Default, Debug)]
-pub(super) struct Stands {
+pub(super) struct QuaternionUse {
     /// As a matrix of four rows.
     pub alone: bool,
     /// Through the rotation that it covers.
@@ -30,10 +30,10 @@ pub(super) struct Stands {
     pub parted: bool,
 }
 
-impl Stands {
+impl QuaternionUse {
     /// How `list` uses a letter.
-    pub(super) fn of(s: &Symbols, letter: Letter, list: &[Expr]) -> Stands {
-        let mut out = Stands::default();
+    pub(super) fn of(s: &Symbols, letter: Letter, list: &[Expr]) -> QuaternionUse {
+        let mut out = QuaternionUse::default();
         list.iter().for_each(|e| out.look(s, letter, e));
         out
     }
@@ -92,7 +92,7 @@ impl Lines<'_> {
     pub(super) fn computed(
         &self,
         s: &Symbols,
-        letters: &[Known],
+        letters: &[StatedLetter],
         values: &[Expr],
     ) -> (TokenStream, Vec<TokenStream>) {
         let (locals, bindings) = self.locals(s, letters, &Places::of_node(), &quote!(site));
@@ -114,7 +114,7 @@ impl Lines<'_> {
     pub(super) fn locals(
         &self,
         s: &Symbols,
-        letters: &[Known],
+        letters: &[StatedLetter],
         places: &Places,
         site: &TokenStream,
     ) -> (TokenStream, Bindings) {
@@ -128,14 +128,14 @@ impl Lines<'_> {
     }
 
     /// The letters of expressions of one site.
-    pub(super) fn of_site(&self, d: &Outline, list: &[Expr]) -> Vec<Known> {
+    pub(super) fn of_site(&self, d: &Outline, list: &[Expr]) -> Vec<StatedLetter> {
         let s = &d.letters.symbols;
         let letters = crate::emit::items::letters_of(list);
         let known = letters.into_iter().map(|letter| {
             let of = s.get(letter.symbol).name.clone();
             let on = self.line.lattice.find(&of).map(|_| 0);
-            let stands = Stands::of(s, letter, list);
-            Known {
+            let stands = QuaternionUse::of(s, letter, list);
+            StatedLetter {
                 letter,
                 of,
                 on,

@@ -3,14 +3,14 @@
 //! fills it.
 
 use super::locals::step;
-use super::pulls::known;
+use super::neighbour_forces::stated_letters;
 use super::{Lines, number};
 use crate::algebra::Algebra;
 use crate::emit::functional::path;
 use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Node, Reach};
-use crate::lattice::{Known, Mesh, Sites, Source};
+use crate::lattice::{FunctionalKind, Mesh, Sites, Source};
 use crate::line::FunctionalForce;
 use crate::syntax::ast::Extent;
 use proc_macro2::{Ident, TokenStream};
@@ -232,7 +232,7 @@ fn known_letters(
     l: &Lines,
     values: &[Expr],
     is_array: &dyn Fn(SymbolId) -> bool,
-) -> Vec<super::locals::Known> {
+) -> Vec<super::locals::StatedLetter> {
     let part = &l.line.representative;
     let own: Vec<Expr> = values
         .iter()
@@ -240,7 +240,7 @@ fn known_letters(
         .filter(|x| !is_array(x.symbol))
         .map(|x| expr::letter(&part.d.letters.symbols, x.symbol, x.shift))
         .collect();
-    known(l, &own)
+    stated_letters(l, &own)
 }
 
 /// The emitted code of functionals.
@@ -483,8 +483,8 @@ fn written(
 fn type_of(mesh: &Mesh, directions: &proc_macro2::Literal) -> TokenStream {
     let path = path(&mesh.path).unwrap_or_default();
     match mesh.kind {
-        Known::Grid => quote!(#path<T, #directions>),
-        Known::Cells | Known::Path => quote!(#path<T>),
+        FunctionalKind::Grid => quote!(#path<T, #directions>),
+        FunctionalKind::Cells | FunctionalKind::Path => quote!(#path<T>),
     }
 }
 

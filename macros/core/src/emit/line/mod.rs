@@ -1,39 +1,39 @@
 //! The stepper of a model with labels, for every number of sites. Takes a [`Line`]; gives Rust items: kernels of one
 //! site and of one neighbour term. The runtime (`clebsch::line`) provides loops, threads and errors that name a site.
 
-mod acting;
 mod arguments;
-mod around;
 mod conserved;
+mod constraint_kernels;
 mod constraints;
+mod coupled_velocities;
 mod domain;
 mod ends;
 mod energy;
+mod force_kernels;
 mod forms;
-mod given;
-mod held;
 mod impulses;
 mod inertia;
+mod input_checks;
 mod items;
 mod lanes;
 mod locals;
 mod meshes;
-mod pulls;
+mod neighbour_forces;
 mod reactions;
+mod reflection;
 mod responses;
+mod ring_copies;
 mod rows;
 mod signs;
-mod solved;
 mod state;
 mod step;
-mod tied;
 mod totals;
 mod unique;
 mod velocities;
-mod walls;
+mod velocity_kernels;
 
 use crate::derive::{Derivation, Outline};
-use crate::groups::Kept;
+use crate::groups::ElementStorage;
 use crate::lattice::{Kind, Sites};
 use crate::line::{Line, SiteModel, SiteSolve, SiteUnknown};
 use meshes::Emitted as OfMeshes;
@@ -60,7 +60,7 @@ pub fn emit_line(line: &Line, source: &str) -> TokenStream {
     let visibility = line.model.public.then(|| quote!(pub));
     let of_meshes = meshes::meshes(&l);
     let of_meshes = of_meshes.as_ref();
-    let walls = walls::walls(&l);
+    let walls = reflection::reflection_code(&l);
     let paths = super::functional::paths(&line.representative.d.letters.symbols);
     let items = [
         paths,
@@ -69,12 +69,12 @@ pub fn emit_line(line: &Line, source: &str) -> TokenStream {
         items::model(&l),
         state::state(&l, of_meshes),
         step::step(&l, of_meshes, walls.as_ref().map(|w| &w.call)),
-        pulls::pulls(&l),
-        solved::solved(&l),
-        tied::tied(&l),
-        acting::acting(&l),
-        held::held(&l),
-        constraints::told(&l),
+        neighbour_forces::pulls(&l),
+        velocity_kernels::solved(&l),
+        coupled_velocities::tied(&l),
+        force_kernels::all_kernels(&l),
+        constraint_kernels::held(&l),
+        constraints::residual_functions(&l),
         energy::energy(&l, of_meshes),
         impulses::not_less_than_impulses(&l).unwrap_or_default(),
         of_meshes.map(|m| m.items.clone()).unwrap_or_default(),
@@ -99,7 +99,7 @@ pub fn refusal_of_line(line: &Line) -> Option<String> {
     let names = unique::refusal(line);
     names
         .or_else(|| domain::refusal(line))
-        .or_else(|| walls::refusal(line))
+        .or_else(|| reflection::refusal(line))
 }
 
 /// A configuration, with the derivation of its site.
@@ -125,7 +125,10 @@ impl Moving<'_> {
     /// Whether it is a rotation or a unit quaternion.
     fn is_rotation(&self) -> bool {
         let c = &self.d().spec.configurations[self.mover.index];
-        matches!(c.group.kept(), Kept::Rotation | Kept::Quaternion)
+        matches!(
+            c.group.kept(),
+            ElementStorage::Rotation | ElementStorage::Quaternion
+        )
     }
 
     /// Whether it is a unit quaternion.
@@ -137,7 +140,9 @@ impl Moving<'_> {
     fn dims(&self) -> (TokenStream, TokenStream) {
         let c = &self.d().spec.configurations[self.mover.index];
         match c.group.kept() {
-            Kept::Field(shape) => super::expression::dims(&self.d().letters.symbols, shape),
+            ElementStorage::Field(shape) => {
+                super::expression::dims(&self.d().letters.symbols, shape)
+            }
             _ => (quote!(3), quote!(1)),
         }
     }

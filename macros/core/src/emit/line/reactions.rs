@@ -1,8 +1,8 @@
 //! The constraints in a step: the search for the impulses at its start node, the projection of the momentum on
 //! arrival, and the tests of initial data.
 
-use super::held::Bodies;
-use super::pulls::range_of;
+use super::constraint_kernels::Bodies;
+use super::neighbour_forces::range_of;
 use super::step::range_name;
 use super::{Lines, Moving, number, totals};
 use crate::line::ChainConstraint;

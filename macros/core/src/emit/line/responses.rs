@@ -1,7 +1,7 @@
 //! Kernels for the response of configurations to the impulses of constraints. The response in a step is at the end of
 //! an edge, to an impulse at its start. The response at a node is that of the limit of small steps.
 
-use super::held::{Bodies, filled};
+use super::constraint_kernels::{Bodies, filled};
 use super::locals::Places;
 use super::{Lines, number};
 use crate::expr::Expr;

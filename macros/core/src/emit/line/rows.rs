@@ -1,7 +1,7 @@
 //! Kernels of the linear system for the impulses of all sites: the residuals at a site, their derivatives with
 //! respect to the impulses of the previous site, the site and the next one, and their rates of change.
 
-use super::held::{Bodies, Kept, field, kept};
+use super::constraint_kernels::{Bodies, DerivativeStorage, field, kept};
 use super::{Lines, number};
 use crate::line::Reach;
 use proc_macro2::TokenStream;
@@ -29,9 +29,9 @@ impl Factor {
 fn factor(l: &Lines, r: &Reach, list: &str, k: usize, at: &TokenStream) -> Factor {
     let (list, held, own) = (format_ident!("{list}"), format_ident!("held_{k}"), field(r));
     match kept(l, r) {
-        Kept::Fixed(c) => Factor::Multiple(quote!((#c))),
-        Kept::Number => Factor::Multiple(quote!(#list.#held[#at].#own)),
-        Kept::Matrix => Factor::Matrix(quote!(#list.#held[#at].#own)),
+        DerivativeStorage::Fixed(c) => Factor::Multiple(quote!((#c))),
+        DerivativeStorage::Number => Factor::Multiple(quote!(#list.#held[#at].#own)),
+        DerivativeStorage::Matrix => Factor::Matrix(quote!(#list.#held[#at].#own)),
     }
 }
 

@@ -46,7 +46,11 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
     let edge_lists = moving.iter().map(|m| m.edges());
     let pull_fields = (1..=l.line.pulls.len()).map(|n| {
         let (field, t) = (format_ident!("pull_{n}"), l.item(&format!("Pull{n}")));
-        let count = l.line.pulls.get(n - 1).map(|p| super::pulls::numbers(l, p));
+        let count = l
+            .line
+            .pulls
+            .get(n - 1)
+            .map(|p| super::neighbour_forces::numbers(l, p));
         quote!(#field: line::Columns<#t<T>, T, #count>)
     });
     let velocities = l.systems().into_iter().map(|(field, n, _)| {
@@ -101,7 +105,7 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
         quote!(#count: usize)
     });
     let (p, v): (Vec<_>, Vec<_>) = (pull_fields.collect(), velocities.collect());
-    let band = super::tied::band_field(l);
+    let band = super::coupled_velocities::band_field(l);
     let held = super::reactions::fields(l);
     let (multipliers, told) = super::reactions::state(l);
     let multiplier_names = super::reactions::names(l);

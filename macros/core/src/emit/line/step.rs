@@ -2,8 +2,8 @@
 //! neighbour forces at the new positions, then all momenta. It changes the state only after all of this has
 //! succeeded.
 
-use super::acting::{self, Acting};
-use super::{Lines, Moving, OfMeshes, number, reactions, solved, tied};
+use super::force_kernels::{self, ForceForm};
+use super::{Lines, Moving, OfMeshes, coupled_velocities, number, reactions, velocity_kernels};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -39,7 +39,7 @@ pub(super) fn step(
     let ranges = moving.iter().map(|m| range(l, m));
     let checks = moving.iter().map(|m| check(l, m));
     let beyond = number(l.line.beyond());
-    let around = super::around::around(l, &moving);
+    let around = super::ring_copies::around(l, &moving);
     let systems = l.systems();
     let (is_kicked, apart): (Vec<_>, Vec<_>) = moving
         .iter()
@@ -70,7 +70,7 @@ pub(super) fn step(
         }
     });
     let once = reactions::once(l);
-    let arrivals = moving.iter().map(|m| acting::arrive(l, m));
+    let arrivals = moving.iter().map(|m| force_kernels::arrive(l, m));
     let beginnings = moving.iter().map(|m| begin(l, m));
     let count_fields: Vec<_> = moving
         .iter()
@@ -86,7 +86,7 @@ pub(super) fn step(
             }
         })
         .collect();
-    let pull_values = super::pulls::none_yet(l);
+    let pull_values = super::neighbour_forces::none_yet(l);
     let mesh_values = of_meshes.map(|m| &m.zeros);
     let meshes_made = of_meshes.map(|_| quote!(meshes: self.meshes()?,));
     let none_reflected = walls.map(|_| quote!(reflections: 0,));
@@ -126,7 +126,7 @@ pub(super) fn step(
         let own = members.first().map(Moving::name);
         quote!(#field: ::std::vec![SVector::<T, #n>::zeros(); state.momenta.#own.len()])
     });
-    let band = tied::band_value(l);
+    let band = coupled_velocities::band_value(l);
     let held = reactions::values(l, &quote!(#edges { #(#names: #edge_values),* }));
     let place_values = moving.iter().map(|m| {
         let own = m.name();
@@ -320,10 +320,12 @@ fn found(
     let own = systems
         .iter()
         .filter(|(.., members)| members.iter().any(is_own));
-    let of_systems = own.map(|(field, _, members)| match tied::is_tied(l, members) {
-        true => tied::solve(l, field, members),
-        false => solve_system(field, members, edges),
-    });
+    let of_systems = own.map(
+        |(field, _, members)| match coupled_velocities::is_tied(l, members) {
+            true => coupled_velocities::solve(l, field, members),
+            false => solve_system(field, members, edges),
+        },
+    );
     let solves = moving.iter().map(|m| solve(l, m, edges));
     quote!(#(#of_systems)* #(#solves)*)
 }
@@ -412,7 +414,7 @@ fn solve(l: &Lines, m: &Moving, edges: &Ident) -> TokenStream {
     let count = l.count_of(text);
     let fill = match m.system() {
         None => {
-            let loop_over_sites = solved::loop_over_sites(l, m);
+            let loop_over_sites = velocity_kernels::loop_over_sites(l, m);
             quote! {
                 let (at, edges) = (&state.places, &work.#edges.#name);
                 let made = #loop_over_sites;
@@ -499,7 +501,11 @@ fn solve_system(field: &Ident, members: &[Moving], edges: &Ident) -> TokenStream
     let Some(first) = members.first() else {
         return TokenStream::new();
     };
-    let (kernel, range, text) = (solved::kernel(first), range_name(first), &first.mover.name);
+    let (kernel, range, text) = (
+        velocity_kernels::kernel(first),
+        range_name(first),
+        &first.mover.name,
+    );
     quote! {
         {
             let [first, last] = self.#range();
@@ -517,11 +523,11 @@ fn solve_system(field: &Ident, members: &[Moving], edges: &Ident) -> TokenStream
 /// The edge momenta at the start of a step.
 fn begin(l: &Lines, m: &Moving) -> TokenStream {
     let name = m.name();
-    let acted = acting::call(l, m, &quote!(state.places));
+    let acted = force_kernels::call(l, m, &quote!(state.places));
     let part = m.part(&quote!(work.edges.#name));
-    let after = match l.acting(m) {
-        Acting::Halves => quote!(acting * T::from_f64(0.5)),
-        Acting::Both => quote!(acting[1]),
+    let after = match l.force_form(m) {
+        ForceForm::Halves => quote!(acting * T::from_f64(0.5)),
+        ForceForm::Both => quote!(acting[1]),
     };
     let edge = match m.is_rotation() {
         true => quote! {

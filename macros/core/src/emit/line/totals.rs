@@ -1,8 +1,8 @@
 //! Kernels of constraints on sums over sites: the residual of a sum, the effect of its multiplier on the
 //! configurations of a site, and the small system for the multipliers of all sums, itself a sum over sites.
 
-use super::held::{Bodies, Kept, field, kept};
-use super::pulls::range_of;
+use super::constraint_kernels::{Bodies, DerivativeStorage, field, kept};
+use super::neighbour_forces::range_of;
 use super::reactions::count_of;
 use super::{Lines, number};
 use crate::emit::expression::Bindings;
@@ -29,7 +29,7 @@ pub(super) fn kernels(l: &Lines, bodies: &[Bodies]) -> TokenStream {
         let (row, r) = (number(l.held_row(h)), number(h.components));
         let range = range_of(l, h.label, 0, h.to);
         let rest: Vec<_> = h.beside.iter().cloned().collect();
-        let letters = super::pulls::known(l, &rest);
+        let letters = super::neighbour_forces::stated_letters(l, &rest);
         let (locals, bindings): (TokenStream, Bindings) =
             l.locals(s, &letters, &super::locals::Places::of_node(), &quote!(0));
         let (lets, results) = l.program(s, &rest, &bindings);
@@ -135,9 +135,9 @@ fn answering(l: &Lines, b: &Bodies) -> TokenStream {
                 .map(|reach| {
                     let (own, by) = (field(reach), number(1 - reach.site));
                     match kept(l, reach) {
-                        Kept::Matrix => quote!(reached.#list[site + #by].#own),
-                        Kept::Number => quote!(SMatrix::<T, #rows, #r>::from_diagonal_element(reached.#list[site + #by].#own)),
-                        Kept::Fixed(c) => quote!(SMatrix::<T, #rows, #r>::from_diagonal_element(#c)),
+                        DerivativeStorage::Matrix => quote!(reached.#list[site + #by].#own),
+                        DerivativeStorage::Number => quote!(SMatrix::<T, #rows, #r>::from_diagonal_element(reached.#list[site + #by].#own)),
+                        DerivativeStorage::Fixed(c) => quote!(SMatrix::<T, #rows, #r>::from_diagonal_element(#c)),
                     }
                 })
                 .collect();
@@ -197,7 +197,7 @@ pub(super) fn on_constraints(l: &Lines) -> TokenStream {
 }
 
 /// Functions of a state that report on constraints on sums.
-pub(super) fn told(
+pub(super) fn sum_constraint_functions(
     l: &Lines,
     none_reached: &TokenStream,
     none_moving: &TokenStream,

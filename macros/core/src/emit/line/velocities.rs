@@ -2,7 +2,7 @@
 //! `Ω = (Id - hat(v)/2)^-1 (Id + hat(v)/2)`. Derivatives are along `Ω hat(η)`; the runtime converts `η` to changes of
 //! `v`.
 
-use super::locals::Known;
+use super::locals::StatedLetter;
 use super::{Moving, number};
 use crate::emit::expression::Bindings;
 use crate::expr::shape::Dim;
@@ -43,7 +43,7 @@ pub(super) fn as_array(e: &Expr, value: TokenStream) -> TokenStream {
 /// `let` statements that extract the velocities in `letters` from a block, and their bindings.
 pub(super) fn taken_apart(
     members: &[Moving],
-    letters: &[Known],
+    letters: &[StatedLetter],
     bindings: &mut Bindings,
     known: bool,
 ) -> TokenStream {

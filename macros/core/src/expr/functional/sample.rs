@@ -4,12 +4,12 @@ use super::{Applied, Functional, Kind, Reach, derived, given, pairing};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Function, FunctionalId, Letter, Node, Shift};
-use crate::interpret::{Asked, Assignment, Matrix, evaluate};
+use crate::interpret::{Assignment, FunctionalRequest, Matrix, evaluate};
 
 pub(crate) const THREE: Dim = Dim::Fixed(3);
 
 /// A functional and its expression.
-pub(crate) struct Known {
+pub(crate) struct SampleFunctional {
     pub(crate) id: FunctionalId,
     letters: Vec<SymbolId>,
     body: Expr,
@@ -19,7 +19,7 @@ pub(crate) struct Known {
 /// values, and `A(x)` over sites, with their letters added to a table.
 pub(crate) struct Sample {
     pub(crate) symbols: Symbols,
-    pub(crate) all: Vec<Known>,
+    pub(crate) all: Vec<SampleFunctional>,
 }
 
 impl Sample {
@@ -96,7 +96,7 @@ impl Sample {
         let letters: Vec<SymbolId> = letters.collect();
         let own: Vec<Expr> = letters.iter().map(|l| expr::here(s, *l)).collect();
         let body = body(s, &own);
-        self.all.push(Known { id, letters, body });
+        self.all.push(SampleFunctional { id, letters, body });
     }
 
     pub(crate) fn id(&self, name: &str) -> FunctionalId {
@@ -160,7 +160,12 @@ pub(crate) fn at(symbol: SymbolId) -> Letter {
     }
 }
 
-fn answer(s: &Symbols, letters: &[SymbolId], body: &Expr, asked: &Asked) -> Option<Matrix> {
+fn answer(
+    s: &Symbols,
+    letters: &[SymbolId],
+    body: &Expr,
+    asked: &FunctionalRequest,
+) -> Option<Matrix> {
     let mut s = s.clone();
     let mut values = Assignment::new();
     let mut set = |s: &Symbols, id: SymbolId, m: &Matrix| {

@@ -139,7 +139,7 @@ fn count_backs(e: &crate::expr::Expr, count: &mut usize) {
 }
 
 /// The error of the derivation or of emission, or `derived`.
-fn said(statements: &str, terms: &str) -> String {
+fn outcome(statements: &str, terms: &str) -> String {
     let text = model(statements, terms);
     let read = parse_source(&text);
     let derived = read.and_then(|m| derive_model(&m).and_then(|_| emitted_line(&m, "")));
@@ -293,7 +293,7 @@ fn mistakes_in_functionals_are_told() {
         ("mesh A: Real at a = voronoi_area(X) of;", "", "expected"),
     ];
     for (statements, terms, expected) in cases {
-        let found = said(statements, terms);
+        let found = outcome(statements, terms);
         assert!(found.contains(expected), "{statements} {terms}\n{found}");
     }
     let without = "model P { label a in 0..N; param m, k: Real; field X: Vec<2> at a;

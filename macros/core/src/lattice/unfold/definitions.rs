@@ -2,7 +2,7 @@
 
 use super::LARGEST;
 use crate::diagnostic::{Diagnostic, Errors};
-use crate::lattice::put::any_name;
+use crate::lattice::substitution::any_name;
 use crate::syntax::ast::{Expression, Kind, Model, Name, Statement};
 use std::collections::BTreeMap;
 

@@ -6,8 +6,8 @@ use crate::diagnostic::Place;
 use crate::lattice::declared::Sites;
 use crate::lattice::names::{Copied, copy};
 use crate::lattice::parts::has_sum;
-use crate::lattice::put::any_name;
 use crate::lattice::range::{Range, reach};
+use crate::lattice::substitution::any_name;
 use crate::syntax::ast::{Expression, Kind, Name, Statement};
 
 impl Writer<'_> {
@@ -49,14 +49,18 @@ impl Writer<'_> {
             letters: found.letters.iter().map(|(s, o)| (*s, o - by)).collect(),
         });
         for site in range.indices(self.choice.count(range.label)) {
-            let put = self.put(site - by);
-            let both = put.put(&left).and_then(|l| Ok((l, put.put(&right)?)));
+            let put = self.substitution(site - by);
+            let both = put
+                .substitute(&left)
+                .and_then(|l| Ok((l, put.substitute(&right)?)));
             let (left, right) = match both {
                 Ok(both) => both,
                 Err(d) => return self.errors.push(*d),
             };
             // If neither side of the constraint moves, a multiplier is not needed.
-            let moving = [&left, &right].iter().any(|e| self.put(site).is_moving(e));
+            let moving = [&left, &right]
+                .iter()
+                .any(|e| self.substitution(site).is_moving(e));
             let Ok(site) = usize::try_from(site) else {
                 continue;
             };

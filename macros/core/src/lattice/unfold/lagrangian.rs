@@ -1,12 +1,12 @@
 //! The Lagrangian as a sum over the existing sites, with the terms of the end conditions.
 
 use super::definitions::inlined;
-use super::warned::one_neighbour;
+use super::warnings::one_neighbour;
 use super::{LARGEST, Summand, Writer};
 use crate::diagnostic::Diagnostic;
 use crate::lattice::names::copy_name;
-use crate::lattice::put::SiteSubstitution;
 use crate::lattice::range::{beside_sum, of_one_neighbour, reach};
+use crate::lattice::substitution::SiteSubstitution;
 use crate::lattice::summands::summands;
 use crate::syntax::ast::{Alternative, Expression, Kind, Statement};
 
@@ -37,7 +37,7 @@ impl Writer<'_> {
             };
             let mut copies = Vec::new();
             for site in &sites {
-                match self.put(*site).put(&stated) {
+                match self.substitution(*site).substitute(&stated) {
                     Ok(e) => copies.push(e),
                     Err(d) => {
                         self.errors.push(*d);
@@ -78,9 +78,9 @@ impl Writer<'_> {
                 let put = SiteSubstitution {
                     locals: &locals,
                     at_last: last,
-                    ..self.put(isize::try_from(site).unwrap_or(0))
+                    ..self.substitution(isize::try_from(site).unwrap_or(0))
                 };
-                match (reach(self.lattice, &stated), put.put(&stated)) {
+                match (reach(self.lattice, &stated), put.substitute(&stated)) {
                     (Ok(found), Ok(shown)) => {
                         terms.push((false, shown.clone()));
                         self.out.summands.push(Summand {

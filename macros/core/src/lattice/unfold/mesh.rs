@@ -3,7 +3,7 @@
 
 use super::Writer;
 use crate::diagnostic::Diagnostic;
-use crate::lattice::put::any_name;
+use crate::lattice::substitution::any_name;
 use crate::lattice::{Kind, Lattice, copy_name};
 use crate::syntax::ast::{Expression, Name, Statement};
 

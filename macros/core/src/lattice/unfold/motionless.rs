@@ -5,7 +5,7 @@ use super::ExpandedModel;
 use crate::check::spec::{Configuration, Spec};
 use crate::check::unused_velocity;
 use crate::diagnostic::Diagnostic;
-use crate::lattice::{Choice, Lattice, Sites, any_name};
+use crate::lattice::{ChainConfig, Lattice, Sites, any_name};
 use crate::syntax::ast::{Expression, Kind};
 
 impl ExpandedModel {
@@ -14,7 +14,7 @@ impl ExpandedModel {
     pub fn motionless(
         &self,
         lattice: &Lattice,
-        choice: &Choice,
+        choice: &ChainConfig,
         spec: &Spec,
         (first, all): (&Configuration, &[&Configuration]),
     ) -> Diagnostic {

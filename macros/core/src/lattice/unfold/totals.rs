@@ -163,7 +163,7 @@ impl Writer<'_> {
         let range = found.range(self.lattice, self.choice)?;
         let sites: Vec<isize> = range.indices(self.choice.count(range.label)).collect();
         let site = *sites.get(sites.len() / 2)?;
-        let shown = self.put(site).put(&open).ok()?;
+        let shown = self.substitution(site).substitute(&open).ok()?;
         let by = self.first_counted(&open, &found.letters);
         Some(Summed {
             shown: sum_of(vec![(minus, shown)], term.place),
@@ -217,7 +217,7 @@ impl Writer<'_> {
         let mut all = Vec::new();
         let mut large = 0;
         for site in range.indices(self.choice.count(range.label)) {
-            let copy = self.put(site).put(inner)?;
+            let copy = self.substitution(site).substitute(inner)?;
             large += copy.size();
             if large > LARGEST {
                 let words = self.choice.words(self.lattice);

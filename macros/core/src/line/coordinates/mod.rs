@@ -13,7 +13,7 @@ use crate::expr::shape::Dim;
 use crate::groups::{self, Chart};
 use crate::lattice::Lattice;
 use crate::pipeline;
-use crate::syntax::ast::{Kind, Kindred, Model, Size, Statement};
+use crate::syntax::ast::{Kind, Model, Size, SizedName, Statement};
 
 /// A configuration of a group that is stored in coordinates.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,14 +23,14 @@ pub struct Coordinates {
     /// The side of its velocity, in whose frame its momentum is given.
     pub side: Side,
     /// Its coordinates.
-    pub by: By,
+    pub by: CoordinateKind,
     /// Its documentation in the model.
     pub doc: String,
 }
 
 /// The coordinates of an element.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum By {
+pub enum CoordinateKind {
     /// The entries of a linear map: a field of matrices with this many rows, of the same name.
     Entries(usize),
     /// The angle of a rotation of the plane: a field of numbers with this name.
@@ -46,9 +46,10 @@ impl Coordinates {
     /// The names of its coordinates.
     pub fn names(&self) -> Vec<&str> {
         match &self.by {
-            By::Entries(_) => vec![&self.name],
-            By::Angle(angle) => vec![angle],
-            By::AngleAndPlace(first, place) | By::TurnAndPlace(first, place) => {
+            CoordinateKind::Entries(_) => vec![&self.name],
+            CoordinateKind::Angle(angle) => vec![angle],
+            CoordinateKind::AngleAndPlace(first, place)
+            | CoordinateKind::TurnAndPlace(first, place) => {
                 vec![first, place]
             }
         }
@@ -58,12 +59,12 @@ impl Coordinates {
     pub fn words(&self) -> String {
         let name = &self.name;
         match &self.by {
-            By::Entries(_) => format!("{name} by its entries"),
-            By::Angle(angle) => format!("{name} by its angle {angle}"),
-            By::AngleAndPlace(angle, place) => {
+            CoordinateKind::Entries(_) => format!("{name} by its entries"),
+            CoordinateKind::Angle(angle) => format!("{name} by its angle {angle}"),
+            CoordinateKind::AngleAndPlace(angle, place) => {
                 format!("{name} by its angle {angle} and its place {place}")
             }
-            By::TurnAndPlace(turn, place) => {
+            CoordinateKind::TurnAndPlace(turn, place) => {
                 format!("{name} by its rotation {turn} and its place {place}")
             }
         }
@@ -120,10 +121,10 @@ fn stated(model: &Model, lattice: &Lattice) -> Vec<Stated> {
         };
         let own = |letter: &str| fresh(model, letter, &name.text);
         let by = match chart(group) {
-            Some(Chart::Entries(n)) => By::Entries(n as usize),
-            Some(Chart::Angle) => By::Angle(own("θ")),
-            Some(Chart::AngleAndPlace) => By::AngleAndPlace(own("θ"), own("x")),
-            Some(Chart::TurnAndPlace) => By::TurnAndPlace(own("R"), own("x")),
+            Some(Chart::Entries(n)) => CoordinateKind::Entries(n as usize),
+            Some(Chart::Angle) => CoordinateKind::Angle(own("θ")),
+            Some(Chart::AngleAndPlace) => CoordinateKind::AngleAndPlace(own("θ"), own("x")),
+            Some(Chart::TurnAndPlace) => CoordinateKind::TurnAndPlace(own("R"), own("x")),
             None => continue,
         };
         out.push(Stated {
@@ -141,13 +142,13 @@ fn stated(model: &Model, lattice: &Lattice) -> Vec<Stated> {
 }
 
 /// The coordinates of a group as it is stated.
-fn chart(of: &Kindred) -> Option<Chart> {
+fn chart(of: &SizedName) -> Option<Chart> {
     let n = u32::try_from(size(of)?).ok()?;
     groups::named(&of.name.text, Dim::Fixed(n))?.chart()
 }
 
 /// The size of a group or of a shape, if it is a single number.
-fn size(of: &Kindred) -> Option<usize> {
+fn size(of: &SizedName) -> Option<usize> {
     match of.sizes.as_slice() {
         [Size::Number(n, _)] => usize::try_from(*n).ok(),
         _ => None,

@@ -2,10 +2,10 @@
 //! vector on which they act becomes its part in space and its last component. Takes expressions as stated; gives
 //! them in coordinates.
 
-use super::{By, Stated, size};
+use super::{CoordinateKind, Stated, size};
 use crate::algebra::Rational;
 use crate::diagnostic::Place;
-use crate::syntax::ast::{Expression, Kind, Kindred, Model, Name, Size, Statement};
+use crate::syntax::ast::{Expression, Kind, Model, Name, Size, SizedName, Statement};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The rigid motions of a model, and the kinds of its parameters.
@@ -24,8 +24,12 @@ type Two = [Expression; 2];
 
 impl<'a> Motions<'a> {
     pub(super) fn of(model: &Model, all: &'a [Stated]) -> Self {
-        let is_motion =
-            |x: &&Stated| matches!(x.of.by, By::AngleAndPlace(..) | By::TurnAndPlace(..));
+        let is_motion = |x: &&Stated| {
+            matches!(
+                x.of.by,
+                CoordinateKind::AngleAndPlace(..) | CoordinateKind::TurnAndPlace(..)
+            )
+        };
         let mut out = Motions {
             all: all.iter().filter(is_motion).collect(),
             given: BTreeMap::new(),
@@ -53,7 +57,7 @@ impl<'a> Motions<'a> {
         out
     }
 
-    fn take(&mut self, names: &[Name], shape: &Kindred) {
+    fn take(&mut self, names: &[Name], shape: &SizedName) {
         if shape.name.text == "Real" {
             self.numbers.extend(names.iter().map(|n| n.text.clone()));
         }
@@ -135,9 +139,11 @@ impl<'a> Motions<'a> {
             .iter()
             .find(|x| x.of.name == n || x.velocity == n)?;
         let (own, place) = match &x.of.by {
-            By::TurnAndPlace(turn, place) => (name(e, turn), name(e, place)),
-            By::AngleAndPlace(angle, place) => (turn_by(e, name(e, angle)), name(e, place)),
-            By::Entries(_) | By::Angle(_) => return None,
+            CoordinateKind::TurnAndPlace(turn, place) => (name(e, turn), name(e, place)),
+            CoordinateKind::AngleAndPlace(angle, place) => {
+                (turn_by(e, name(e, angle)), name(e, place))
+            }
+            CoordinateKind::Entries(_) | CoordinateKind::Angle(_) => return None,
         };
         if x.of.name == n {
             return Some([own, place]);
@@ -145,17 +151,17 @@ impl<'a> Motions<'a> {
         let there = call(e, "next", [place.clone()]);
         let of_body = x.of.side.is_body();
         let turn = match &x.of.by {
-            By::TurnAndPlace(..) if of_body => name(e, &x.turning),
-            By::TurnAndPlace(..) => {
+            CoordinateKind::TurnAndPlace(..) if of_body => name(e, &x.turning),
+            CoordinateKind::TurnAndPlace(..) => {
                 let turning = name(e, &x.turning);
                 product(e, [own.clone(), turning, transposed(e, own.clone())])
             }
-            By::AngleAndPlace(angle, _) => {
+            CoordinateKind::AngleAndPlace(angle, _) => {
                 let angle = name(e, angle);
                 let after = call(e, "next", [angle.clone()]);
                 turn_by(e, sum(e, [(false, after), (true, angle)]))
             }
-            By::Entries(_) | By::Angle(_) => return None,
+            CoordinateKind::Entries(_) | CoordinateKind::Angle(_) => return None,
         };
         let moved = match of_body {
             true => {
@@ -376,9 +382,9 @@ fn inverse(at: &Expression, [turn, place]: Two) -> Two {
 }
 
 /// A shape or a group, with one size or none.
-pub(super) fn kindred(place: Place, family: &str, n: Option<usize>) -> Kindred {
+pub(super) fn kindred(place: Place, family: &str, n: Option<usize>) -> SizedName {
     let size = |n| Size::Number(u64::try_from(n).unwrap_or(0), place);
-    Kindred {
+    SizedName {
         name: Name {
             text: family.to_owned(),
             place,

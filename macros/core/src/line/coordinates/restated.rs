@@ -1,7 +1,7 @@
 //! The statements of a model in coordinates: declarations, constraints, prescribed ends, and every expression.
 
 use super::motions::{Motions, call, kind, kindred, name, product, sum, turn_by};
-use super::{By, Stated};
+use super::{CoordinateKind, Stated};
 use crate::algebra::Rational;
 use crate::lattice::{any_name, definitions, inlined};
 use crate::line::Refused;
@@ -110,7 +110,7 @@ fn in_place_of(statement: &Statement, all: &[Stated]) -> Vec<Statement> {
             name: own, place, ..
         } => match found(own) {
             Some(x) => match &x.of.by {
-                By::TurnAndPlace(turn, _) => {
+                CoordinateKind::TurnAndPlace(turn, _) => {
                     let at = Expression {
                         kind: Kind::Name(turn.clone()),
                         place: *place,
@@ -121,7 +121,9 @@ fn in_place_of(statement: &Statement, all: &[Stated]) -> Vec<Statement> {
                         place: *place,
                     }]
                 }
-                By::Entries(_) | By::Angle(_) | By::AngleAndPlace(..) => Vec::new(),
+                CoordinateKind::Entries(_)
+                | CoordinateKind::Angle(_)
+                | CoordinateKind::AngleAndPlace(..) => Vec::new(),
             },
             None => vec![statement.clone()],
         },
@@ -167,12 +169,12 @@ fn declared(x: &Stated, own: &Name, at: Option<&At>) -> Vec<Statement> {
         domain: None,
     };
     match &x.of.by {
-        By::Entries(n) => vec![field(&own.text, "Mat", Some(*n))],
-        By::Angle(angle) => vec![field(angle, "Real", None)],
-        By::AngleAndPlace(angle, place) => {
+        CoordinateKind::Entries(n) => vec![field(&own.text, "Mat", Some(*n))],
+        CoordinateKind::Angle(angle) => vec![field(angle, "Real", None)],
+        CoordinateKind::AngleAndPlace(angle, place) => {
             vec![field(angle, "Real", None), field(place, "Vec", Some(2))]
         }
-        By::TurnAndPlace(turn, place) => vec![
+        CoordinateKind::TurnAndPlace(turn, place) => vec![
             Statement::Group {
                 name: renamed(own, turn),
                 group: kindred(own.place, "SO", Some(3)),
@@ -200,17 +202,17 @@ fn in_coordinates(
     let mut by: BTreeMap<String, Expression> = BTreeMap::new();
     for x in all {
         match &x.of.by {
-            By::Entries(_) => {
+            CoordinateKind::Entries(_) => {
                 by.insert(x.velocity.clone(), velocity_of_map(x, &out));
             }
-            By::Angle(angle) => {
+            CoordinateKind::Angle(angle) => {
                 let angle = name(&out, angle);
                 let after = call(&out, "next", [angle.clone()]);
                 let turned = sum(&out, [(false, after), (true, angle.clone())]);
                 by.insert(x.velocity.clone(), turn_by(&out, turned));
                 by.insert(x.of.name.clone(), turn_by(&out, angle));
             }
-            By::AngleAndPlace(..) | By::TurnAndPlace(..) => {}
+            CoordinateKind::AngleAndPlace(..) | CoordinateKind::TurnAndPlace(..) => {}
         }
     }
     Ok(inlined(&out, &by))

@@ -1,7 +1,7 @@
 //! Configurations that are stored in coordinates: which coordinates, how the velocities are found, and which models
 //! are rejected.
 
-use super::By;
+use super::CoordinateKind;
 use crate::line::{Line, Refused, SiteSolve};
 use crate::pipeline;
 
@@ -34,7 +34,11 @@ fn linear_maps_with_a_constant_inertia_step_explicitly_on_either_side() {
         ("next(Q) = Q*G", "tr((next(Q) - Q)*I0*(next(Q) - Q)^T)"),
     ] {
         let line = taken(&ellipsoids(constraint, kinetic));
-        assert_eq!(line.coordinates[0].by, By::Entries(3), "{constraint}");
+        assert_eq!(
+            line.coordinates[0].by,
+            CoordinateKind::Entries(3),
+            "{constraint}"
+        );
         let mover = &line.lone[0].movers[0];
         assert!(matches!(mover.how, SiteSolve::Field { .. }), "{constraint}");
         assert_eq!(crate::emit::refusal_of_line(&line), None);
@@ -89,7 +93,10 @@ fn names_that_are_taken_are_others() {
          group R: SO<2> at nodes velocity W; constraint next(R) = R*W;
          lagrangian = -tr(J*W)/h + h*θ_R*tr(R^T*next(R, i)); }",
     );
-    assert_eq!(line.coordinates[0].by, By::Angle("θθ_R".to_owned()));
+    assert_eq!(
+        line.coordinates[0].by,
+        CoordinateKind::Angle("θθ_R".to_owned())
+    );
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::{Composer, transposition};
 use crate::algebra::Rational;
 use crate::expr::{self, Expr, Function, Map, Node, Part};
 use crate::print::layout::{Fence, Layout, Sign};
-use crate::print::level::{Laid, Level};
+use crate::print::level::{Level, RankedLayout};
 use crate::print::width::{Size, width};
 
 /// From this width in tenths of a point, a numerator is written next to its denominator, `1/h (...)`, so that it can
@@ -13,12 +13,12 @@ const WIDEST_NUMERATOR: usize = 1600;
 
 impl Composer<'_> {
     /// An expression with its sign.
-    pub fn expression(&self, e: &Expr) -> Laid {
+    pub fn expression(&self, e: &Expr) -> RankedLayout {
         self.sum(self.terms(e))
     }
 
     /// The terms of an expression; `true` marks one that is subtracted.
-    pub fn terms(&self, e: &Expr) -> Vec<(bool, Laid)> {
+    pub fn terms(&self, e: &Expr) -> Vec<(bool, RankedLayout)> {
         if let Some(parts) = self.parts(e) {
             return vec![(false, parts)];
         }
@@ -29,7 +29,7 @@ impl Composer<'_> {
     }
 
     /// Splits off the sign, including the sign of a leading number.
-    fn signed(&self, e: &Expr) -> (bool, Laid) {
+    fn signed(&self, e: &Expr) -> (bool, RankedLayout) {
         if let Node::Neg(inner) = e.node() {
             let (minus, laid) = self.signed(inner);
             return (!minus, laid);
@@ -55,7 +55,7 @@ impl Composer<'_> {
         }
     }
 
-    fn unsigned(&self, e: &Expr) -> Laid {
+    fn unsigned(&self, e: &Expr) -> RankedLayout {
         match e.node() {
             Node::Number(q) => self.number(*q),
             Node::Constant(c) => self.constant(*c),
@@ -64,22 +64,22 @@ impl Composer<'_> {
                 // A name of several letters gets brackets under a superscript.
                 match &letter {
                     Layout::Typeset(_, shown) if matches!(**shown, Layout::Row(_)) => {
-                        Laid::new(letter, Level::Prefix)
+                        RankedLayout::new(letter, Level::Prefix)
                     }
-                    _ => Laid::atom(letter),
+                    _ => RankedLayout::atom(letter),
                 }
             }
-            Node::Identity(_) => Laid::atom(Layout::Word("Id".to_owned())),
-            Node::Zero(_) => Laid::atom(Layout::Number("0".to_owned())),
+            Node::Identity(_) => RankedLayout::atom(Layout::Word("Id".to_owned())),
+            Node::Zero(_) => RankedLayout::atom(Layout::Number("0".to_owned())),
             Node::Unit(_, axis) => {
                 let axis = (u32::from(*axis) + 1).to_string();
-                Laid::atom(self.name("E", Some(&axis), None))
+                RankedLayout::atom(self.name("E", Some(&axis), None))
             }
             Node::Inclusion(shape, at) => {
                 let rows = self.symbols.dim_text(shape.rows);
                 let script = format!("{rows}{}", u32::from(*at) + 1);
                 let name = self.symbols.fresh_name("ι");
-                Laid::atom(self.name(&name, Some(&script), None))
+                RankedLayout::atom(self.name(&name, Some(&script), None))
             }
             Node::Sum(_) | Node::Neg(_) => self.expression(e),
             Node::Product(factors) => {
@@ -155,12 +155,12 @@ impl Composer<'_> {
     }
 
     /// The norm of a vector, or the absolute value of a number.
-    fn length(&self, of: &Expr) -> Laid {
-        Laid::atom(Layout::fenced(Fence::Bars, self.expression(of).layout))
+    fn length(&self, of: &Expr) -> RankedLayout {
+        RankedLayout::atom(Layout::fenced(Fence::Bars, self.expression(of).layout))
     }
 
     /// The inverse of an expression; the inverse of a transpose gets a single superscript, `-T`.
-    pub fn inverted(&self, a: &Expr) -> Laid {
+    pub fn inverted(&self, a: &Expr) -> RankedLayout {
         match a.node() {
             Node::Transpose(inner) => self.expression(inner).raised(transposition(true)),
             _ => self.power(self.expression(a), Rational::MINUS_ONE),
@@ -168,19 +168,19 @@ impl Composer<'_> {
     }
 
     /// Under a trace, only this subscript shows the size of the identity.
-    fn sized(&self, e: &Expr) -> Laid {
+    fn sized(&self, e: &Expr) -> RankedLayout {
         match e.node() {
             Node::Identity(n) => {
                 let size = self.symbols.dim_text(*n);
                 let id = Layout::Word("Id".to_owned());
-                Laid::atom(id.subscript(super::name::script(&size)))
+                RankedLayout::atom(id.subscript(super::name::script(&size)))
             }
             _ => self.expression(e),
         }
     }
 
     /// A number times factors, as one product.
-    fn product(&self, q: Rational, factors: &[Expr]) -> Laid {
+    fn product(&self, q: Rational, factors: &[Expr]) -> RankedLayout {
         let mut parts = Vec::new();
         let numbered = !q.is_one() || factors.is_empty();
         if numbered && !q.is_negative() {
@@ -217,7 +217,7 @@ impl Composer<'_> {
                 layout => matches!(layout, Layout::Number(_)),
             };
             if i > 0 && digits {
-                Laid::new(part.layout, Level::Sum).factor(false)
+                RankedLayout::new(part.layout, Level::Sum).factor(false)
             } else {
                 part.factor(i == last)
             }
@@ -227,7 +227,7 @@ impl Composer<'_> {
 
     /// A number times factors, over divisors. The denominator of the number and negative powers of scalars join the
     /// divisors.
-    fn quotient(&self, q: Rational, factors: &[Expr], divisors: &[&Expr]) -> Laid {
+    fn quotient(&self, q: Rational, factors: &[Expr], divisors: &[&Expr]) -> RankedLayout {
         let whole = |n: i128| Rational::new(n, 1).unwrap_or(Rational::ONE);
         let mut below = whole(q.denominator());
         let mut under: Vec<Expr> = factors.iter().filter_map(reciprocal).collect();

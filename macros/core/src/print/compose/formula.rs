@@ -6,16 +6,16 @@ use crate::expr::Node;
 use crate::print::Style;
 use crate::print::formula::{Formula, Operator, Relation};
 use crate::print::layout::{Fence, Layout, Sign, Strength};
-use crate::print::level::{Laid, Level};
+use crate::print::level::{Level, RankedLayout};
 use crate::print::name;
 
 impl Composer<'_> {
     /// Lays out a formula.
-    pub fn formula(&self, f: &Formula) -> Laid {
+    pub fn formula(&self, f: &Formula) -> RankedLayout {
         match f {
             Formula::Expr(e) => self.expression(e),
             Formula::Name { base, sub, sup } => {
-                Laid::atom(self.name(base, sub.as_deref(), sup.as_deref()))
+                RankedLayout::atom(self.name(base, sub.as_deref(), sup.as_deref()))
             }
             Formula::Relation(members, relation) => self.relation(members, *relation),
             Formula::Sum(_) | Formula::Diff(..) | Formula::Neg(_) => {
@@ -48,7 +48,7 @@ impl Composer<'_> {
             Formula::Rate(a) => self.rate(a),
             Formula::Matrix(rows) => {
                 let entries = |r: &Vec<Formula>| r.iter().map(|f| self.formula(f).layout).collect();
-                Laid::atom(Layout::Grid(rows.iter().map(entries).collect()))
+                RankedLayout::atom(Layout::Grid(rows.iter().map(entries).collect()))
             }
             Formula::Continuous(a) => {
                 let style = Style {
@@ -66,16 +66,18 @@ impl Composer<'_> {
                 let nabla = Layout::Sign(Sign::Nabla).subscript(self.letter(*wrt));
                 let of = self.name(of, None, None);
                 let row = vec![nabla, Layout::Sign(Sign::Operand), of];
-                Laid::new(Layout::Row(row), Level::Gradient)
+                RankedLayout::new(Layout::Row(row), Level::Gradient)
             }
             Formula::Variation(a) => {
                 let row = vec![Layout::Sign(Sign::Delta), self.formula(a).base()];
-                Laid::new(Layout::Row(row), Level::Prefix)
+                RankedLayout::new(Layout::Row(row), Level::Prefix)
             }
             Formula::Tangent { parameter, of } => self.tangent(parameter, of),
             Formula::Operator(operator, a) => self.call(word(*operator), self.formula(a)),
             Formula::HatOf(a) => self.hat(self.formula(a)),
-            Formula::Norm(a) => Laid::atom(Layout::fenced(Fence::Bars, self.formula(a).layout)),
+            Formula::Norm(a) => {
+                RankedLayout::atom(Layout::fenced(Fence::Bars, self.formula(a).layout))
+            }
             Formula::Apply {
                 function,
                 arguments,
@@ -89,7 +91,9 @@ impl Composer<'_> {
                 to,
                 of,
             } => self.sum_over(index, from.as_deref(), to.as_deref(), of),
-            Formula::Grouped(a) => Laid::atom(Layout::fenced(Fence::Round, self.formula(a).layout)),
+            Formula::Grouped(a) => {
+                RankedLayout::atom(Layout::fenced(Fence::Round, self.formula(a).layout))
+            }
             Formula::List(parts) | Formula::Rows(parts) => {
                 let mut row = Vec::new();
                 for part in parts {
@@ -100,7 +104,7 @@ impl Composer<'_> {
                     }
                     row.push(self.formula(part).layout);
                 }
-                Laid::new(Layout::Row(row), Level::Loose)
+                RankedLayout::new(Layout::Row(row), Level::Loose)
             }
             Formula::Sequence(parts) => {
                 let mut row = Vec::new();
@@ -110,14 +114,14 @@ impl Composer<'_> {
                     }
                     row.push(self.formula(part).layout);
                 }
-                Laid::new(Layout::Row(row), Level::Loose)
+                RankedLayout::new(Layout::Row(row), Level::Loose)
             }
-            Formula::Text(words) => Laid::atom(Layout::Text(words.clone())),
+            Formula::Text(words) => RankedLayout::atom(Layout::Text(words.clone())),
         }
     }
 
     /// The signed terms of a formula; a negated sum keeps its brackets.
-    fn formula_terms(&self, f: &Formula) -> Vec<(bool, Laid)> {
+    fn formula_terms(&self, f: &Formula) -> Vec<(bool, RankedLayout)> {
         let negative = |a: &Formula| {
             let mut terms = self.formula_terms(a);
             match (terms.pop(), terms.is_empty()) {
@@ -146,13 +150,13 @@ impl Composer<'_> {
         }
     }
 
-    fn formula_product(&self, factors: &[Formula]) -> Laid {
+    fn formula_product(&self, factors: &[Formula]) -> RankedLayout {
         let letter = |f: &Formula| match f {
             Formula::Name { .. } => true,
             Formula::Expr(e) => matches!(e.node(), Node::Letter(_)),
             _ => false,
         };
-        let mut parts: Vec<Laid> = Vec::new();
+        let mut parts: Vec<RankedLayout> = Vec::new();
         for run in factors.chunk_by(|a, b| a == b && letter(a)) {
             match (run, i64::try_from(run.len())) {
                 ([first, _, ..], Ok(n)) => {
@@ -172,7 +176,7 @@ impl Composer<'_> {
             // `v a·b` reads as `(v a)·b`.
             let dot = laid.level == Level::Dot;
             if digits {
-                Laid::new(laid.layout, Level::Sum).factor(false)
+                RankedLayout::new(laid.layout, Level::Sum).factor(false)
             } else {
                 laid.factor(i == last && !dot)
             }
@@ -180,7 +184,7 @@ impl Composer<'_> {
         self.beside(beside.collect())
     }
 
-    fn relation(&self, members: &[Formula], relation: Relation) -> Laid {
+    fn relation(&self, members: &[Formula], relation: Relation) -> RankedLayout {
         let each = members.iter().map(|member| {
             let laid = self.formula(member);
             let nested = laid.level == Level::Relation && relation != Relation::Implies;
@@ -202,7 +206,7 @@ impl Composer<'_> {
             }
             row.push(member);
         }
-        Laid::new(Layout::Row(row), Level::Relation)
+        RankedLayout::new(Layout::Row(row), Level::Relation)
     }
 
     /// Whether all sides of a relation print the same, as in `0 = 0`.
@@ -219,13 +223,13 @@ impl Composer<'_> {
         }
     }
 
-    fn between(&self, a: &Formula, sign: Sign, b: &Formula, level: Level) -> Laid {
+    fn between(&self, a: &Formula, sign: Sign, b: &Formula, level: Level) -> RankedLayout {
         self.infix(self.formula(a), sign, self.formula(b), level)
     }
 
-    fn pair(&self, fence: Fence, a: &Formula, b: &Formula) -> Laid {
+    fn pair(&self, fence: Fence, a: &Formula, b: &Formula) -> RankedLayout {
         let inner = self.commas(vec![self.formula(a).layout, self.formula(b).layout]);
-        Laid::atom(Layout::fenced(fence, inner))
+        RankedLayout::atom(Layout::fenced(fence, inner))
     }
 
     fn adjoint(
@@ -234,7 +238,7 @@ impl Composer<'_> {
         star: Option<Layout>,
         group: &Formula,
         argument: &Formula,
-    ) -> Laid {
+    ) -> RankedLayout {
         let operator = Layout::Script {
             base: Box::new(Layout::Word(word.to_owned())),
             sub: Some(Box::new(self.formula(group).layout)),
@@ -248,11 +252,11 @@ impl Composer<'_> {
             argument.base()
         };
         let row = vec![operator, Layout::Sign(Sign::Operand), argument];
-        Laid::new(Layout::Row(row), Level::Application)
+        RankedLayout::new(Layout::Row(row), Level::Application)
     }
 
     /// `da/dt`, with the letter in the numerator if `a` is one letter.
-    fn rate(&self, a: &Formula) -> Laid {
+    fn rate(&self, a: &Formula) -> RankedLayout {
         let d = || Layout::Identifier("d".to_owned());
         let below = Layout::row(vec![d(), Layout::Identifier("t".to_owned())]);
         let laid = self.formula(a);
@@ -267,13 +271,13 @@ impl Composer<'_> {
             Layout::Row(vec![above, Layout::Sign(Sign::Slash), below])
         };
         let Some(behind) = behind else {
-            return Laid::new(derivative, Level::Prefix);
+            return RankedLayout::new(derivative, Level::Prefix);
         };
         let row = vec![derivative, Layout::Sign(Sign::Thin), behind];
-        Laid::new(Layout::Row(row), Level::Application)
+        RankedLayout::new(Layout::Row(row), Level::Application)
     }
 
-    fn tangent(&self, parameter: &str, of: &Formula) -> Laid {
+    fn tangent(&self, parameter: &str, of: &Formula) -> RankedLayout {
         let d = || Layout::Identifier("d".to_owned());
         let below = Layout::row(vec![d(), self.name(parameter, None, None)]);
         let derivative = if self.stacked {
@@ -292,10 +296,16 @@ impl Composer<'_> {
             Layout::Sign(Sign::Thin),
             self.formula(of).term(),
         ];
-        Laid::new(Layout::Row(row), Level::Application)
+        RankedLayout::new(Layout::Row(row), Level::Application)
     }
 
-    fn sum_over(&self, index: &str, from: Option<&str>, to: Option<&str>, of: &Formula) -> Laid {
+    fn sum_over(
+        &self,
+        index: &str,
+        from: Option<&str>,
+        to: Option<&str>,
+        of: &Formula,
+    ) -> RankedLayout {
         let mut below = vec![name::script(index)];
         if let Some(from) = from {
             below.push(Layout::Sign(Sign::Tight('=')));
@@ -307,7 +317,7 @@ impl Composer<'_> {
             sup: to.map(|to| Box::new(name::script(to))),
         };
         let row = vec![sign, Layout::Sign(Sign::Operand), self.formula(of).term()];
-        Laid::new(Layout::Row(row), Level::Application)
+        RankedLayout::new(Layout::Row(row), Level::Application)
     }
 }
 

@@ -4,12 +4,12 @@
 use super::Composer;
 use crate::expr::{Applied, Expr, Node};
 use crate::print::layout::{Fence, Layout, Sign};
-use crate::print::level::{Laid, Level};
+use crate::print::level::{Level, RankedLayout};
 use crate::print::tex;
 
 impl Composer<'_> {
     /// A value of a functional, or the pull-back of a seed.
-    pub(super) fn functional(&self, a: &Applied, back: Option<(u8, &Expr)>) -> Laid {
+    pub(super) fn functional(&self, a: &Applied, back: Option<(u8, &Expr)>) -> RankedLayout {
         let name = self.functional_name(a);
         let arguments = a.arguments.iter().map(|x| self.expression(x).layout);
         let value = self.applied(name, arguments.collect());
@@ -33,12 +33,12 @@ impl Composer<'_> {
             let along = a.along.iter().map(|(_, x)| self.expression(x).layout);
             row.push(Layout::fenced(Fence::Square, self.commas(along.collect())));
         }
-        let derivative = Laid::new(Layout::Row(row), Level::Gradient);
+        let derivative = RankedLayout::new(Layout::Row(row), Level::Gradient);
         match back {
             Some((_, seed)) if !gradient => {
                 let transposed = derivative.raised(super::transposition(false)).layout;
                 let seed = Layout::fenced(Fence::Square, self.expression(seed).layout);
-                Laid::new(Layout::Row(vec![transposed, seed]), Level::Prefix)
+                RankedLayout::new(Layout::Row(vec![transposed, seed]), Level::Prefix)
             }
             _ => derivative,
         }

@@ -8,7 +8,7 @@ pub(super) mod parts;
 
 use super::Style;
 use super::layout::{Fence, Layout, Sign, Strength};
-use super::level::{Laid, Level};
+use super::level::{Level, RankedLayout};
 use super::width::{Size, width};
 use super::{name, tex};
 use crate::algebra::Rational;
@@ -64,37 +64,37 @@ impl Composer<'_> {
     }
 
     /// A non-negative number.
-    fn number(&self, q: Rational) -> Laid {
+    fn number(&self, q: Rational) -> RankedLayout {
         let digits = |n: i128| Layout::Number(n.to_string());
         let (num, den) = (q.numerator(), q.denominator());
         if den == 1 {
-            return Laid::atom(digits(num));
+            return RankedLayout::atom(digits(num));
         }
         if let Some(decimal) = decimal(num, den) {
-            return Laid::atom(Layout::Number(decimal));
+            return RankedLayout::atom(Layout::Number(decimal));
         }
         if self.stacked {
             let fraction = Layout::Fraction(Box::new(digits(num)), Box::new(digits(den)));
-            return Laid::new(fraction, Level::Prefix);
+            return RankedLayout::new(fraction, Level::Prefix);
         }
         match vulgar(num, den) {
-            Some(c) => Laid::new(Layout::Number(c.to_string()), Level::Prefix),
+            Some(c) => RankedLayout::new(Layout::Number(c.to_string()), Level::Prefix),
             None => {
                 let row = vec![digits(num), Layout::Sign(Sign::Slash), digits(den)];
-                Laid::new(Layout::Row(row), Level::Slash)
+                RankedLayout::new(Layout::Row(row), Level::Slash)
             }
         }
     }
 
     /// A constant that exact arithmetic does not cover: π, or digits times a power of ten.
-    fn constant(&self, c: Constant) -> Laid {
+    fn constant(&self, c: Constant) -> RankedLayout {
         let number = |text: &str| Layout::Number(text.to_owned());
         if c == Constant::PI {
-            return Laid::atom(Layout::Identifier("π".to_owned()));
+            return RankedLayout::atom(Layout::Identifier("π".to_owned()));
         }
         let (digits, power) = c.digits();
         if (-4..=8).contains(&power) {
-            return Laid::atom(number(&c.value().to_string()));
+            return RankedLayout::atom(number(&c.value().to_string()));
         }
         let mut exponent = Vec::new();
         if power < 0 {
@@ -106,15 +106,15 @@ impl Composer<'_> {
             "1" => vec![ten],
             _ => vec![number(&digits), Layout::Sign(Sign::Cross), ten],
         };
-        Laid::new(Layout::row(row), Level::Infix)
+        RankedLayout::new(Layout::row(row), Level::Infix)
     }
 
     /// A sum of signed terms; `true` marks one that is subtracted.
-    fn sum(&self, terms: Vec<(bool, Laid)>) -> Laid {
+    fn sum(&self, terms: Vec<(bool, RankedLayout)>) -> RankedLayout {
         let several = terms.len() > 1;
         let signed = terms.first().is_some_and(|(minus, _)| *minus);
         if !several && !signed {
-            let zero = || Laid::atom(Layout::Number("0".to_owned()));
+            let zero = || RankedLayout::atom(Layout::Number("0".to_owned()));
             return terms.into_iter().next().map_or_else(zero, |(_, only)| only);
         }
         let mut row = Vec::new();
@@ -131,11 +131,11 @@ impl Composer<'_> {
             row.push(term.term());
         }
         let level = if several { Level::Sum } else { Level::Signed };
-        Laid::new(Layout::Row(row), level)
+        RankedLayout::new(Layout::Row(row), level)
     }
 
     /// Juxtaposes factors that already have their brackets.
-    fn beside(&self, factors: Vec<Layout>) -> Laid {
+    fn beside(&self, factors: Vec<Layout>) -> RankedLayout {
         let mut row = Vec::new();
         for f in factors {
             if !row.is_empty() {
@@ -144,32 +144,32 @@ impl Composer<'_> {
             }
             row.push(f);
         }
-        Laid::new(Layout::row(row), Level::Product)
+        RankedLayout::new(Layout::row(row), Level::Product)
     }
 
     /// A numerator over a denominator.
-    fn fraction(&self, top: Laid, bottom: Laid) -> Laid {
+    fn fraction(&self, top: RankedLayout, bottom: RankedLayout) -> RankedLayout {
         if self.stacked {
             let fraction = Layout::Fraction(Box::new(top.layout), Box::new(bottom.layout));
-            return Laid::new(fraction, Level::Prefix);
+            return RankedLayout::new(fraction, Level::Prefix);
         }
         let row = vec![
             top.before_slash(),
             Layout::Sign(Sign::Slash),
             bottom.after_slash(),
         ];
-        Laid::new(Layout::Row(row), Level::Slash)
+        RankedLayout::new(Layout::Row(row), Level::Slash)
     }
 
     /// Joins `a` and `b` with an infix sign.
-    fn infix(&self, a: Laid, sign: Sign, b: Laid, level: Level) -> Laid {
+    fn infix(&self, a: RankedLayout, sign: Sign, b: RankedLayout, level: Level) -> RankedLayout {
         let at = Layout::Break(Strength::Factor);
         let row = vec![a.operand(), at, Layout::Sign(sign), b.operand()];
-        Laid::new(Layout::Row(row), level)
+        RankedLayout::new(Layout::Row(row), level)
     }
 
     /// A rational power.
-    fn power(&self, base: Laid, q: Rational) -> Laid {
+    fn power(&self, base: RankedLayout, q: Rational) -> RankedLayout {
         if q.is_one() {
             return base;
         }
@@ -188,22 +188,22 @@ impl Composer<'_> {
         base.raised(Layout::row(row))
     }
 
-    fn root(&self, inner: Laid) -> Laid {
+    fn root(&self, inner: RankedLayout) -> RankedLayout {
         let layout = if self.stacked {
             Layout::Root(Box::new(inner.layout))
         } else {
             Layout::Row(vec![Layout::Sign(Sign::Root), inner.base()])
         };
-        Laid::new(layout, Level::Prefix)
+        RankedLayout::new(layout, Level::Prefix)
     }
 
     /// The skew matrix of a vector: a hat, over the letter only if there are scripts.
-    fn hat(&self, inner: Laid) -> Laid {
+    fn hat(&self, inner: RankedLayout) -> RankedLayout {
         if !self.stacked {
             return self.call("hat", inner);
         }
         let hat = |a: Layout| Layout::Hat(Box::new(a));
-        Laid::atom(match inner.layout {
+        RankedLayout::atom(match inner.layout {
             Layout::Script {
                 base,
                 sub,
@@ -221,14 +221,14 @@ impl Composer<'_> {
     }
 
     /// A named operator with its argument in brackets.
-    fn call(&self, word: &str, argument: Laid) -> Laid {
+    fn call(&self, word: &str, argument: RankedLayout) -> RankedLayout {
         self.applied(Layout::Word(word.to_owned()), vec![argument.layout])
     }
 
     /// `f(a, b, ...)`.
-    fn applied(&self, function: Layout, arguments: Vec<Layout>) -> Laid {
+    fn applied(&self, function: Layout, arguments: Vec<Layout>) -> RankedLayout {
         let arguments = Layout::fenced(Fence::Round, self.commas(arguments));
-        Laid::atom(Layout::Row(vec![
+        RankedLayout::atom(Layout::Row(vec![
             function,
             Layout::Sign(Sign::Apply),
             arguments,

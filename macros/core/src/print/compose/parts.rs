@@ -8,7 +8,7 @@ use crate::expr::shape::{Dim, Shape};
 use crate::expr::{self, Expr, Node};
 use crate::print::formula::Formula;
 use crate::print::layout::{Fence, Layout, Strength};
-use crate::print::level::Laid;
+use crate::print::level::RankedLayout;
 use crate::print::name;
 
 /// The role of an inclusion in a product.
@@ -115,19 +115,19 @@ fn put(term: &Expr) -> Option<(bool, Expr)> {
 
 impl Composer<'_> {
     /// A vector of the Lie algebra by its parts, `(a, b)`.
-    pub(super) fn parts(&self, e: &Expr) -> Option<Laid> {
+    pub(super) fn parts(&self, e: &Expr) -> Option<RankedLayout> {
         let parts = in_parts(e)?;
         Some(self.list(parts.iter().map(|p| self.expression(p).layout).collect()))
     }
 
-    fn list(&self, parts: Vec<Layout>) -> Laid {
-        Laid::atom(Layout::fenced(Fence::Round, self.commas(parts)))
+    fn list(&self, parts: Vec<Layout>) -> RankedLayout {
+        RankedLayout::atom(Layout::fenced(Fence::Round, self.commas(parts)))
     }
 
     /// A matrix or a column by its blocks, `[A, v; 0, 0]`.
-    fn blocks(&self, [top, bottom]: [Vec<Layout>; 2]) -> Laid {
+    fn blocks(&self, [top, bottom]: [Vec<Layout>; 2]) -> RankedLayout {
         if self.stacked {
-            return Laid::atom(Layout::Grid(vec![top, bottom]));
+            return RankedLayout::atom(Layout::Grid(vec![top, bottom]));
         }
         let rows = vec![
             self.commas(top),
@@ -135,12 +135,12 @@ impl Composer<'_> {
             Layout::Break(Strength::Term),
             self.commas(bottom),
         ];
-        Laid::atom(Layout::fenced(Fence::Square, Layout::Row(rows)))
+        RankedLayout::atom(Layout::fenced(Fence::Square, Layout::Row(rows)))
     }
 
     /// Applies the inclusion at the front of these factors to the factors behind it; returns the layout and the
     /// number of factors it covers. `None` if the inclusion is printed as it is.
-    pub(super) fn included(&self, factors: &[Expr]) -> Option<(Laid, usize)> {
+    pub(super) fn included(&self, factors: &[Expr]) -> Option<(RankedLayout, usize)> {
         let (head, rest) = factors.split_first()?;
         let Some(found) = inclusion(head) else {
             return self.row_included(factors);
@@ -211,24 +211,24 @@ impl Composer<'_> {
     }
 
     /// `A[1:3, 4]`; the entries are a subscript in typeset formats.
-    fn entries(&self, of: &Expr, entries: &str) -> Laid {
+    fn entries(&self, of: &Expr, entries: &str) -> RankedLayout {
         let base = self.expression(of).base();
         if self.stacked {
             let base = match base {
                 scripted @ Layout::Script { .. } => Layout::fenced(Fence::Round, scripted),
                 plain => plain,
             };
-            return Laid::atom(base.subscript(name::script(entries)));
+            return RankedLayout::atom(base.subscript(name::script(entries)));
         }
         let entries = Layout::fenced(Fence::Square, Layout::Word(entries.to_owned()));
-        Laid::atom(Layout::Row(vec![base, entries]))
+        RankedLayout::atom(Layout::Row(vec![base, entries]))
     }
 }
 
 impl Composer<'_> {
     /// The same for a row at the front: `lin(x)ᵀ` for a part of a six-component row, `[vᵀ, 0]` for a lengthened
     /// three-component row.
-    fn row_included(&self, factors: &[Expr]) -> Option<(Laid, usize)> {
+    fn row_included(&self, factors: &[Expr]) -> Option<(RankedLayout, usize)> {
         let head = factors.first()?;
         let Node::Transpose(column) = head.node() else {
             return None;
@@ -246,7 +246,10 @@ impl Composer<'_> {
         if longer && head.shape().rows == Dim::Fixed(1) {
             let zero = Layout::Number("0".to_owned());
             let row = self.commas(vec![row.layout, zero]);
-            return Some((Laid::atom(Layout::fenced(Fence::Square, row)), used + 1));
+            return Some((
+                RankedLayout::atom(Layout::fenced(Fence::Square, row)),
+                used + 1,
+            ));
         }
         (used > 1).then_some((row, used))
     }

@@ -4,9 +4,9 @@
 use super::{AnyNewton, Chart};
 use crate::linalg::{Dense, DenseFactors, Reals};
 use crate::scalar::larger;
-use crate::solvers::newton::looks::{Left, Look, looks, shared_noise};
-use crate::solvers::newton::parts::{Aside, Squares};
-use crate::solvers::newton::stage::{less, times};
+use crate::solvers::newton::checked_points::{CheckedPoint, Remainders, looks, shared_noise};
+use crate::solvers::newton::continuation_stage::{less, times};
+use crate::solvers::newton::parts::{SlowPartTest, Squares};
 
 impl<C: Chart> AnyNewton<'_, C> {
     /// Whether the solution is the principal root: see [`Newton::is_principal`](super::super::Newton::is_principal).
@@ -30,7 +30,9 @@ impl<C: Chart> AnyNewton<'_, C> {
         let (chart, size) = (self.whole, self.whole.parts().dimension());
         let (factors, units) = self.search.whole.get_or_insert_with(|| {
             let tangent = tangent();
-            let units = chart.parts().units(&|i, j| tangent.at(i, j), Aside::OfStep);
+            let units = chart
+                .parts()
+                .units(&|i, j| tangent.at(i, j), SlowPartTest::OfStep);
             let mut factors = DenseFactors::none(size, true);
             factors.set(&tangent);
             (factors, units.into_vec())
@@ -76,8 +78,8 @@ impl<C: Chart> AnyNewton<'_, C> {
         let known = shared > 0.0;
         let noises = |b: usize| larger(noise(b), shared * units.get(b).copied().unwrap_or(0.0));
         let (rest, mut at) = (chart.identity(), C::Element::default());
-        let mut so_far = Left::nothing(Reals::from_elem(0.0, x.len()));
-        let varies_little = |look: Look| {
+        let mut so_far = Remainders::nothing(Reals::from_elem(0.0, x.len()));
+        let varies_little = |look: CheckedPoint| {
             let step: Reals = x.iter().map(|x| -x * look.share).collect();
             chart.retract(&rest, &step, &mut at);
             let found = residual(&at);

@@ -2,7 +2,7 @@
 //! one step as a function of Λ at both ends, in the physical sign: kinetic minus potential energy, times the step size.
 
 use super::super::dual::Number;
-use super::super::points::{Given, Source};
+use super::super::points::{NamedValue, Source};
 use super::super::square::{Square, constant_column, dot};
 use super::{DiscreteAction, NodeRule};
 use std::array::from_fn;
@@ -16,7 +16,7 @@ pub trait Stated<const N: usize, const G: usize>: DiscreteAction<N, G> {
     /// The step size.
     fn step(&self) -> f64;
     /// Parameters, configurations, and advected quantities without a definition.
-    fn given(&self, nodes: &[[Square<f64, N>; G]; 3]) -> Vec<Given>;
+    fn given(&self, nodes: &[[Square<f64, N>; G]; 3]) -> Vec<NamedValue>;
     /// A random configuration.
     fn node(source: &mut Source) -> [Square<f64, N>; G] {
         from_fn(|_| source.orthogonal())
@@ -37,8 +37,8 @@ pub(super) fn kinetic<T: Number, const N: usize>(
 pub(super) fn attitudes<const N: usize>(
     name: &str,
     nodes: &[[Square<f64, N>; 1]; 3],
-) -> Vec<Given> {
-    Given::at_nodes(name, nodes.map(|[element]| element))
+) -> Vec<NamedValue> {
+    NamedValue::at_nodes(name, nodes.map(|[element]| element))
 }
 
 /// The free rigid body.
@@ -75,9 +75,9 @@ impl Stated<3, 1> for FreeBody {
     fn step(&self) -> f64 {
         self.h
     }
-    fn given(&self, nodes: &[[Square<f64, 3>; 1]; 3]) -> Vec<Given> {
+    fn given(&self, nodes: &[[Square<f64, 3>; 1]; 3]) -> Vec<NamedValue> {
         let mut given = attitudes("Λ", nodes);
-        given.push(Given::square("J", 0, &self.second_moment));
+        given.push(NamedValue::square("J", 0, &self.second_moment));
         given
     }
 }
@@ -160,11 +160,11 @@ impl<const RULE: u8, const THESIS: bool> Stated<3, 1> for HeavyTop<RULE, THESIS>
     fn step(&self) -> f64 {
         self.h
     }
-    fn given(&self, nodes: &[[Square<f64, 3>; 1]; 3]) -> Vec<Given> {
+    fn given(&self, nodes: &[[Square<f64, 3>; 1]; 3]) -> Vec<NamedValue> {
         let mut given = attitudes("Λ", nodes);
-        given.push(Given::square("J", 0, &self.second_moment));
-        given.push(Given::column("gU", 0, &self.lever));
-        given.push(Given::column("z", 0, &self.vertical));
+        given.push(NamedValue::square("J", 0, &self.second_moment));
+        given.push(NamedValue::column("gU", 0, &self.lever));
+        given.push(NamedValue::column("z", 0, &self.vertical));
         given
     }
 }
@@ -217,12 +217,12 @@ impl Stated<3, 1> for QuadraticField {
     fn step(&self) -> f64 {
         self.h
     }
-    fn given(&self, nodes: &[[Square<f64, 3>; 1]; 3]) -> Vec<Given> {
+    fn given(&self, nodes: &[[Square<f64, 3>; 1]; 3]) -> Vec<NamedValue> {
         let seen = nodes.map(|[attitude]| attitude.transpose().apply(&self.direction));
         let mut given = attitudes("Λ", nodes);
-        given.extend(Given::columns_at_nodes("Γ", seen));
-        given.push(Given::square("J", 0, &self.second_moment));
-        given.push(Given::square("K", 0, &self.form));
+        given.extend(NamedValue::columns_at_nodes("Γ", seen));
+        given.push(NamedValue::square("J", 0, &self.second_moment));
+        given.push(NamedValue::square("K", 0, &self.form));
         given
     }
 }
@@ -296,14 +296,14 @@ impl Stated<3, 1> for TwoVectors {
     fn step(&self) -> f64 {
         self.h
     }
-    fn given(&self, nodes: &[[Square<f64, 3>; 1]; 3]) -> Vec<Given> {
+    fn given(&self, nodes: &[[Square<f64, 3>; 1]; 3]) -> Vec<NamedValue> {
         let seen = nodes.map(|[attitude]| attitude.transpose().apply(&self.second));
         let mut given = attitudes("Λ", nodes);
-        given.extend(Given::columns_at_nodes("χ", seen));
-        given.push(Given::square("J", 0, &self.second_moment));
-        given.push(Given::square("B", 0, &self.coupling));
-        given.push(Given::column("z", 0, &self.first));
-        given.push(Given::column("c", 0, &self.marker));
+        given.extend(NamedValue::columns_at_nodes("χ", seen));
+        given.push(NamedValue::square("J", 0, &self.second_moment));
+        given.push(NamedValue::square("B", 0, &self.coupling));
+        given.push(NamedValue::column("z", 0, &self.first));
+        given.push(NamedValue::column("c", 0, &self.marker));
         given
     }
 }
@@ -349,9 +349,9 @@ impl Stated<4, 1> for FourDimensional {
     fn step(&self) -> f64 {
         self.h
     }
-    fn given(&self, nodes: &[[Square<f64, 4>; 1]; 3]) -> Vec<Given> {
+    fn given(&self, nodes: &[[Square<f64, 4>; 1]; 3]) -> Vec<NamedValue> {
         let mut given = attitudes("Λ", nodes);
-        given.push(Given::square("C", 0, &self.matrix));
+        given.push(NamedValue::square("C", 0, &self.matrix));
         given
     }
 }

@@ -2,7 +2,7 @@
 //! attitudes at both ends. The relative attitude `R = Λ1ᵀ Λ2` never appears: the coupling is written in space.
 
 use super::super::dual::Number;
-use super::super::points::{Given, Source};
+use super::super::points::{NamedValue, Source};
 use super::super::square::{Square, constant_column, dot};
 use super::DiscreteAction;
 use super::bodies::{Stated, kinetic};
@@ -72,18 +72,18 @@ impl<const DEFINED: bool> Stated<3, 2> for CoupledBodies<DEFINED> {
     fn step(&self) -> f64 {
         self.h
     }
-    fn given(&self, nodes: &[[Square<f64, 3>; 2]; 3]) -> Vec<Given> {
-        let mut given = Given::at_nodes("Λ1", nodes.map(|[first, _]| first));
-        given.extend(Given::at_nodes("Λ2", nodes.map(|[_, second]| second)));
+    fn given(&self, nodes: &[[Square<f64, 3>; 2]; 3]) -> Vec<NamedValue> {
+        let mut given = NamedValue::at_nodes("Λ1", nodes.map(|[first, _]| first));
+        given.extend(NamedValue::at_nodes("Λ2", nodes.map(|[_, second]| second)));
         if !DEFINED {
             let relative = nodes.map(|[first, second]| first.transpose() * self.reference * second);
-            given.extend(Given::at_nodes("R", relative));
+            given.extend(NamedValue::at_nodes("R", relative));
         }
-        given.push(Given::square("J1", 0, &self.second_moments[0]));
-        given.push(Given::square("J2", 0, &self.second_moments[1]));
-        given.push(Given::column("d1", 0, &self.arms[0]));
-        given.push(Given::column("d2", 0, &self.arms[1]));
-        given.push(Given::scalar("eps", self.reduced_mass));
+        given.push(NamedValue::square("J1", 0, &self.second_moments[0]));
+        given.push(NamedValue::square("J2", 0, &self.second_moments[1]));
+        given.push(NamedValue::column("d1", 0, &self.arms[0]));
+        given.push(NamedValue::column("d2", 0, &self.arms[1]));
+        given.push(NamedValue::scalar("eps", self.reduced_mass));
         given
     }
 }

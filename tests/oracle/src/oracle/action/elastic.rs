@@ -2,7 +2,7 @@
 //! ends. Convective: stored energy of the stretch `C = Qᵀ C0 Q`; spatial: the free ellipsoid.
 
 use super::super::dual::Number;
-use super::super::points::{Given, Source};
+use super::super::points::{NamedValue, Source};
 use super::super::square::Square;
 use super::bodies::{Stated, attitudes};
 use super::{DiscreteAction, NodeRule, Side};
@@ -94,12 +94,12 @@ impl<const N: usize> Stated<N, 1> for EllipsoidConvective<N> {
     fn step(&self) -> f64 {
         self.h
     }
-    fn given(&self, nodes: &[[Square<f64, N>; 1]; 3]) -> Vec<Given> {
+    fn given(&self, nodes: &[[Square<f64, N>; 1]; 3]) -> Vec<NamedValue> {
         let mut given = attitudes("Q", nodes);
-        given.push(Given::square("C0", 0, &self.metric));
-        given.push(Given::square("I0", 0, &self.second_moment));
+        given.push(NamedValue::square("C0", 0, &self.metric));
+        given.push(NamedValue::square("I0", 0, &self.second_moment));
         for (name, value) in ["a", "b", "c", "d"].iter().zip(self.energy) {
-            given.push(Given::scalar(name, value));
+            given.push(NamedValue::scalar(name, value));
         }
         given
     }
@@ -154,10 +154,10 @@ impl Stated<3, 1> for EllipsoidSpatial {
     fn step(&self) -> f64 {
         self.h
     }
-    fn given(&self, nodes: &[[Square<f64, 3>; 1]; 3]) -> Vec<Given> {
+    fn given(&self, nodes: &[[Square<f64, 3>; 1]; 3]) -> Vec<NamedValue> {
         let mut given = attitudes("Q", nodes);
-        given.push(Given::square("C0", 0, &self.metric));
-        given.push(Given::square("I0", 0, &self.second_moment));
+        given.push(NamedValue::square("C0", 0, &self.metric));
+        given.push(NamedValue::square("I0", 0, &self.second_moment));
         given
     }
     fn node(source: &mut Source) -> [Square<f64, 3>; 1] {

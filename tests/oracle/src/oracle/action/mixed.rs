@@ -2,7 +2,7 @@
 //! Every element is stored as a 4 x 4 matrix.
 
 use super::super::dual::Number;
-use super::super::points::{Given, Source};
+use super::super::points::{NamedValue, Source};
 use super::super::square::{Square, constant_column, dot};
 use super::motions::{self, Motion};
 use super::quaternions::{self, conjugate, hamilton, imaginary, of_matrix, rotation};
@@ -106,21 +106,21 @@ impl Mixed {
 
     /// Values of all names in both statements.
     #[must_use]
-    pub fn given(&self, nodes: &[[Square<f64, 4>; 3]; 3]) -> Vec<Given> {
-        let mut given = Given::at_nodes("q", nodes.map(|[q, _, _]| q));
-        given.extend(Given::at_nodes("R", nodes.map(|[_, r, _]| block(&r))));
-        given.extend(Given::at_nodes("G", nodes.map(|[_, _, g]| g)));
+    pub fn given(&self, nodes: &[[Square<f64, 4>; 3]; 3]) -> Vec<NamedValue> {
+        let mut given = NamedValue::at_nodes("q", nodes.map(|[q, _, _]| q));
+        given.extend(NamedValue::at_nodes("R", nodes.map(|[_, r, _]| block(&r))));
+        given.extend(NamedValue::at_nodes("G", nodes.map(|[_, _, g]| g)));
         let moments: Square<f64, 3> =
             Square::from_entries(|i, j| if i == j { self.moments[i] } else { 0.0 });
-        given.push(Given::square("K1", 0, &moments));
-        given.push(Given::square("J2", 0, &self.second));
-        given.push(Given::square("J3", 0, &self.third));
-        given.push(Given::square("M", 0, &self.mass));
+        given.push(NamedValue::square("K1", 0, &moments));
+        given.push(NamedValue::square("J2", 0, &self.second));
+        given.push(NamedValue::square("J3", 0, &self.third));
+        given.push(NamedValue::square("M", 0, &self.mass));
         for (name, lever) in ["d1", "d2", "d3"].iter().zip(&self.levers) {
-            given.push(Given::column(name, 0, lever));
+            given.push(NamedValue::column(name, 0, lever));
         }
-        given.push(Given::column("z", 0, &self.vertical));
-        given.push(Given::scalar("eps", self.coupling));
+        given.push(NamedValue::column("z", 0, &self.vertical));
+        given.push(NamedValue::scalar("eps", self.coupling));
         given
     }
 }

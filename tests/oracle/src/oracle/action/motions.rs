@@ -2,7 +2,7 @@
 //! never products of matrices.
 
 use super::super::dual::Number;
-use super::super::points::{Given, Source};
+use super::super::points::{NamedValue, Source};
 use super::super::square::{Square, constant_column, dot, vee};
 use super::{DiscreteAction, NodeRule};
 use std::array::from_fn;
@@ -94,13 +94,13 @@ impl KirchhoffBody {
 
     /// Values of all names of the gallery model.
     #[must_use]
-    pub fn given(&self, nodes: &[[Square<f64, 4>; 1]; 3]) -> Vec<Given> {
-        let mut given = Given::at_nodes("G", nodes.map(|[g]| g));
-        given.push(Given::square("J", 0, &self.inertia));
-        given.push(Given::square("M", 0, &self.mass));
-        given.push(Given::square("D", 0, &self.coupling));
-        given.push(Given::column("b", 0, &self.weight));
-        given.push(Given::column("Z", 0, &self.ground));
+    pub fn given(&self, nodes: &[[Square<f64, 4>; 1]; 3]) -> Vec<NamedValue> {
+        let mut given = NamedValue::at_nodes("G", nodes.map(|[g]| g));
+        given.push(NamedValue::square("J", 0, &self.inertia));
+        given.push(NamedValue::square("M", 0, &self.mass));
+        given.push(NamedValue::square("D", 0, &self.coupling));
+        given.push(NamedValue::column("b", 0, &self.weight));
+        given.push(NamedValue::column("Z", 0, &self.ground));
         given
     }
 }

@@ -2,7 +2,7 @@
 //! matrices follow from the definition.
 
 use super::super::dual::Number;
-use super::super::points::{Given, Source};
+use super::super::points::{NamedValue, Source};
 use super::super::square::{Square, constant_column, dot};
 use super::{DiscreteAction, NodeRule, Side};
 use std::array::from_fn;
@@ -147,18 +147,18 @@ impl CayleyKlein {
 
     /// Values of all names of the two gallery models.
     #[must_use]
-    pub fn given(&self, nodes: &[[Square<f64, 4>; 1]; 3]) -> Vec<Given> {
-        let mut given = Given::at_nodes("q", nodes.map(|[q]| q));
-        given.push(Given::scalar("c", self.c));
+    pub fn given(&self, nodes: &[[Square<f64, 4>; 1]; 3]) -> Vec<NamedValue> {
+        let mut given = NamedValue::at_nodes("q", nodes.map(|[q]| q));
+        given.push(NamedValue::scalar("c", self.c));
         let diagonal = Square::from_entries(|i, j| if i == j { self.moments[i] } else { 0.0 });
         match self.side {
-            Side::Body => given.push(Given::square("I", 0, &diagonal)),
+            Side::Body => given.push(NamedValue::square("I", 0, &diagonal)),
             Side::Space => {
                 let carried = nodes.map(|[q]| {
                     let r = rotation(of_matrix(&q));
                     r * diagonal * r.transpose()
                 });
-                given.extend(Given::at_nodes("I", carried));
+                given.extend(NamedValue::at_nodes("I", carried));
             }
         }
         given

@@ -2,7 +2,7 @@
 //! ends. The velocity is `Λ_{k+1} Λ_kᵀ`; the Poinsot matrix and the lever are advected with the body.
 
 use super::super::dual::Number;
-use super::super::points::{Given, Source};
+use super::super::points::{NamedValue, Source};
 use super::super::square::{Square, constant_column, dot};
 use super::bodies::{Stated, attitudes};
 use super::{DiscreteAction, NodeRule, Side};
@@ -60,9 +60,9 @@ impl Stated<3, 1> for FreeBodySpatial {
     fn step(&self) -> f64 {
         self.h
     }
-    fn given(&self, nodes: &[[Square<f64, 3>; 1]; 3]) -> Vec<Given> {
+    fn given(&self, nodes: &[[Square<f64, 3>; 1]; 3]) -> Vec<NamedValue> {
         let mut given = attitudes("Λ", nodes);
-        given.extend(Given::at_nodes("J", seen(&self.second_moment, nodes)));
+        given.extend(NamedValue::at_nodes("J", seen(&self.second_moment, nodes)));
         given
     }
 }
@@ -120,13 +120,13 @@ impl Stated<3, 1> for HeavyTopSpatial {
     fn step(&self) -> f64 {
         self.h
     }
-    fn given(&self, nodes: &[[Square<f64, 3>; 1]; 3]) -> Vec<Given> {
+    fn given(&self, nodes: &[[Square<f64, 3>; 1]; 3]) -> Vec<NamedValue> {
         let mut given = attitudes("Λ", nodes);
-        given.extend(Given::at_nodes("J", seen(&self.second_moment, nodes)));
+        given.extend(NamedValue::at_nodes("J", seen(&self.second_moment, nodes)));
         let levers = nodes.map(|[attitude]| attitude.apply(&self.lever));
-        given.extend(Given::columns_at_nodes("chi", levers));
-        given.push(Given::scalar("w", self.weight));
-        given.push(Given::column("z", 0, &self.vertical));
+        given.extend(NamedValue::columns_at_nodes("chi", levers));
+        given.push(NamedValue::scalar("w", self.weight));
+        given.push(NamedValue::column("z", 0, &self.vertical));
         given
     }
 }

@@ -68,10 +68,10 @@ impl<T: Number> Edge<'_, T> {
 pub type On<T> = fn(&Edge<'_, T>) -> T;
 
 /// The constraint functions at the head of an edge, on one scalar type.
-pub type Held<T> = fn(&Place<'_, T>, &Place<'_, T>) -> Vec<T>;
+pub type ConstraintFunctions<T> = fn(&Place<'_, T>, &Place<'_, T>) -> Vec<T>;
 
 /// The constraints, and the action with second derivatives to 32 digits.
-pub type OfHeld = (Held<Dual<Pair>>, On<Dual<Dual<Pair>>>);
+pub type OfHeld = (ConstraintFunctions<Dual<Pair>>, On<Dual<Dual<Pair>>>);
 
 /// An action on the scalar types that the solver needs.
 #[derive(Clone, Copy, Debug)]

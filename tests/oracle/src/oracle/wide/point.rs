@@ -5,7 +5,7 @@ use super::grid::Grid;
 use super::model::{Action, Family, Kind, Model, Role};
 use super::tree::{Edge, Tree};
 use crate::oracle::dual::{Dual, Number};
-use crate::oracle::points::{Given, Source, Variation};
+use crate::oracle::points::{NamedValue, Source, Variation};
 use crate::oracle::sides::Side;
 use crate::oracle::square::Square;
 
@@ -216,14 +216,14 @@ impl<'a> Point<'a> {
 
     /// Parameters, configurations and quantities without a definition, at three nodes.
     #[must_use]
-    pub fn given(&self, nodes: &[Node; 3]) -> Vec<Given> {
+    pub fn given(&self, nodes: &[Node; 3]) -> Vec<NamedValue> {
         let mut list = Vec::new();
         for (shift, node) in [-1, 0, 1].into_iter().zip(nodes) {
             for (index, value) in self.letters(node).into_iter().enumerate() {
                 let letter = &self.model.letters[index];
                 let constant = matches!(letter.role, Role::Parameter) && shift == 0;
                 if self.model.uses(index) && (constant || letter.role.is_given()) {
-                    list.push(Given {
+                    list.push(NamedValue {
                         name: letter.name.clone(),
                         shift,
                         rows: value.rows,

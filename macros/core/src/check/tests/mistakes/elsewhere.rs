@@ -26,7 +26,7 @@ fn first(source: &str) -> (String, Diagnostic) {
 }
 
 /// Checks the underlined part and the message of each model.
-fn told(all: &[(&str, &str, &str, &str)]) {
+fn check_messages(all: &[(&str, &str, &str, &str)]) {
     for (statements, term, marked, wanted) in all {
         let (found, d) = first(&source(statements, term));
         assert_eq!(found, *marked, "{statements} {term}\n{}", d.text());
@@ -61,7 +61,7 @@ fn forces_are_said_not_to_be_supported_and_damping_to_be_stated_by_a_clock() {
 
 #[test]
 fn functions_of_other_languages_are_told_with_what_does_them() {
-    told(&[
+    check_messages(&[
         ("", "min(q, c)", "min", "`(a + b - abs(a - b))/2`"),
         ("", "max(q, 0)", "max", "`(a + b + abs(a - b))/2`"),
         (
@@ -109,7 +109,7 @@ fn functions_of_other_languages_are_told_with_what_does_them() {
 
 #[test]
 fn signs_of_other_languages_are_told() {
-    told(&[
+    check_messages(&[
         (
             "",
             "k*(x[1] > 0)*x[1]",
@@ -167,7 +167,7 @@ fn signs_of_other_languages_are_told() {
 
 #[test]
 fn words_of_other_languages_are_told_at_the_start_of_a_statement() {
-    told(&[
+    check_messages(&[
         ("g2 = 9.81;", "q", "g2", "`param g2: Real;`"),
         ("h = 0.01;", "q", "h", "give the step size in the case file"),
         ("const g2 = 9.81;", "q", "const", "`param m: Real;`"),
@@ -197,7 +197,7 @@ fn words_of_other_languages_are_told_at_the_start_of_a_statement() {
 
 #[test]
 fn names_and_shapes_are_told_with_what_is_meant() {
-    told(&[
+    check_messages(&[
         (
             "",
             "q*cos(c*t)",
@@ -258,7 +258,7 @@ fn names_and_shapes_are_told_with_what_is_meant() {
 
 #[test]
 fn constraints_on_velocities_are_said_not_to_be_supported() {
-    told(&[
+    check_messages(&[
         (
             "hold v: x[2]*(next(q) - q) = next(x)[1] - x[1];",
             "q",

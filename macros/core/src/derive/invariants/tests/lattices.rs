@@ -2,14 +2,14 @@
 //! breaks the symmetry.
 
 use crate::derive::invariants::Family;
-use crate::lattice::{Choice, Lattice};
+use crate::lattice::{ChainConfig, Lattice};
 use crate::pipeline;
 
 /// Names of the Noether momenta without their sites, each with the number of its occurrences.
 fn momenta(text: &str, periodic: bool) -> Vec<(String, usize)> {
     let model = pipeline::parse_source(text).unwrap_or_else(|e| panic!("{e}"));
     let lattice = Lattice::read(&model).unwrap_or_else(|e| panic!("{e}"));
-    let choice = Choice::representative(&lattice, 1);
+    let choice = ChainConfig::representative(&lattice, 1);
     let choice = if periodic {
         choice.as_ring(&lattice)
     } else {

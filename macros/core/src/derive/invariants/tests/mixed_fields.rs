@@ -87,7 +87,7 @@ fn linear_maps_that_are_no_turns_are_found_and_total_differences() {
 }
 
 /// Names with their formulas.
-fn told(text: &str) -> Vec<String> {
+fn momentum_formulas(text: &str) -> Vec<String> {
     let list = momenta(text).into_iter();
     list.map(|(name, value)| format!("{name} = {value}"))
         .collect()
@@ -103,11 +103,11 @@ fn numbers_move_along_components_of_vectors() {
     };
     let bob = "dot(y - x*E1, y - x*E1)";
     let kept = "total_momentum_E1 = p_{2,k}·E₁ + p_{1,k}";
-    assert_eq!(told(&cart(bob, "dot(E2, y)")), [kept]);
+    assert_eq!(momentum_formulas(&cart(bob, "dot(E2, y)")), [kept]);
     // A cart on a slope, and a constraint that depends on the position of the cart, conserve nothing.
-    assert!(told(&cart(bob, "(dot(E2, y) + x)")).is_empty());
+    assert!(momentum_formulas(&cart(bob, "(dot(E2, y) + x)")).is_empty());
     let crossed = "dot(y - x*E1, y - x*E1) + x*dot(E1, y)";
-    assert!(told(&cart(crossed, "dot(E2, y)")).is_empty());
+    assert!(momentum_formulas(&cart(crossed, "dot(E2, y)")).is_empty());
 }
 
 #[test]
@@ -120,14 +120,14 @@ fn an_angle_turns_with_a_vector() {
         )
     };
     assert_eq!(
-        told(&spring("a")),
+        momentum_formulas(&spring("a")),
         ["joint_momentum_angular_E1_E2 = p_{1,k} + E₁·((-p_{2,k} y_kᵀ + y_k p_{2,k}ᵀ) E₂)"]
     );
     // If the potential depends on twice the angle, the angle moves half as far.
-    let twice = told(&spring("2*a"));
+    let twice = momentum_formulas(&spring("2*a"));
     assert_eq!(twice.len(), 1, "{twice:?}");
-    assert!(twice[0].contains('2') && twice != told(&spring("a")));
-    assert!(told(&spring("a^2")).is_empty());
+    assert!(twice[0].contains('2') && twice != momentum_formulas(&spring("a")));
+    assert!(momentum_formulas(&spring("a^2")).is_empty());
 }
 
 #[test]
@@ -139,10 +139,10 @@ fn numbers_move_in_proportion_to_parameters() {
         )
     };
     assert_eq!(
-        told(&wheel("x - r*p")),
+        momentum_formulas(&wheel("x - r*p")),
         ["total_momentum_r = ϖ_{2,k} + r ϖ_{1,k}"]
     );
-    assert!(told(&wheel("x - r*p^2")).is_empty());
+    assert!(momentum_formulas(&wheel("x - r*p^2")).is_empty());
     // The same for a component of a vector in a constraint.
     let string = |way: &str| {
         format!(
@@ -150,14 +150,14 @@ fn numbers_move_in_proportion_to_parameters() {
              m*dot(next(x) - x, next(x) - x)/(2*h) + j*(next(p) - p)^2/(2*h); }}"
         )
     };
-    let kept = told(&string("x[1] - r*p"));
+    let kept = momentum_formulas(&string("x[1] - r*p"));
     assert!(
         kept.iter()
             .any(|m| m.contains("ϖ_{2,k}") && m.contains("r E₁")),
         "{kept:?}"
     );
     assert!(
-        !told(&string("x[1] - r*p^2"))
+        !momentum_formulas(&string("x[1] - r*p^2"))
             .iter()
             .any(|m| m.contains("ϖ_{2,k}"))
     );
