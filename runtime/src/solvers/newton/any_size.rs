@@ -422,7 +422,7 @@ impl<C: Chart> AnyNewton<'_, C> {
     fn is_outdated(&mut self) -> bool {
         let squares = self.chart.squares(self.trial());
         let mut parts = self.search.shortest.iter().zip(&squares);
-        let outdated = parts.any(|(shortest, [square, _])| !(shortest - square <= 0.0));
+        let outdated = parts.any(|(shortest, [square, _])| !(shortest - square).nowhere_positive());
         if outdated {
             self.search.weighed = OLDEST_SCALE;
         }
