@@ -5,7 +5,7 @@ use super::declared::{Lattice, Sites};
 use super::parts::{LINEAR, has_sum, parts};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::syntax::ast::{Expression, Kind};
-use crate::syntax::unknown::PAIRS;
+use crate::syntax::unknown::{PAIRS, how_to_sum};
 
 /// The offsets of the letters of an expression from its index.
 #[derive(Clone, Default, Debug)]
@@ -106,6 +106,10 @@ fn walk(lattice: &Lattice, e: &Expression, by: isize, found: &mut Reach) -> Resu
             .help("write `sum(expr)`, or `sum(expr, nodes)`; for several terms, write `sum(a + b)`")),
             ("sum", []) => Err(Diagnostic::new(e.place, "this sum over sites is empty")
                 .help("write the summand: `sum(m*x)`, or `sum(m*x, nodes)`")),
+            ("sum", [inner]) if is_label(lattice, inner) => Err(how_to_sum(Diagnostic::new(
+                e.place,
+                "`sum` takes the summand, not a label: a sum includes all sites already",
+            ))),
             ("sum", [inner]) if has_sum(inner) => {
                 Err(of_pairs("a sum over sites within another one is", e.place))
             }
@@ -182,6 +186,12 @@ fn named(lattice: &Lattice, name: &str, place: Place) -> Result<(), Diagnostic> 
             l.index.text, l.count.text
         ))),
     }
+}
+
+/// Whether an expression is the index of a label, as in `sum(i)`.
+fn is_label(lattice: &Lattice, e: &Expression) -> bool {
+    let mut labels = lattice.labels.iter();
+    matches!(&e.kind, Kind::Name(n) if labels.any(|l| l.index.text == *n))
 }
 
 fn mixed(lattice: &Lattice, a: usize, b: usize, place: Place) -> Diagnostic {

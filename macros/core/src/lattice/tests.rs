@@ -419,6 +419,8 @@ fn sums_are_refused_where_they_mean_nothing() {
         ("hold c: sum(y) = X;", "`y`"),
         ("hold c: sum(φ, nodes, 3) = X;", "`sum` takes an expression"),
         ("hold c: sum() = X;", "this sum over sites is empty"),
+        ("hold c: sum φ = X;", "`sum` needs its summand"),
+        ("scale m + sum(i) φ;", "takes the summand, not a label"),
     ] {
         let source = beads(hold);
         let model = parse_source(&source).unwrap();

@@ -184,6 +184,11 @@ impl Elaborator<'_> {
             });
         } else if let Some(component) = component_of(n, &self.names.symbols) {
             d = d.help(format!("write a component as `{component}`"));
+        } else if n == "sum" {
+            d = unknown::how_to_sum(Diagnostic::new(
+                place,
+                "`sum` needs its summand in parentheses",
+            ));
         } else if FUNCTIONS.contains(&n) {
             d = Diagnostic::new(place, format!("`{n}` is a function of the language"))
                 .help(format!("write `{n}(...)`"));

@@ -219,6 +219,15 @@ fn matrices_are_held_by_their_independent_entries() {
 fn a_sum_needs_sites() {
     let told = held("hold λ: sum(x) = E1;");
     assert!(told.contains("runs over the sites of a label"), "{told}");
+    // Without parentheses it looks like a factor.
+    let told = held("hold λ: sum x = E1;");
+    for wanted in [
+        "`sum` needs its summand in parentheses",
+        "`hold p: sum(m*x) = X;`",
+        "leave out `sum`",
+    ] {
+        assert!(told.contains(wanted), "{told}");
+    }
 }
 
 #[test]

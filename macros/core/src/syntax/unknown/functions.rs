@@ -1,14 +1,16 @@
 //! Functions of other languages: their form in the language, or the advice if there is none.
 
+use crate::diagnostic::Diagnostic;
+
 /// The advice for inverses of trigonometric functions.
 const NO_INVERSE: &str = "clebsch has no inverse of sine, cosine or tangent. Declare the angle as a configuration, for example \
     `field θ: Real;`, and write its potential as `k*θ^2/2`";
 
 /// The advice for piecewise functions.
-/// The advice for rates of change.
 const NO_CASES: &str = "piecewise functions are not supported yet, except through `abs` and `sign`: `(x + abs(x))/2` is x \
     where x > 0 and 0 elsewhere, `(1 + sign(x))/2` is 1 or 0";
 
+/// The advice for rates of change.
 const RATE: &str = "write a rate of change as a difference over the step: `(next(x) - x)/h`";
 
 /// The advice for units of angles.
@@ -20,6 +22,14 @@ const ENGINE: &str = "state the Lagrangian; clebsch takes the derivatives";
 /// The advice for sums over pairs of sites.
 pub(crate) const PAIRS: &str = "terms couple neighbours along a label, not all pairs of sites. Declare the bodies one by one, \
     `field x, y, z: Vec<3>;`, and write a term for each pair";
+
+/// Adds the notation for a sum over sites.
+pub(crate) fn how_to_sum(d: Diagnostic) -> Diagnostic {
+    d.help(
+        "in a `hold` constraint, write the summand in parentheses, as in `hold p: sum(m*x) = X;`",
+    )
+    .help("in the Lagrangian, leave out `sum`: clebsch sums each term over the sites of its label")
+}
 
 /// The notation of the language for a function of another language, or advice if there is none.
 pub(crate) fn function(name: &str) -> Option<&'static str> {
