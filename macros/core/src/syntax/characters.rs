@@ -9,6 +9,10 @@ use crate::diagnostic::{Diagnostic, Place};
 /// The advice for a prime used as in papers.
 pub(super) const PRIME: &str = "write `(next(x) - x)/h` for a rate of change, `next(x)` for the value at the next node, `A^T` for a transpose";
 
+/// The advice for single quotes around a text or a name.
+pub(super) const QUOTES: &str =
+    "write a text in double quotes, as in `\"x^2\"`, and a name without quotes";
+
 /// The notation of the language for a character that papers use.
 fn written(c: char) -> Option<&'static str> {
     Some(match c {
@@ -31,7 +35,7 @@ fn written(c: char) -> Option<&'static str> {
         '∫' | '∑' | '∏' => {
             "terms `at nodes` and `at segments` are summed over the label automatically"
         }
-        '“' | '”' | '„' => "write straight quotes, `\"`",
+        '“' | '”' | '„' | '‘' => "write straight double quotes, `\"`",
         '\\' => {
             "write names in Unicode or spelt out, `Λ` or `Lambda`; put LaTeX in quotes after `as`"
         }
@@ -56,6 +60,12 @@ pub(super) fn foreign(source: &str) -> Option<Diagnostic> {
         }
     });
     let (at, c) = found?;
+    if let Some(quoted) = in_single_quotes(&text, at) {
+        let here = place(&text, at)?;
+        let end = place(&text, at + quoted.len() - 1).unwrap_or(here);
+        let message = format!("single quotes do not enclose a text in a model: `{quoted}`");
+        return Some(Diagnostic::new(here.to(end), message).help(QUOTES));
+    }
     let d = Diagnostic::new(
         place(&text, at)?,
         format!("`{c}` is not a character of the language"),
@@ -64,6 +74,19 @@ pub(super) fn foreign(source: &str) -> Option<Diagnostic> {
         Some(remedy) => d.help(remedy),
         None => d.help("names consist of letters, digits and `_`"),
     })
+}
+
+/// The text in single quotes that begins at this byte, with its quotes. A quote behind a name or a bracket is a prime.
+fn in_single_quotes(text: &str, at: usize) -> Option<&str> {
+    let before = text.get(..at)?.chars().next_back();
+    let is_prime = |c: char| c.is_alphanumeric() || matches!(c, '_' | ')' | ']' | '\'');
+    if before.is_some_and(is_prime) {
+        return None;
+    }
+    let line = text.get(at..)?.lines().next()?;
+    let inside = line.strip_prefix('\'')?;
+    let length = inside.find('\'').filter(|length| *length > 0)?;
+    line.get(..length + 2)
 }
 
 #[cfg(test)]
@@ -80,6 +103,17 @@ mod tests {
             ),
             ("model M { param ω₀: Real; }", 18, "`w_0`"),
             ("model M { let a = q' - q; }", 20, "`next(x)`"),
+            ("model M { let a = (q)' - q'; }", 22, "`next(x)`"),
+            (
+                "model M { given f(Real): Real = 'sin(x)'; }",
+                33,
+                "`'sin(x)'`",
+            ),
+            (
+                "model M { param m: Real as 'm_0'; }",
+                28,
+                "in double quotes",
+            ),
             ("model M { let a = x²; }", 20, "`a^2`"),
             ("model M { let a = cos(30°); }", 25, "30*pi/180"),
             ("model M { let a = ⟨x, x⟩; }", 19, "`dot(a, b)`"),

@@ -16,8 +16,7 @@ const LETTERS: [&str; 3] = ["x", "y", "z"];
 /// follows.
 pub(super) fn components(c: &mut Cursor) -> Result<Vec<(String, Expression)>, Diagnostic> {
     if !c.take_delimiter('[') {
-        let is_text = matches!(c.peek(), Some(Token::Literal(t)) if t.ends_with('"'));
-        return match is_text {
+        return match c.peek().is_some_and(is_text) {
             true => Ok(vec![quoted(c)?]),
             false => Ok(Vec::new()),
         };
@@ -30,9 +29,14 @@ pub(super) fn components(c: &mut Cursor) -> Result<Vec<(String, Expression)>, Di
     Ok(list)
 }
 
+/// Whether a token is a text in double quotes.
+fn is_text(token: &Token) -> bool {
+    matches!(token, Token::Literal(t) if t.trim_end_matches('#').ends_with('"'))
+}
+
 fn quoted(c: &mut Cursor) -> Result<(String, Expression), Diagnostic> {
     let place = c.place();
-    let Some(Token::Literal(text)) = c.peek() else {
+    let Some(Token::Literal(text)) = c.peek().filter(|t| is_text(t)) else {
         return Err(c
             .unexpected("an expression in quotes")
             .help("put each component in quotes, for example `[\"-f*y/2\", \"f*x/2\"]`"));

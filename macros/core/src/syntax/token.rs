@@ -2,6 +2,7 @@
 //! name, which the parser rejects. Depth and length are limited, so that no input exhausts the stack.
 
 use super::ast::Name;
+use super::characters::QUOTES;
 use super::delimiters::not_closed;
 use super::unknown;
 use crate::diagnostic::{Diagnostic, Errors, Place};
@@ -330,7 +331,14 @@ impl Cursor {
             Some(t) => format!("found `{}`", t.text()),
             None => "reached the end of the text".to_owned(),
         };
-        Diagnostic::new(self.place(), format!("expected {expected}, {found}"))
+        let error = Diagnostic::new(self.place(), format!("expected {expected}, {found}"));
+        let prime = matches!(self.before(), Some(Token::Name(_) | Token::Close(_)));
+        match self.peek() {
+            // Rust reads a letter in single quotes as a character, and a word behind one as a lifetime.
+            Some(Token::Literal(text)) if text.starts_with('\'') => error.help(QUOTES),
+            Some(Token::Punct('\'', _)) if !prime => error.help(QUOTES),
+            _ => error,
+        }
     }
 
     /// Reads this punctuation, or returns an error.

@@ -50,7 +50,7 @@ fn latex(literal: &str) -> Result<String, String> {
         .trim_matches('#')
         .strip_prefix('"')
         .and_then(|s| s.strip_suffix('"'))
-        .ok_or("it must be in quotes")?;
+        .ok_or("it must be in double quotes")?;
     let inside = inside.replace(super::text::BACKSLASH, "\\");
     let text = match raw {
         true => inside,
