@@ -53,9 +53,13 @@ impl<'a> File<'a> {
     pub fn document(&self) -> Result<Spanned<DeTable<'a>>, Failure> {
         DeTable::parse(self.text).map_err(|error| {
             let span = error.span();
+            let stop = span.as_ref().map_or(self.text.len(), |span| span.start);
             let instead = span
                 .as_ref()
                 .and_then(|span| not_toml::instead(self.text, span));
+            if let (None, Some(open)) = (&instead, not_toml::unclosed(self.text, stop)) {
+                return self.wrong(Some(&(open.at..open.at)), &open.to_string());
+            }
             let message = instead.unwrap_or_else(|| format!("not TOML: {}", error.message()));
             self.wrong(span.as_ref(), &message)
         })

@@ -4,6 +4,7 @@
 use crate::words::plain::shown;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::value::translated;
+use std::fmt;
 use std::ops::Range;
 use toml::de::DeValue;
 
@@ -53,6 +54,86 @@ fn one(value: &str) -> Option<String> {
     ))
 }
 
+/// A bracket of a case that nothing closes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Unclosed {
+    /// Its position in the text.
+    pub at: usize,
+    bracket: char,
+    /// Whether it begins the line of a table, as in `[initial]`.
+    is_header: bool,
+}
+
+impl fmt::Display for Unclosed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (what, closing) = match self.bracket {
+            '[' if self.is_header => ("name of the table", ']'),
+            '[' => ("list", ']'),
+            _ => ("table", '}'),
+        };
+        let bracket = self.bracket;
+        write!(
+            f,
+            "the bracket `{bracket}` on this line is not closed; write `{closing}` at the end of the {what}"
+        )
+    }
+}
+
+/// The outermost bracket before `stop`, where TOML stopped, that is not closed in the whole text. Brackets in strings
+/// and remarks do not count.
+pub(super) fn unclosed(text: &str, stop: usize) -> Option<Unclosed> {
+    let mut open: Vec<Unclosed> = Vec::new();
+    let mut rest = text;
+    while let Some(c) = rest.chars().next() {
+        let at = text.len() - rest.len();
+        let length = match c {
+            '#' => rest.find('\n').unwrap_or(rest.len()),
+            '"' | '\'' => string(rest, c),
+            _ => c.len_utf8(),
+        };
+        match c {
+            '[' | '{' => {
+                let before = text.get(..at)?.rsplit('\n').next()?;
+                open.push(Unclosed {
+                    at,
+                    bracket: c,
+                    is_header: before.trim().is_empty(),
+                });
+            }
+            ']' | '}' => {
+                let is_own = |o: &Unclosed| (o.bracket == '[') == (c == ']');
+                // A closing bracket of the other kind is a mistake of its own.
+                open.pop().filter(is_own)?;
+            }
+            _ => {}
+        }
+        rest = rest.get(length..)?;
+    }
+    open.first().copied().filter(|o| o.at < stop)
+}
+
+/// The length of the string at the start of a text; a string on one line ends with the line.
+fn string(text: &str, quote: char) -> usize {
+    let three: String = [quote; 3].iter().collect();
+    let is_long = text.starts_with(&three);
+    let end = if is_long { 3 } else { 1 };
+    let (mut escaped, mut quotes) = (false, 0);
+    for (at, c) in text.char_indices().skip(end) {
+        quotes = match c == quote && !escaped {
+            true => quotes + 1,
+            false => 0,
+        };
+        if quotes == end {
+            return at + 1;
+        }
+        if !is_long && c == '\n' {
+            return at;
+        }
+        escaped = c == '\\' && quote == '"' && !escaped;
+    }
+    text.len()
+}
+
 /// A value without the remark behind it.
 fn without_remark(value: &str) -> &str {
     let is_quoted = value.contains(['"', '\'']);
@@ -82,7 +163,7 @@ fn entry(value: &str, at: usize) -> Option<&str> {
 
 #[cfg(test)]
 mod tests {
-    use super::instead;
+    use super::{instead, unclosed};
 
     #[test]
     fn values_of_other_languages_are_told_how_to_be_written() {
@@ -108,6 +189,33 @@ mod tests {
         );
         for (value, stop) in [("[1, 2,, 3]", ",,"), ("\"pi", "\""), ("", "\n")] {
             assert_eq!(of(value, stop), None, "{value}");
+        }
+    }
+
+    #[test]
+    fn a_bracket_that_nothing_closes_is_found() {
+        let of = |text: &str| {
+            let stop = toml::de::DeTable::parse(text).expect_err(text).span();
+            let stop = stop.map_or(text.len(), |span| span.start);
+            unclosed(text, stop).map(|open| (open.at, open.bracket))
+        };
+        for (text, found) in [
+            ("h = 1\nx = [1, 2\nv = [0, 0]\n", (10, '[')),
+            ("x = [[1, 2], [3, 4]\n[initial]\n", (4, '[')),
+            ("J = { I = [1, 2, 3]\nk = 1.0\n", (4, '{')),
+            ("[initial\nx = 1\n", (0, '[')),
+            ("# [\na = \"\\\"[\"\nb = '''\n['''\nx = [1", (31, '[')),
+        ] {
+            assert_eq!(of(text), Some(found), "{text}");
+        }
+        // The mistake is another one.
+        for text in [
+            "x = [1, 2]]\n",
+            "x = [1 2]\n",
+            "x = [\n [1, 2]\n [3, 4]\n]\n",
+            "x = \"[1\ny = 2\n",
+        ] {
+            assert_eq!(of(text), None, "{text}");
         }
     }
 }

@@ -139,6 +139,7 @@ fn unknown_and_missing_keys_are_named() {
         \nkappa      | \n# kappa     | :[parameters]: missing key `parameters.kappa`: a number
         \nh =        | \nh ==        | :#: not TOML:
         \nsteps      | \nh = 2\nsteps | :#: not TOML: duplicate key
+        \n[initial]  | \n[initial    | :#: the bracket `[` on this line is not closed; write `]` at the end of the name of the table
 "#,
     ) {
         let changed = text.replacen(old, new, 1);
