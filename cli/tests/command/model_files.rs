@@ -1,6 +1,7 @@
 //! Models that run from their texts: they give the same tables as compiled models, and equally good messages.
 
 use crate::common::{Folder, on};
+use crate::text_runs::run;
 use clebsch_cli::gallery::Gallery;
 
 /// The text of a model of the gallery.
@@ -255,4 +256,31 @@ fn a_long_line_is_quoted_around_the_mistake() {
     // The mark is below the unknown name.
     let at = marks.chars().position(|c| c == '^').expect("a mark");
     assert_eq!(line.chars().nth(at), Some('y'), "{line}\n{marks}");
+}
+
+/// A field of diagonal matrices of a named size takes the steps of the one whose size is a number.
+#[test]
+fn diagonal_fields_of_a_named_size_take_the_same_steps() {
+    let case = "model = \"axes\"\nh = 0.1\nsteps = 20\n[parameters]\nm = 1\n\
+                B = [[1, 0.2, 0.3], [0.1, 1, 0.4], [0, 0.1, 0.2]]\n\
+                [initial]\nD = [1, 0.5, -0.3]\nmomentum = [0.1, 0.2, 0.4]\n";
+    let of = |declared: &str, size: &str, options: &str| {
+        let text = format!(
+            "model Axes {{ {declared} param m: Real; param B: Mat<{size}>; field D: Diag<{size}>;
+             lagrangian = m*tr((next(D) - D)*(next(D) - D))/(2*h) - h*tr((D + next(D))*B*(D + next(D))*B)/4; }}"
+        );
+        let folder = Folder::new("diagonal-fields");
+        run(&folder, &text, case, &format!("{options} --out @out")).succeeds();
+        folder
+            .samples("out/trajectory.csv")
+            .rows
+            .pop()
+            .expect("rows")
+    };
+    let (named, number) = (of("dim n in 2..=3;", "n", "--dim 3"), of("", "3", ""));
+    assert_eq!(named.len(), number.len());
+    for (a, b) in named.iter().zip(&number) {
+        // Twenty steps round differently.
+        assert!((a - b).abs() < 1e-12, "{named:?} {number:?}");
+    }
 }

@@ -117,7 +117,7 @@ impl Algebra<'_> {
                 Map::Imaginary => self.linear(&self.lowered(a), shape, |w| self.imaginary_word(w)),
                 Map::Pure => self.linear(&self.lowered(a), shape, |w| self.pure_word(w)),
                 Map::Twist => self.twist(&self.lowered(a), shape.rows),
-                Map::Diagonal => self.diagonal(&self.lowered(a), e),
+                Map::Diagonal => self.diagonal(&self.lowered(a)),
                 Map::DiagonalOf => self.diagonal_of(&self.lowered(a)),
                 Map::Translation => match a.node() {
                     Node::Letter(at) => self.one_factor(shape, translation_of(*at)),
@@ -482,22 +482,57 @@ impl Algebra<'_> {
         out
     }
 
-    /// `sum of E_i (E_i^T v) E_i^T`; one letter for a named size.
-    fn diagonal(&self, v: &Poly, whole: &Expr) -> Poly {
-        let mut out = Poly::zero(whole.shape());
-        let Dim::Fixed(n) = v.shape.rows else {
-            let mut key = v.clone();
-            key.symmetric = true;
-            let id = self.intern(&self.matrices, key, KeyRelation::Diagonal, || whole.clone());
-            let source = Source::Opaque(id);
-            return self.one_factor(
-                out.shape,
+    /// A linear map to a letter for each word, for sizes that are not numbers.
+    fn by_letters(
+        &self,
+        a: &Poly,
+        shape: Shape,
+        sense: KeyRelation,
+        map: impl Fn(Expr) -> Expr,
+    ) -> Poly {
+        self.linear(a, shape, |word| {
+            let term = Term {
+                monomial: Monomial::new(),
+                word: word.to_vec(),
+            };
+            let mut key = Poly::term(a.shape, Rational::ONE, term);
+            key.symmetric = shape.is_square();
+            let meaning = map(self.raise(&key));
+            let id = self.intern(&self.matrices, key, sense, || meaning);
+            self.one_factor(
+                shape,
                 Factor::Letter {
-                    source,
+                    source: Source::Opaque(id),
                     transposed: false,
                     inverted: false,
                 },
-            );
+            )
+        })
+    }
+
+    /// The vector of a letter that is the diagonal matrix of a vector.
+    fn on_the_diagonal(&self, word: &[Factor]) -> Option<Poly> {
+        let [
+            Factor::Letter {
+                source: Source::Opaque(id),
+                inverted: false,
+                ..
+            },
+        ] = word
+        else {
+            return None;
+        };
+        let table = self.matrices.borrow();
+        let own = table.get(*id as usize)?;
+        let is_of_vector = own.sense == KeyRelation::Diagonal && !own.key.shape.is_square();
+        is_of_vector.then(|| own.key.clone())
+    }
+
+    /// `sum of E_i (E_i^T v) E_i^T`; a letter for each word of a named size.
+    fn diagonal(&self, v: &Poly) -> Poly {
+        let mut out = Poly::zero(Shape::square(v.shape.rows));
+        let Dim::Fixed(n) = v.shape.rows else {
+            return self.by_letters(v, out.shape, KeyRelation::Diagonal, expr::diagonal);
         };
         for axis in 0..n.min(64) as u8 {
             let unit = |transposed| unit(v.shape.rows, axis, transposed);
@@ -519,11 +554,22 @@ impl Algebra<'_> {
         out
     }
 
-    /// `sum of E_i (E_i^T A E_i)`. A matrix of a named size is rejected earlier.
+    /// `sum of E_i (E_i^T A E_i)`; a letter for each word of a named size.
     fn diagonal_of(&self, a: &Poly) -> Poly {
         let mut out = Poly::zero(Shape::vector(a.shape.rows));
         let Dim::Fixed(n) = a.shape.rows else {
-            self.exhaust();
+            for (t, c) in &a.terms {
+                let mut one = Poly::zero(a.shape);
+                self.push_term(&mut one, *c, t.monomial.clone(), t.word.clone());
+                let own = match self.on_the_diagonal(&t.word) {
+                    Some(vector) => self.linear(&one, out.shape, |_| vector.clone()),
+                    None => {
+                        let sense = KeyRelation::DiagonalVector;
+                        self.by_letters(&one, out.shape, sense, expr::diagonal_of)
+                    }
+                };
+                self.accumulate(&mut out, &own, Rational::ONE);
+            }
             return out;
         };
         for axis in 0..n.min(64) as u8 {

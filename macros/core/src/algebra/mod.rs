@@ -116,6 +116,8 @@ enum KeyRelation {
     Value,
     /// The diagonal of a matrix, or the matrix with that diagonal.
     Diagonal,
+    /// The diagonal of a matrix, as a vector.
+    DiagonalVector,
     /// No relation: the value of a functional, by its number.
     Given(u32),
 }

@@ -315,3 +315,25 @@ fn groups_of_size_one_say_what_there_is_instead() {
         assert!(!told.contains("a single number"), "{group}: {told}");
     }
 }
+
+/// The diagonal of a product of matrices of a named size is decided by exact evaluation.
+#[test]
+fn diagonal_matrices_of_a_named_size_are_fields() {
+    for potential in [
+        "tr(D*D)",
+        "tr(D*D*D*D)",
+        "tr((D + next(D))*B*(D + next(D))*B)",
+    ] {
+        let d = derive_source(&format!(
+            "model M {{ dim n in 2..=3; param m, k: Real; param B: Mat<n>; field D: Diag<n>; let V = next(D) - D; \
+             lagrangian = m*tr(V*V)/(2*h) - h*k*{potential}; }}"
+        ));
+        let d = d.unwrap_or_else(|e| panic!("{potential}: {e}"));
+        assert!(d.reversible, "{potential}");
+        // The kinetic energy alone gives one division.
+        assert_eq!(
+            d.how_solved().contains("Newton"),
+            potential.contains("next")
+        );
+    }
+}
