@@ -71,9 +71,22 @@ impl ExpandedModel {
             let mut d = w.diagnostic.clone();
             d.message = self.without_sites(&d.message);
             d.help = d.help.iter().map(|h| self.without_sites(h)).collect();
+            if w.topic == Topic::UnusedParameter
+                && let Some(s) = self.spacing(&d.message)
+            {
+                d.help = vec![format!(
+                    "use `{s}` in the Lagrangian, or remove `step {s}` from the label; until then, every case must give `{s}`"
+                )];
+            }
             out.push(Warning::new(w.topic, d));
         }
         out
+    }
+
+    /// The spacing of a label that a warning names.
+    fn spacing<'a>(&self, message: &'a str) -> Option<&'a str> {
+        let name = message.split('`').nth(1)?;
+        self.named.spacings.contains(name).then_some(name)
     }
 
     /// Whether the parameter of a warning is one of these names.
@@ -123,6 +136,8 @@ pub(super) struct StatementNames {
     not_at_all: BTreeSet<String>,
     /// Names that the terms of end conditions use, chosen or not.
     by_ends: BTreeSet<String>,
+    /// The spacings of labels.
+    spacings: BTreeSet<String>,
 }
 
 impl StatementNames {
@@ -131,6 +146,7 @@ impl StatementNames {
         StatementNames {
             not_at_all: unnamed(model),
             by_ends: of_ends(model),
+            spacings: spacings(model).collect(),
         }
     }
 }
@@ -138,11 +154,20 @@ impl StatementNames {
 /// Parameters whose names occur in no statement and no end condition.
 fn unnamed(model: &Model) -> BTreeSet<String> {
     let declared = model.statements.iter().flat_map(|s| match s {
-        Statement::Label { step, .. } => step.iter().map(|n| n.text.clone()).collect(),
         Statement::Param { names, .. } => names.iter().map(|n| n.text.clone()).collect(),
         _ => Vec::new(),
     });
+    let declared = declared.chain(spacings(model));
     declared.filter(|name| !is_named(model, name)).collect()
+}
+
+/// The names of the spacings of labels.
+fn spacings(model: &Model) -> impl Iterator<Item = String> {
+    let steps = model.statements.iter().filter_map(|s| match s {
+        Statement::Label { step, .. } => step.as_ref(),
+        _ => None,
+    });
+    steps.map(|n| n.text.clone())
 }
 
 /// Names in the terms of all end conditions, chosen or not, and in the definitions that these terms use.

@@ -120,6 +120,14 @@ fn what_nothing_names_is_told_of_every_line() {
         let found = unused(&without, count, None);
         assert!(found.iter().any(|w| w == s), "{count:?}: {found:?}");
     }
+    // A case must give the spacing as long as the model declares it.
+    let found = warnings_of(&without, None, Some(["pinned", "load"]));
+    let own = found.iter().find(|w| w.diagnostic.message == s);
+    let help = own.map(|w| w.diagnostic.help.join(" "));
+    let help = help.unwrap_or_default();
+    for said in ["remove `step s` from the label", "every case must give `s`"] {
+        assert!(help.contains(said), "{help}");
+    }
     let with = source("(next(q, i) - q)^2/(2*s)");
     assert!(unused(&with, None, Some(["pinned", "load"])).is_empty());
 }
