@@ -107,6 +107,8 @@ fn parentheses_after_what_is_no_function_are_refused() {
         ("tan(m)", "`sin(a)/cos(a)`"),
         ("sine(m)", "did you mean `sin`?"),
         ("trace(J)", "`tr(A)`"),
+        ("trce(J)", "for `trace`: write `tr"),
+        ("normm(Γ)", "for `norm`: the length of a vector x"),
         ("part(m)", "`part*(...)`"),
     ] {
         let message = refused("let part = m*g;", text);

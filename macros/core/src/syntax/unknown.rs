@@ -6,7 +6,7 @@ mod names;
 mod signs;
 mod statements;
 
-pub(crate) use functions::{PAIRS, RADIANS, function, how_to_sum};
+pub(crate) use functions::{PAIRS, RADIANS, function, how_to_sum, nearest_function};
 pub(crate) use names::{ANGLES, MODULES, STEPS, TIMES, VELOCITIES, name, shape};
 pub(super) use signs::{VECTOR, ends_expression, ends_statement, instead_of_operand};
 pub(crate) use statements::is_force;

@@ -73,7 +73,11 @@ impl Elaborator<'_> {
         }
         let d = match closest(n, AVAILABLE.split(' ')) {
             Some(near) => d.help(format!("did you mean `{near}`?")),
-            None => d,
+            // A misspelt name of another language.
+            None => match unknown::nearest_function(n) {
+                Some((near, written)) => d.help(format!("for `{near}`: {written}")),
+                None => d,
+            },
         };
         Some(d.help(format!("functions: {AVAILABLE}")))
     }

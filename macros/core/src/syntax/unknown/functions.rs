@@ -1,6 +1,6 @@
 //! Functions of other languages: their form in the language, or the advice if there is none.
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, closest};
 
 /// The advice for inverses of trigonometric functions.
 const NO_INVERSE: &str = "clebsch has no inverse of sine, cosine or tangent. Declare the angle as a configuration, for example \
@@ -29,6 +29,36 @@ pub(crate) fn how_to_sum(d: Diagnostic) -> Diagnostic {
         "in a `hold` constraint, write the summand in parentheses, as in `hold p: sum(m*x) = X;`",
     )
     .help("in the Lagrangian, leave out `sum`: clebsch sums each term over the sites of its label")
+}
+
+/// Functions of other languages with names that are long enough to be recognised when misspelt.
+const LONG: [&str; 20] = [
+    "norm",
+    "length",
+    "magnitude",
+    "minimum",
+    "maximum",
+    "arccos",
+    "arcsin",
+    "arctan",
+    "piecewise",
+    "heaviside",
+    "signum",
+    "power",
+    "square",
+    "absolute",
+    "determinant",
+    "trace",
+    "inverse",
+    "transpose",
+    "identity",
+    "average",
+];
+
+/// The closest of these to a misspelt name, and its form in the language.
+pub(crate) fn nearest_function(name: &str) -> Option<(&'static str, &'static str)> {
+    let near = closest(name, LONG)?;
+    Some((near, function(near)?))
 }
 
 /// The notation of the language for a function of another language, or advice if there is none.
