@@ -11,6 +11,7 @@ mod waves;
 pub use unknown::Unknown;
 
 use crate::card::Card;
+use crate::number_format::{Plain, Short};
 use crate::solvers::largest_step::search_of;
 use core::cell::Cell;
 use core::fmt;
@@ -268,40 +269,43 @@ impl LongestStep {
         if self.is_elliptic() {
             return Some(format!(
                 "small motions about the initial configuration grow, fastest where they alternate between neighbours, with the \
-                 rate {:.3e}: is the sign of the potential energy or of a coupling of neighbours wrong? If the label is a \
+                 rate {}: is the sign of the potential energy or of a coupling of neighbours wrong? If the label is a \
                  coordinate, the problem is elliptic, and the growth rate increases with the number of sites for any step",
-                self.growth
+                Short(self.growth)
             ));
         }
         if h > self.step {
             return Some(format!(
-                "the step h = {h} is {:.2} times the stability limit {:.3e} of small motions about the initial configuration \
+                "the step h = {} is {:.2} times the stability limit {} of small motions about the initial configuration \
                  (2/ω of the fastest mode): disturbances grow in every step; reduce h",
+                Plain(h),
                 h / self.step,
-                self.step
+                Short(self.step)
             ));
         }
         if h > self.resolving() {
             let a_step = match (h * self.growth).exp() {
                 few if few < 1e3 => format!("{few:.2}"),
                 many if many.is_finite() => format!("{many:.1e}"),
-                _ => format!("exp({:.3e})", h * self.growth),
+                _ => format!("exp({})", Short(h * self.growth)),
             };
             let grow = format!(
-                "small motions about the initial configuration grow with the rate {:.3e}, by a factor of {a_step} per step",
-                self.growth
+                "small motions about the initial configuration grow with the rate {}, by a factor of {a_step} per step",
+                Short(self.growth)
             );
             // An inverted body and a rod under tension are genuinely unstable; fast growth between neighbours
             // usually comes from a wrong sign.
             return Some(match self.configurations {
                 1 => format!(
-                    "{grow}: near that configuration, steps of h = {h} do not resolve the growth; use at most {:.3e}",
-                    self.resolving()
+                    "{grow}: near that configuration, steps of h = {} do not resolve the growth; use at most {}",
+                    Plain(h),
+                    Short(self.resolving())
                 ),
                 _ => format!(
                     "{grow}: is the sign of the potential energy or of a coupling of neighbours wrong? If the instability is \
-                     real, steps of h = {h} do not resolve the growth; use at most {:.3e}",
-                    self.resolving()
+                     real, steps of h = {} do not resolve the growth; use at most {}",
+                    Plain(h),
+                    Short(self.resolving())
                 ),
             });
         }
