@@ -39,7 +39,7 @@ pub(crate) use chain_choice::{choice, default_choice};
 pub(crate) use keys::{at_site, line_of, quantity_of};
 pub(crate) use lattice::write_lattice;
 pub use location::Located;
-pub(crate) use motion::{Motion, is_velocity, statement, undefined};
+pub(crate) use motion::{Motion, is_velocity, statement, undefined, velocity_keys};
 pub use read::read;
 pub(crate) use read::{no_steps, read_of};
 pub(crate) use write::DEFAULT_BOUND;

@@ -13,7 +13,7 @@ use clebsch_core::lattice::ChainConfig;
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::Model;
 use std::cell::RefCell;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// The largest number of momenta at rest that are reported.
 const MOST_TOLD: usize = 4;
@@ -395,6 +395,24 @@ fn velocities(name: &str, card: &Card) -> Vec<(usize, Way, String, usize)> {
 /// Whether a key names a velocity of the model.
 pub(crate) fn is_velocity(name: &str, card: &Card) -> bool {
     !velocities(name, card).is_empty()
+}
+
+/// The keys of all velocities of a model, without sites.
+pub(crate) fn velocity_keys(card: &Card) -> Vec<String> {
+    let mut places: Vec<(usize, usize)> = elements(card.initial).into_iter().collect();
+    places.sort_unstable();
+    let mut known: HashSet<(&str, Way)> = HashSet::new();
+    let mut keys = Vec::new();
+    for (momentum, element) in places {
+        let (Some(own), Some(of)) = (card.initial.get(momentum), card.initial.get(element)) else {
+            continue;
+        };
+        let ways = Way::ALL.into_iter().filter(|way| way.is_of(of, own));
+        for way in ways.filter(|way| known.insert((quantity(own.ascii), *way))) {
+            keys.extend(way.key(quantity(own.ascii)));
+        }
+    }
+    keys
 }
 
 /// Whether a configuration has both velocities: a rigid motion has the rate of its position and an angular

@@ -6,7 +6,7 @@ use clebsch::card::{Field, Kind};
 use clebsch_check::{Frame, Velocity};
 
 /// A velocity that a case may give.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Way {
     /// The rate of change of a field, of a linear map, or of the position of a rigid motion.
     Rate,

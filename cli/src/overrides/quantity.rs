@@ -2,7 +2,7 @@
 //! Takes a name and a card; gives the entries of parameters or initial values with this name, or the step size.
 
 use crate::case_file::stated::Stated;
-use crate::case_file::{Motion, at_site, is_key_of_rotation, is_velocity};
+use crate::case_file::{Motion, at_site, is_key_of_rotation, is_velocity, velocity_keys};
 use crate::models::gallery::Case;
 use crate::overrides::substitute::is_within_a_table;
 use clebsch::card::{Card, Field, Kind};
@@ -171,6 +171,15 @@ fn place(name: &str, card: &Card, motion: &Motion) -> Result<Place, String> {
             "`{name}` is the number of sites of `{label}`: set it in the case, as `{name} = ...` under [labels]"
         ));
     }
+    Err(format!(
+        "`{}` has no such parameter or initial value; it has {} and the step h",
+        card.kebab,
+        settable(card).join(", ")
+    ))
+}
+
+/// The names that can be set, without the numbers of sites. A velocity may take the place of a momentum.
+fn settable(card: &Card) -> Vec<String> {
     let mut names: Vec<&str> = Vec::new();
     for fields in [card.parameters, card.initial] {
         for own in fields {
@@ -186,11 +195,9 @@ fn place(name: &str, card: &Card, motion: &Motion) -> Result<Place, String> {
             }
         }
     }
-    Err(format!(
-        "`{}` has no such parameter or initial value; it has {} and the step h",
-        card.kebab,
-        names.join(", ")
-    ))
+    let velocities = velocity_keys(card);
+    let names = names.into_iter().map(str::to_owned);
+    names.chain(velocities).collect()
 }
 
 /// The index of the label whose number of sites has this name.

@@ -37,7 +37,7 @@ fn quantities_are_set_by_name_and_component() {
         X=1   | `X` has 3 numbers; name one, such as X.1
         X=1,2 | `X` has 3 components, but 2 values are given
         k=1,2 | `k` takes one number
-        q=1   | `kepler` has no such parameter or initial value; it has m, k, X, momentum
+        q=1   | `kepler` has no such parameter or initial value; it has m, k, X, momentum, velocity and the step h
         k=two | `two` is not a number: `two` has no value here
         k     | give NAME=VALUE
 ",

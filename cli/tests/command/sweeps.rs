@@ -109,7 +109,7 @@ fn along_a_line_the_names_are_those_of_the_case_file() {
         m=1,2 | m_2=3   | --vary m_2: given twice, since --vary m sets the same number
         F.1=1 | F_N.1=1 | sets the same number
         F=1   | k=1     | `F` has 2 numbers; name one, such as F.1
-        q=1   | k=1     | it has m, k, F, x, momentum_x and the step h
+        q=1   | k=1     | it has m, k, F, x, momentum_x, velocity_x and the step h
 ",
     ) {
         let (out, start) = (folder.path("none"), ["sweep", &model, "--case", &case]);
