@@ -14,8 +14,9 @@ use crate::stated::{Role, Side, Stated};
 use clebsch_core::syntax::ast::Model;
 
 /// The largest residual of a constraint, relative to its terms, that is corrected. A larger residual is a mistake,
-/// which the model reports.
-const NEAR: f64 = 1e-9;
+/// which the model reports. The model accepts 1e-9 of a larger measure: it adds to the terms their change with each
+/// variable, as many times the terms as the constraint has degrees. Every start that the model accepts is corrected.
+const NEAR: f64 = 1e-8;
 
 /// The largest number of corrections. Each correction squares the residual.
 const CORRECTIONS: usize = 4;

@@ -40,6 +40,31 @@ fn a_start_on_its_constraint_stays_and_one_that_is_far_off_is_rejected() {
     pendulum("[0.6001, 0, -0.8]").refuses("1.2001");
 }
 
+/// The model measures a residual by all terms and their changes, here by three times the position. Every start that
+/// it accepts is moved, so that the check of the action holds.
+#[test]
+fn a_start_that_the_model_accepts_is_moved() {
+    let rail = "model Rail {
+        param m, g, w: Real;
+        field x: Vec<2>;
+        hold λ: x[1] = w;
+        lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - h*m*g*x[2];
+    }";
+    let run = |off: &str| {
+        let case = format!(
+            "model = \"rail\"\nh = 0.01\nsteps = 20\n[parameters]\nm = 1\ng = 1\nw = 1\n[initial]\nx = [\"1 + {off}\", 0]\n"
+        );
+        run(&Folder::new("onto-rail"), rail, &case, "")
+    };
+    for off in ["5e-10", "9.5e-10", "1.2e-9", "2.9e-9"] {
+        run(off).succeeds().prints(format!(
+            "`λ` was violated by {:.1e}",
+            off.parse::<f64>().unwrap()
+        ));
+    }
+    run("1e-7").refuses("its sides differ by 1.0");
+}
+
 /// The links of a chain are corrected together, and bodies are rotated onto their constraints.
 #[test]
 fn chains_and_bodies_are_moved_too() {
