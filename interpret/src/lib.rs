@@ -55,6 +55,13 @@ pub enum Refused {
         /// Its path.
         path: String,
     },
+    /// A Rust function that the runtime does not provide.
+    Given {
+        /// Its path.
+        path: String,
+        /// The method that the step calls.
+        method: String,
+    },
     /// A model with functionals of all sites that cannot run with loops over sites.
     Form {
         /// Why, in words.
@@ -113,6 +120,12 @@ impl fmt::Display for Refused {
             Self::Functional { path } => write!(
                 f,
                 "the functional `{path}` is your own Rust code: compile the model with `model! {{ ... }}` in a crate"
+            ),
+            Self::Given { path, method } => write!(
+                f,
+                "a model file cannot call `{method}` of the function `{path}`: it knows {}; use one of these, give an \
+                 expression in quotes, or compile the model with `model! {{ ... }}` in a crate",
+                library::functions::KNOWN
             ),
             Self::Size { model, admitted } => {
                 write!(f, "{model} does not have this size; it has {admitted}")

@@ -2,6 +2,7 @@
 //! place. An error in a function is reported with file and line.
 
 use crate::common::{Folder, runs, table};
+use crate::text_runs::run;
 
 const BOWL: &str = "/// A bead in a bowl, carried by a vector potential.
 model Bowl {
@@ -111,4 +112,33 @@ fn what_is_wrong_of_a_function_is_told_by_its_line() {
     folder
         .clebsch(&format!("run {plain} --case @own.toml"))
         .refuses("unknown key `functions`");
+}
+
+/// Newton's method needs the second derivatives of Carlson's integral. The check of the action has its own integral.
+#[test]
+fn the_function_of_a_path_has_the_derivatives_that_newton_needs() {
+    let case = "model = \"drop\"\nh = 0.05\nsteps = 20\n[parameters]\nm = 1\nk = 2\n\
+                [initial]\nQ = [[1.2, 0.1, 0], [0, 0.9, 0.2], [0.1, 0, 1]]\n\
+                velocity = [[0, 0.3, 0], [-0.3, 0, 0], [0, 0.1, 0.2]]\n";
+    for (given, called) in [
+        ("Sym<3>): Real = clebsch::functions::carlson_rf;", "RF(B)"),
+        (
+            "Real, Real, Real): Real = clebsch::functions::carlson_rf_of_invariants;",
+            "RF(I1(B), I2(B), det(B))",
+        ),
+    ] {
+        let model = format!(
+            "model Drop {{ param m, k: Real; given RF({given} field Q: Mat<3>; let V = next(Q) - Q; let C = (Q + next(Q))/2;
+             let B = C*C^T; lagrangian = m*tr(V^T*V)/(2*h) - h*k*{called} - h*k*tr(B)/2; }}"
+        );
+        run(&Folder::new("functions-newton"), &model, case, "")
+            .succeeds()
+            .prints("action as stated: 20 steps checked");
+        let other = model.replace("carlson_rf", "carlson_rd");
+        run(&Folder::new("functions-newton"), &other, case, "").says([
+            "a model file cannot call",
+            "carlson_rd",
+            "it knows `clebsch::functions::carlson_rf` of a `Sym<3>`",
+        ]);
+    }
 }

@@ -3,7 +3,7 @@
 mod algebra;
 mod band;
 mod domain;
-mod functions;
+pub mod functions;
 pub(crate) mod groups;
 mod line;
 mod mesh;

@@ -276,7 +276,10 @@ impl Lower<'_, '_> {
         }
         if let Some(path) = self.given(&m.receiver) {
             let arguments = self.all(m.args.iter())?;
-            let missing = || Refused::Construct(format!("{path} by its {name}"));
+            let missing = || Refused::Given {
+                path: path.clone(),
+                method: name.clone(),
+            };
             return self
                 .native(&format!("{path}::{name}"), arguments, Vec::new())
                 .ok_or_else(missing);

@@ -4,7 +4,7 @@
 //! invariants of B, so equal axes do not need a special case. Theorem of duplication and series: DLMF 19.26.18
 //! and 19.36.1.
 
-use super::jet::Jet;
+use super::jet::{Jet, Number};
 use crate::Real;
 use nalgebra::SMatrix;
 
@@ -19,6 +19,9 @@ const MOST: usize = 64;
 /// Where the series is exact to rounding with its derivatives: deviations of 3e-3 to the seventh power.
 const NEAR: f64 = 1e-5;
 
+/// Where it is exact to rounding with its second derivatives.
+const NEARER: f64 = 1e-10;
+
 /// Newton's iterations for the trace of the root, which converge from above.
 const MOST_CORRECTIONS: usize = 64;
 
@@ -27,6 +30,13 @@ impl carlson_rf {
     #[must_use]
     pub fn value<T: Real>(&self, b: &SMatrix<T, 3, 3>) -> T {
         integral(invariants(b), []).value
+    }
+
+    /// The derivative along a symmetric matrix.
+    #[must_use]
+    pub fn along_1<T: Real>(&self, b: &SMatrix<T, 3, 3>, along: &SMatrix<T, 3, 3>) -> T {
+        let gradient = self.pull_back_1(b, &T::one());
+        gradient.component_mul(along).sum()
     }
 
     /// The gradient with respect to B times a number, a symmetric matrix.
@@ -47,6 +57,32 @@ impl carlson_rf {
             );
             unit - b * linear + square * third
         })
+    }
+
+    /// The derivative of this gradient along a symmetric matrix.
+    #[must_use]
+    pub fn pull_back_1_along_1<T: Real>(
+        &self,
+        b: &SMatrix<T, 3, 3>,
+        along: &SMatrix<T, 3, 3>,
+        seed: &T,
+    ) -> SMatrix<T, 3, 3> {
+        let even = |a: &SMatrix<T, 3, 3>| (a + a.transpose()) * T::from_f64(0.5);
+        let (b, along) = (even(b), even(along));
+        let unit = SMatrix::identity();
+        let own = invariants(&b);
+        let [second, third] = [unit * own[0] - b, b * b - b * own[0] + unit * own[1]];
+        let [along_1, along_2, along_3] =
+            [unit, second, third].map(|gradient| gradient.component_mul(&along).sum());
+        let first_order = integral(own, [0, 1, 2]).along.map(|x| x * *seed);
+        let [x, y, z] = bent(own, [along_1, along_2, along_3], [0, 1, 2]).map(|x| x * *seed);
+        let turning = unit * along_1 - along;
+        let third_turning = b * along + along * b - b * along_1 - along * own[0] + unit * along_2;
+        unit * x
+            + second * y
+            + third * z
+            + turning * first_order[1]
+            + third_turning * first_order[2]
     }
 }
 
@@ -80,6 +116,53 @@ impl carlson_rf_of_invariants {
     pub fn pull_back_3<T: Real>(&self, first: &T, second: &T, third: &T, seed: &T) -> T {
         integral([*first, *second, *third], [2]).along[0] * *seed
     }
+
+    /// The derivative along the trace.
+    #[must_use]
+    pub fn along_1<T: Real>(&self, first: &T, second: &T, third: &T, along: &T) -> T {
+        self.pull_back_1(first, second, third, along)
+    }
+
+    /// The derivative along the second invariant.
+    #[must_use]
+    pub fn along_2<T: Real>(&self, first: &T, second: &T, third: &T, along: &T) -> T {
+        self.pull_back_2(first, second, third, along)
+    }
+
+    /// The derivative along the determinant.
+    #[must_use]
+    pub fn along_3<T: Real>(&self, first: &T, second: &T, third: &T, along: &T) -> T {
+        self.pull_back_3(first, second, third, along)
+    }
+}
+
+/// Second derivatives with respect to the invariants, as methods for emitted code.
+macro_rules! second_derivatives {
+    ($($name:ident: $by:literal $along:literal;)*) => {
+        impl carlson_rf_of_invariants {
+            $(
+                /// A second derivative, times a number and the change of an invariant.
+                #[must_use]
+                pub fn $name<T: Real>(&self, first: &T, second: &T, third: &T, along: &T, seed: &T) -> T {
+                    let mut change = [T::zero(); 3];
+                    change[$along] = *along;
+                    bent([*first, *second, *third], change, [$by])[0] * *seed
+                }
+            )*
+        }
+    };
+}
+
+second_derivatives! {
+    pull_back_1_along_1: 0 0;
+    pull_back_1_along_2: 0 1;
+    pull_back_1_along_3: 0 2;
+    pull_back_2_along_1: 1 0;
+    pull_back_2_along_2: 1 1;
+    pull_back_2_along_3: 1 2;
+    pull_back_3_along_1: 2 0;
+    pull_back_3_along_2: 2 1;
+    pull_back_3_along_3: 2 2;
 }
 
 /// The principal invariants.
@@ -99,31 +182,62 @@ fn integral<T: Real, const N: usize>(of: [T; 3], by: [usize; N]) -> Jet<T, N> {
             value: *value,
             along: core::array::from_fn(|i| along[i]),
         },
-        _ => iterated(of, by),
+        _ => iterated(variables(of, by)),
     }
+}
+
+/// The derivatives with respect to some of the invariants, differentiated along a change of all invariants.
+fn bent<T: Real, const N: usize>(of: [T; 3], along: [T; 3], by: [usize; N]) -> [T; N] {
+    let inputs = || of.into_iter().chain(along).collect();
+    match T::whole(bent_numbers::<N>, &by, &inputs, N).as_deref() {
+        Some(found) => core::array::from_fn(|i| found[i]),
+        None => {
+            let moving = core::array::from_fn(|i| Jet {
+                value: of[i],
+                along: [along[i]],
+            });
+            let found: Jet<Jet<T, 1>, N> = iterated(variables(moving, by));
+            found.along.map(|x| x.along[0])
+        }
+    }
+}
+
+/// Like `bent`, over plain numbers: invariants, then their change.
+fn bent_numbers<const N: usize>(by: &[usize], of: &[f64], out: &mut [f64]) {
+    let found = bent::<f64, N>(
+        core::array::from_fn(|i| of[i]),
+        core::array::from_fn(|i| of[3 + i]),
+        core::array::from_fn(|i| by[i]),
+    );
+    out.copy_from_slice(&found);
 }
 
 /// Like `integral`, over plain numbers: the value, then the derivatives with respect to the invariants.
 fn in_numbers<const N: usize>(by: &[usize], of: &[f64], out: &mut [f64]) {
-    let found = iterated::<f64, N>(
+    let found = iterated::<f64, N>(variables(
         core::array::from_fn(|i| of[i]),
         core::array::from_fn(|i| by[i]),
-    );
+    ));
     out[0] = found.value;
     out[1..].copy_from_slice(&found.along);
 }
 
-fn iterated<T: Real, const N: usize>(of: [T; 3], by: [usize; N]) -> Jet<T, N> {
+/// The invariants, some of them as variables.
+fn variables<A: Number, const N: usize>(of: [A; 3], by: [usize; N]) -> [Jet<A, N>; 3] {
     let which = |i: usize| by.iter().position(|k| *k == i);
-    let mut all: [Jet<T, N>; 3] = core::array::from_fn(|i| Jet::variable(of[i], which(i)));
+    core::array::from_fn(|i| Jet::variable(of[i], which(i)))
+}
+
+fn iterated<A: Number, const N: usize>(mut all: [Jet<A, N>; 3]) -> Jet<A, N> {
+    let bound = if A::DEPTH == 0 { NEAR } else { NEARER };
     for _ in 0..MOST {
         let [mean, second, third] = deviations(all);
         // False for NaN.
-        let near = |x: T| x.greatest().max(-x.least()) <= NEAR;
-        if near(second.value) && near(third.value) {
+        let near = |x: A::Base| x.greatest().max(-x.least()) <= bound;
+        if near(second.base()) && near(third.base()) {
             return series(mean, second, third);
         }
-        if !mean.value.is_finite() {
+        if !mean.base().is_finite() {
             break;
         }
         all = duplicated(all);
@@ -132,29 +246,34 @@ fn iterated<T: Real, const N: usize>(of: [T; 3], by: [usize; N]) -> Jet<T, N> {
     series(mean, second, third)
 }
 
+/// A constant.
+fn number<A: Number, const N: usize>(x: f64) -> Jet<A, N> {
+    Jet::constant(A::Base::from_f64(x))
+}
+
 /// A third of the trace, and the second and third invariants of the deviations from it, in units of it.
-fn deviations<T: Real, const N: usize>([first, second, third]: [Jet<T, N>; 3]) -> [Jet<T, N>; 3] {
+fn deviations<A: Number, const N: usize>([first, second, third]: [Jet<A, N>; 3]) -> [Jet<A, N>; 3] {
     let mean = first.times(1.0 / 3.0);
     let square = mean * mean;
-    let e2 = second / square - Jet::constant(T::from_f64(3.0));
-    let e3 = (mean * second - third) / (square * mean) - Jet::constant(T::from_f64(2.0));
+    let e2 = second / square - number(3.0);
+    let e3 = (mean * second - third) / (square * mean) - number(2.0);
     [mean, e2, e3]
 }
 
-fn series<T: Real, const N: usize>(mean: Jet<T, N>, e2: Jet<T, N>, e3: Jet<T, N>) -> Jet<T, N> {
-    let one = Jet::constant(T::one());
+fn series<A: Number, const N: usize>(mean: Jet<A, N>, e2: Jet<A, N>, e3: Jet<A, N>) -> Jet<A, N> {
+    let one = number(1.0);
     let (square, product) = (e2 * e2, e2 * e3);
     let sum = one - e2.times(0.1) + e3.times(1.0 / 14.0) + square.times(1.0 / 24.0)
         - product.times(3.0 / 44.0)
         - (square * e2).times(5.0 / 208.0)
         + (e3 * e3).times(3.0 / 104.0)
         + (square * e3).times(1.0 / 16.0);
-    sum / mean.sqrt()
+    sum / mean.root()
 }
 
 /// The invariants of `(B + λ)/4`, where λ is the second invariant of the root of B.
-fn duplicated<T: Real, const N: usize>([first, second, third]: [Jet<T, N>; 3]) -> [Jet<T, N>; 3] {
-    let root = third.sqrt();
+fn duplicated<A: Number, const N: usize>([first, second, third]: [Jet<A, N>; 3]) -> [Jet<A, N>; 3] {
+    let root = third.root();
     let trace = trace_of_root(first, second, root);
     let l = (trace * trace - first).times(0.5);
     let square = l * l;
@@ -168,30 +287,31 @@ fn duplicated<T: Real, const N: usize>([first, second, third]: [Jet<T, N>; 3]) -
 /// The trace `u` of the root of B, the largest root of `((u² - I1)/2)² = I2 + 2 √I3 u`. It is found in plain numbers,
 /// lane by lane, and improved in the scalar at hand, the last time with derivatives: bounds of rounding then do not
 /// accumulate over the iterations.
-fn trace_of_root<T: Real, const N: usize>(
-    first: Jet<T, N>,
-    second: Jet<T, N>,
-    root: Jet<T, N>,
-) -> Jet<T, N> {
-    let mut u = T::zero();
-    for lane in 0..T::LANES {
-        let known = [first, second, root].map(|x| x.value.lane(lane));
-        u.set_lane(lane, T::One::from_f64(plain_trace(known)));
+fn trace_of_root<A: Number, const N: usize>(
+    first: Jet<A, N>,
+    second: Jet<A, N>,
+    root: Jet<A, N>,
+) -> Jet<A, N> {
+    let mut start = A::Base::from_f64(0.0);
+    for lane in 0..A::Base::LANES {
+        let known = [first, second, root].map(|x| x.base().lane(lane));
+        start.set_lane(lane, <A::Base as Real>::One::from_f64(plain_trace(known)));
     }
-    let precise = u32::from(T::EPSILON < 1e-20);
-    for _ in 0..T::ORDER + precise {
-        u = improved(Jet::constant(u), first, second, root).value;
+    let mut u = A::constant(start);
+    let precise = u32::from(A::Base::EPSILON < 1e-20);
+    for _ in 0..A::Base::ORDER + precise + A::DEPTH {
+        u = improved(Jet::variable(u, None), first, second, root).value;
     }
-    improved(Jet::constant(u), first, second, root)
+    improved(Jet::variable(u, None), first, second, root)
 }
 
 /// One correction of Newton's method.
-fn improved<T: Real, const N: usize>(
-    u: Jet<T, N>,
-    first: Jet<T, N>,
-    second: Jet<T, N>,
-    root: Jet<T, N>,
-) -> Jet<T, N> {
+fn improved<A: Number, const N: usize>(
+    u: Jet<A, N>,
+    first: Jet<A, N>,
+    second: Jet<A, N>,
+    root: Jet<A, N>,
+) -> Jet<A, N> {
     let l = (u * u - first).times(0.5);
     let value = l * l - second - (root * u).times(2.0);
     u - value / (u * l - root).times(2.0)

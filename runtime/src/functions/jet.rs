@@ -1,54 +1,90 @@
-//! A number with its derivatives with respect to several others.
+//! A number with its derivatives with respect to several others. The numbers may be jets themselves, for second
+//! derivatives.
 //! Takes numbers; gives sums, products, quotients and roots of them.
 
 use crate::Real;
 use core::ops::{Add, Div, Mul, Sub};
 
-/// A value and its derivatives.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Jet<T, const N: usize> {
-    pub value: T,
-    pub along: [T; N],
+/// A scalar, or a jet.
+pub(super) trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
+    /// The scalar.
+    type Base: Real;
+    /// How many jets are nested.
+    const DEPTH: u32;
+    /// A constant.
+    fn constant(value: Self::Base) -> Self;
+    /// The value without derivatives.
+    fn base(self) -> Self::Base;
+    /// The square root.
+    fn root(self) -> Self;
 }
 
-impl<T: Real, const N: usize> Jet<T, N> {
-    /// A constant.
-    pub fn constant(value: T) -> Self {
-        Self {
-            value,
-            along: [T::zero(); N],
-        }
+impl<T: Real> Number for T {
+    type Base = T;
+    const DEPTH: u32 = 0;
+
+    fn constant(value: T) -> T {
+        value
     }
 
+    fn base(self) -> T {
+        self
+    }
+
+    fn root(self) -> T {
+        self.sqrt()
+    }
+}
+
+/// A value and its derivatives.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Jet<A, const N: usize> {
+    pub value: A,
+    pub along: [A; N],
+}
+
+impl<A: Number, const N: usize> Number for Jet<A, N> {
+    type Base = A::Base;
+    const DEPTH: u32 = A::DEPTH + 1;
+
+    fn constant(value: A::Base) -> Self {
+        Self::variable(A::constant(value), None)
+    }
+
+    fn base(self) -> A::Base {
+        self.value.base()
+    }
+
+    fn root(self) -> Self {
+        let value = self.value.root();
+        let factor = A::constant(A::Base::from_f64(0.5)) / value;
+        Self {
+            value,
+            along: self.along.map(|x| x * factor),
+        }
+    }
+}
+
+impl<A: Number, const N: usize> Jet<A, N> {
     /// The variable with the index `which`, or a constant if `which` is `None`.
-    pub fn variable(value: T, which: Option<usize>) -> Self {
+    pub fn variable(value: A, which: Option<usize>) -> Self {
+        let (one, zero) = (A::Base::from_f64(1.0), A::Base::from_f64(0.0));
         Self {
             value,
             along: core::array::from_fn(|i| match which == Some(i) {
-                true => T::one(),
-                false => T::zero(),
+                true => A::constant(one),
+                false => A::constant(zero),
             }),
         }
     }
 
     /// Multiplies by a number.
     pub fn times(self, factor: f64) -> Self {
-        self.by(T::from_f64(factor))
-    }
-
-    fn by(self, factor: T) -> Self {
+        let factor = A::constant(A::Base::from_f64(factor));
         Self {
             value: self.value * factor,
-            along: self.along.map(|x| x * factor),
-        }
-    }
-
-    /// The square root.
-    pub fn sqrt(self) -> Self {
-        let value = self.value.sqrt();
-        let factor = T::from_f64(0.5) / value;
-        Self {
-            value,
             along: self.along.map(|x| x * factor),
         }
     }
@@ -59,12 +95,12 @@ impl<T: Real, const N: usize> Jet<T, N> {
     }
 
     fn quotient(self, other: Self) -> Self {
-        let (one, y) = (T::one(), other.value);
+        let (one, y) = (A::constant(A::Base::from_f64(1.0)), other.value);
         let value = self.value / y;
         self.with(other, value, |a, b| (a - value * b) * (one / y))
     }
 
-    fn with(self, other: Self, value: T, each: impl Fn(T, T) -> T) -> Self {
+    fn with(self, other: Self, value: A, each: impl Fn(A, A) -> A) -> Self {
         let (a, b) = (self.along, other.along);
         Self {
             value,
@@ -73,7 +109,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
     }
 }
 
-impl<T: Real, const N: usize> Add for Jet<T, N> {
+impl<A: Number, const N: usize> Add for Jet<A, N> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -81,7 +117,7 @@ impl<T: Real, const N: usize> Add for Jet<T, N> {
     }
 }
 
-impl<T: Real, const N: usize> Sub for Jet<T, N> {
+impl<A: Number, const N: usize> Sub for Jet<A, N> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -89,7 +125,7 @@ impl<T: Real, const N: usize> Sub for Jet<T, N> {
     }
 }
 
-impl<T: Real, const N: usize> Mul for Jet<T, N> {
+impl<A: Number, const N: usize> Mul for Jet<A, N> {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
@@ -97,7 +133,7 @@ impl<T: Real, const N: usize> Mul for Jet<T, N> {
     }
 }
 
-impl<T: Real, const N: usize> Div for Jet<T, N> {
+impl<A: Number, const N: usize> Div for Jet<A, N> {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
