@@ -284,3 +284,13 @@ fn diagonal_fields_of_a_named_size_take_the_same_steps() {
         assert!((a - b).abs() < 1e-12, "{named:?} {number:?}");
     }
 }
+
+#[test]
+fn the_line_of_the_solver_names_the_method_once() {
+    let model = "model Coupled { param m, k, c: Real; field x, y: Real; let u = next(x) - x; let v = next(y) - y;
+        lagrangian = (m*u^2 + m*v^2 + c*u*v)/(2*h) - h*k*(x^2 + y^2)/2; }";
+    let case = "model = \"coupled\"\nh = 0.1\nsteps = 5\n[parameters]\nm = 1\nk = 1\nc = 0.1\n[initial]\nx = 1\ny = 0\n";
+    run(&Folder::new("solver-line"), model, case, "--verbose")
+        .succeeds()
+        .prints("solver: one linear system, which the first correction of Newton's method solves;");
+}

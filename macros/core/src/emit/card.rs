@@ -207,7 +207,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
         d.how_solved()
     );
     let solver = match solver.strip_prefix("Newton: ") {
-        Some(how) if how.starts_with("Newton's method") => how.to_owned(),
+        Some(how) if how.contains("Newton's method") => how.to_owned(),
         _ => solver,
     };
     // A symmetric one-step action gives an even order; one-sided nodal terms leave order one.
