@@ -459,6 +459,7 @@ impl Cursor {
 #[cfg(test)]
 mod tests {
     use super::{Cursor, MOST_DIVISIONS};
+    use crate::syntax::{parse, tokens};
 
     #[test]
     fn divisions_are_counted_statement_by_statement() {
@@ -468,5 +469,20 @@ mod tests {
         };
         assert!(read(&[MOST_DIVISIONS, MOST_DIVISIONS]));
         assert!(!read(&[1, MOST_DIVISIONS + 1]));
+    }
+
+    #[test]
+    fn single_quotes_that_rust_reads_are_told_to_be_double() {
+        for text in [
+            "param 'm': Real;",
+            "given f(Real): Real = 'x';",
+            "given f(Vec<2>): Vec<2> = ['x', 'y'];",
+            "lagrangian = 'q'^2;",
+            "param m: Real as 'm';",
+        ] {
+            let source = format!("model M {{ {text} }}");
+            let told = tokens(&source).and_then(parse).expect_err(text).to_string();
+            assert!(told.contains("in double quotes"), "{text}: {told}");
+        }
     }
 }
