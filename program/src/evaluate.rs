@@ -92,7 +92,7 @@ impl<A: Arithmetic> Running<'_, A> {
         self.arithmetic.constant(Number::Double(x))
     }
 
-    /// Ones on the diagonal `at` rows below the main diagonal, zeros elsewhere.
+    /// Ones on the diagonal that is `at` rows below the main diagonal, zeros elsewhere.
     fn ones(&self, shape: crate::Shape, at: usize) -> Result<Array<A::Number>, Unvalued> {
         let (one, zero) = (self.double(1.0), self.double(0.0));
         let (rows, cols) = (self.size(shape.rows)?, self.size(shape.cols)?);
