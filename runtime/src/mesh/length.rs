@@ -1,4 +1,4 @@
-//! The admissible smoothing lengths of a depth: from zero to a hundred domains. A longer one leaves only the mean,
+//! The admissible smoothing lengths of a depth: from zero to a hundred domains. A larger value leaves only the mean,
 //! and rounding of its square, compared with the square of a cell, would change the mass.
 
 use super::Domain;
