@@ -15,10 +15,10 @@ use clap::{Arg, Command};
 use of_a_case::{model, of_a_case, shown_case};
 use option::{json, option};
 
-/// The largest width of help, since longer lines are hard to read.
+/// The largest width of help, because longer lines are hard to read.
 const WIDEST: usize = 100;
 
-/// The whole command line. Help fits `width` letters if it is given.
+/// The whole command line. Help lines have at most `width` characters, if it is given.
 #[must_use]
 pub fn command(width: Option<usize>) -> Command {
     Command::new("clebsch")

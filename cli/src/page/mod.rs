@@ -73,7 +73,7 @@ pub(crate) fn page(run: &Finished<'_>, samples: &Samples, pictures: &[(&str, Str
     out
 }
 
-/// The table of the run's end.
+/// The table at the end of a run.
 fn invariants(run: &Finished<'_>, out: &mut String) {
     if run.outcomes.is_empty() {
         return;
