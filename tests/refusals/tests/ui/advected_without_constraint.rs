@@ -1,4 +1,4 @@
-//! Nothing says how Γ is carried.
+//! Γ has no evolution constraint.
 
 clebsch::model! {
     model Top {
