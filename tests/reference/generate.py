@@ -3,11 +3,11 @@
 
     python3 tests/reference/generate.py > tests/reference/states.txt
 
-needs nothing but Python 3 (fifty decimal digits of its module `decimal`, half a minute) and is not run by the tests, which
-compare the tables with the committed output. Nothing here is shared with the program: every step solves the discrete
-equations, stated in matrices below, by Newton's method with a tangent of differences, from the solution of the step before.
+The script needs only Python 3 and half a minute; it computes with fifty decimal digits of the module `decimal`. The tests do
+not run it, but compare the tables with the committed output. It shares no code with the program: every step solves the
+discrete equations, stated in matrices below, by Newton's method with a difference tangent, from the previous solution.
 
-One line a state: name of the table, place in it, numbers in rows, 32 significant digits.
+Each line is a state: name of the table, index in it, numbers row by row, 32 significant digits.
 """
 
 from decimal import Decimal, getcontext
@@ -163,7 +163,7 @@ def poinsot(moments):
 
 
 def top_steps(moments, arm, attitude, momentum, h, steps):
-    """The body with weight `arm` (none: a free body) in body axes, half of the kick on either side of the turn."""
+    """The body with weight `arm` (zero for a free body) in body axes, with half of the kick before and after the rotation."""
     j, turn = diagonal(poinsot(moments)), MoserVeselov()
     vertical = attitude[2]
     for _ in range(steps):
