@@ -30,7 +30,7 @@ pub fn command(width: Option<usize>) -> Command {
         .after_help(
             "Examples:\n  clebsch list\n  clebsch run heavy-top\n  clebsch derive heavy-top\n  clebsch new my-model\n\nExit \
              codes: 0 success, 1 failure, 2 wrong usage, 3 an invariant exceeded the bound of its case (results are \
-             written). A sweep writes its table and exits with 1 if a point was refused or stopped early, otherwise with 3 \
+             written). A sweep writes its table and exits with 1 if a point was rejected or stopped early, otherwise with 3 \
              if an invariant exceeded its bound at a point.",
         )
         .subcommand_required(true)

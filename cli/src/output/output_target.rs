@@ -55,7 +55,7 @@ pub(super) fn at(
     match look(target, known) {
         Ok(Ok(standing)) => Ok(Some(standing)),
         Ok(Err(foreign)) => Err(wrong(format!(
-            "not replaced, because it contains `{}`, which no run wrote; remove that or choose another folder",
+            "not replaced, because it contains `{}`, which no run wrote; remove it or choose another folder",
             shown(foreign)
         ))),
         Err(error) => Err(Failure::io(

@@ -48,7 +48,7 @@ pub(crate) fn page(run: &Finished<'_>, samples: &Samples, pictures: &[(&str, Str
              <input id=\"time\" type=\"range\" min=\"0\" value=\"0\"><span id=\"clock\"></span></div>\n\
              ",
         );
-        let said = format!("{} Drag to turn, scroll to enlarge.", scene.said);
+        let said = format!("{} Drag to rotate, scroll to zoom.", scene.said);
         let _ = writeln!(out, "<p class=\"about\">{}</p>", escaped(said.trim()));
     }
     invariants(run, &mut out);
