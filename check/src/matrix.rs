@@ -1,4 +1,4 @@
-//! Small matrices of numbers with derivatives, by rows. If sizes do not fit, there is no result.
+//! Small matrices of numbers with derivatives, by rows. The result is missing if sizes do not fit.
 
 use crate::number::Number;
 

@@ -16,7 +16,7 @@ use clebsch::{ParameterError, StartError, StepError, validate};
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// Runs a function; if it has no value, the error is an error of the step.
+/// Runs a function; a missing value is an error of the step.
 pub fn run(routine: &Routine<f64>, places: &mut Places<f64>) -> Result<Value<f64>, Failure> {
     let value = match routine.body.run(places) {
         Ok(value) => value,

@@ -1,6 +1,6 @@
 //! Compiles the tapes of model files to machine code.
 //!
-//! A tape has no branches: first operations on numbers, then tests. Cranelift compiles it to one function. The
+//! A tape is straight-line code: first operations on numbers, then tests. Cranelift compiles it to one function. The
 //! function computes the same numbers as [`Machine::run`](clebsch_program::Machine::run), bit for bit. Operations are
 //! neither contracted nor reordered. The code calls the runtime for the sine, the exponential and similar functions.
 //! All `unsafe` code of the project is here.

@@ -63,7 +63,7 @@ pub struct Contact {
 
 impl Contact {
     /// Whether an argument left its domain between finite values. If so, this explains numbers after the step that
-    /// are not finite. If the step overflows instead, the time of contact has no meaning.
+    /// are not finite. If the step overflows instead, the time of contact is meaningless.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         match self.met {

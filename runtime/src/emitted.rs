@@ -50,7 +50,7 @@ pub fn inverse_or_nan<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<
     crate::linalg::small_inverse(a).unwrap_or_else(|| SMatrix::repeat(T::from_f64(f64::NAN)))
 }
 
-/// The solution of `a x = b`; all NaN if there is no solution.
+/// The solution of `a x = b`; all NaN if a solution does not exist.
 #[inline]
 #[must_use]
 pub fn solve_or_nan<T: Real, const N: usize>(
@@ -170,7 +170,7 @@ pub fn basis<T: Real>(axis: usize) -> SMatrix<T, 3, 3> {
     hat(&unit(axis))
 }
 
-/// The solution of the leading `size` equations of `a x = b`; all NaN if there is no solution.
+/// The solution of the leading `size` equations of `a x = b`; all NaN if it does not exist.
 #[inline]
 #[must_use]
 pub fn solve_leading_or_nan<T: Real, const N: usize>(

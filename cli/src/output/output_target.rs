@@ -65,7 +65,7 @@ pub(super) fn at(
     }
 }
 
-/// The files in `folder`, or the name of a file that no run wrote. A name with a trailing slash stands for an inner
+/// The files in `folder`, or the name of a file that no run wrote. A name with a trailing slash denotes an inner
 /// folder, whose files must have the extensions of files for ParaView.
 pub(super) fn look(folder: &Path, known: &[&str]) -> io::Result<Result<EarlierFiles, OsString>> {
     let mut files = Vec::new();

@@ -86,8 +86,8 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The points next to a site. At an end of a chain there is only one, which is returned twice. `None` if there is
-    /// no such point.
+    /// The points next to a site. At an end of a chain there is only one, which is returned twice. `None` if such a
+    /// point does not exist.
     pub(crate) fn at(&self, site: usize) -> Option<(Point, Point)> {
         let beside = self.next.map(|by| {
             let wanted = isize::try_from(site).ok()? + by;

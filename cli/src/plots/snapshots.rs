@@ -84,7 +84,7 @@ fn shots(run: &Finished<'_>, record: &Record, field: &AtSites<'_>) -> Vec<Shot> 
     if wanted.last() != Some(&last) {
         wanted.push(last);
     }
-    // A prescribed value has no column. On a ring, the first node is repeated at the end.
+    // A prescribed value does not have a column. On a ring, the first node is repeated at the end.
     if first > 0 {
         wanted.insert(0, first - 1);
     }

@@ -94,7 +94,7 @@ impl Trajectory for JudgedTrajectory {
             judged =
                 Some(all.and_then(|all| Ok(all.and(judge.part(number, share, before, after)?))));
         })?;
-        // A subdivided step has no parts that can be judged.
+        // The parts of a subdivided step cannot be judged.
         if let Some(judged) = judged {
             self.verdict.take(number, judged);
         }

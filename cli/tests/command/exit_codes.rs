@@ -61,7 +61,7 @@ fn json_is_one_object_and_nothing_else() {
 fn every_wrong_request_is_named() {
     let folder = Folder::new("wrong_requests");
     std::fs::create_dir(folder.path("a.toml")).expect("a folder");
-    // `$` stands for a run of the rotor; `&` joins parts of the message.
+    // `$` denotes a run of the rotor; `&` joins parts of the message.
     for [words, code, parts] in table(
         "
                             | 2 | Usage: clebsch

@@ -139,8 +139,8 @@ fn the_end_of_a_run_is_the_start_of_another() {
 }
 
 /// Long, since two models are derived body by body and as chains, and each model is run twice. Attitudes are read as
-/// matrices or quaternions. A run has no values at sites whose value an end condition prescribes; a second array
-/// lists its sites.
+/// matrices or quaternions. A run omits sites whose value an end condition prescribes; a second array lists the other
+/// sites.
 #[test]
 fn rods_go_on_from_what_a_run_has_written() {
     for (sites, name) in [(8, "rod"), (40, "long-rod")] {

@@ -247,7 +247,7 @@ fn lists_hold_what_is_given_at_an_end_too() {
     };
     let by_list = run("u = [0.0, 0.1, 0.2, 0.3]\nmomentum_u = [0.0, 0.1, 0.2, 0.0]");
     by_list.ended(0).says_nothing();
-    // A site with a prescribed value has no momentum.
+    // A site with a prescribed value does not have a momentum.
     let moving = run("u = [0.0, 0.1, 0.2, 0.3]\nmomentum_u = [0.1, 0.2]");
     assert_eq!(by_list.out, moving.out);
     run("u = \"i/10\"\nmomentum_u = [0.0, 0.1, 0.2, 0.0]").succeeds();

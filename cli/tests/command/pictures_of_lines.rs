@@ -52,7 +52,7 @@ fn rods_have_maps_of_their_angles_and_some_of_their_spheres() {
             "site i",
         ],
     );
-    // Sections of a straight rod are upright, where precession and spin alone have no meaning.
+    // Sections of a straight rod are upright, where precession and spin alone are meaningless.
     assert!(!angles.contains("precession") && !angles.contains("spin"));
     assert!(!angles.contains("Λ_4") && height(&angles) < 1000.0);
     let attitude = wide("attitude");

@@ -1,5 +1,5 @@
 //! Files for ParaView: every array exists, decoded from base64, with as many numbers as its points or cells; the
-//! numbers are those of the trajectory. The files are written next to other results, and removed with them.
+//! numbers equal the numbers of the trajectory. The files are written next to other results, and removed with them.
 
 use crate::common::{Done, Folder, clebsch, names_in, rotor};
 use std::collections::BTreeMap;
@@ -260,7 +260,7 @@ fn the_folder_is_replaced_with_the_other_results_and_never_with_what_is_not_of_a
     let out = folder.path("out");
     run("harmonic-rotor", None, &["--steps", "10"], &out);
     let first = fs::read(format!("{out}/vtk/bodies-05.vtp")).expect("a file");
-    // A repeated run writes the same bytes; fewer samples give fewer files; without the option there are no files.
+    // A repeated run writes the same bytes; fewer samples give fewer files; without the option nothing is written.
     run("harmonic-rotor", None, &["--steps", "10", "--force"], &out);
     let again = fs::read(format!("{out}/vtk/bodies-05.vtp")).expect("a file");
     assert!(first == again);

@@ -91,7 +91,7 @@ impl TapesByOutcome {
         }
     }
 
-    /// Whether there are no tapes and none will be recorded.
+    /// Whether the function is not recorded and will not be.
     pub fn are_none(&self) -> bool {
         self.known.is_empty() && self.left == 0
     }

@@ -55,7 +55,7 @@ pub struct Equations {
     given: usize,
     /// Which numbers of the solution a trial has.
     of_trial: Vec<usize>,
-    /// If a function has no tape, computes the values of the surrounding places from the numbers of the step.
+    /// If a function is not recorded, computes the values of the surrounding places from the numbers of the step.
     around: Ready,
     computed: Vec<usize>,
     places: Places<f64>,

@@ -315,7 +315,7 @@ fn recordable(value: &Value<f64>) -> bool {
 /// A recording: a tape, its number of inputs and its pauses; the counts before and after.
 type StepRecording = ((Tape, usize, Vec<RecordingPause>), [Vec<i64>; 2]);
 
-/// Records twice, with different counts: if a number or a decision depends on them, there is no tape.
+/// Records twice, with different counts: if a number or a decision depends on them, the recording is discarded.
 fn twice(once: impl Fn(Choice) -> Option<StepRecording>) -> Option<OutcomeTape> {
     let ((tape, inputs, cuts), [before, after]) = once(Choice::Equal)?;
     let ((other, _, others), [earlier, later]) = once(Choice::Apart)?;

@@ -15,8 +15,8 @@ use nalgebra::{Matrix3, Vector3};
 /// rotation. Equality compares the four numbers.
 ///
 /// The alignment keeps each half of the quaternion within one cache line, wherever the state of a stepper is stored.
-/// If a pair crossed two lines, the processor could not forward it from the store of one step to the load of the
-/// next, and a step of a free body would take half as long again.
+/// The processor cannot forward a pair across two lines from the store of one step to the next load. A step of a free
+/// body would then take half as long again.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub struct Rotation<T = f64> {

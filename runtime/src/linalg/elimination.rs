@@ -183,8 +183,8 @@ pub fn solve_scaled<T: Real, const N: usize>(
 
 /// Scales of rows and columns of a symmetric matrix whose diagonal vanishes at constraints. They come from
 /// [`Real::balance`]; a constraint is scaled by the power of two that brings its scaled row to the size of the
-/// others. Returns false, and no scales, if there is no constraint. Without scales, light bodies would be lost next
-/// to the constraints, whose entries do not depend on masses.
+/// others. Without constraints, returns false and leaves the scales unchanged. Without scales, light bodies would be
+/// lost next to the constraints, whose entries do not depend on masses.
 #[inline]
 pub fn held_scales<T: Real>(scale: &mut [T], entry: impl Fn(usize, usize) -> T) -> bool {
     let size = scale.len();

@@ -9,7 +9,7 @@ use nalgebra::SMatrix;
 /// = -|A e_i - e_i|²/2`; the plain difference would contain the rounding error of `A_ii`.
 ///
 /// Off the diagonal, an entry of order h has full relative precision; on the diagonal, an entry of order h² has an
-/// error of h² times rounding. The formula has no poles: the identity holds for every angle.
+/// error of h² times rounding. The formula does not have poles: the identity holds for every angle.
 #[inline]
 #[must_use]
 pub fn less_identity<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {

@@ -1,6 +1,6 @@
-//! The documents show what the programs do: the models on the language pages and on the first page derive, the
-//! extract of a derivation is part of the printed derivation, and the figures equal, byte for byte, the figures that
-//! the command writes.
+//! The documents show what the programs do. The models on the language pages and on the first page derive. The
+//! extract of a derivation is part of the printed derivation, and the figures equal the figures that the command
+//! writes, byte for byte.
 
 use clebsch_cli::gallery::Gallery;
 use clebsch_cli::{Streams, execute};

@@ -133,7 +133,8 @@ pub(crate) fn against_all(
     made: StepperOrigin,
     progress: bool,
 ) -> Result<Comparison, Failure> {
-    // Other methods implement the equations of the gallery. A different model with the same name has no such methods.
+    // Other methods implement the equations of the gallery. A different model with the same name does not have such
+    // methods.
     let shipped = clebsch_models::find(card.kebab);
     let offers = match shipped.is_some_and(|e| e.card.fingerprint == card.fingerprint) {
         true => offers(card.kebab),

@@ -88,7 +88,7 @@ fn of_label((card, plan): (&Card, &Plan), own: &[&AtSites<'_>]) -> Option<OfSite
     let points: Vec<SiteLocation> = points.collect::<Option<_>>()?;
     let of_sites = |at: Sites, count: usize| {
         let all = own.iter().filter(|q| q.at == at);
-        // Positions are the points themselves, so they have no array of values.
+        // Positions are the points themselves, so they do not need an array of values.
         let all = all.filter(|q| places.is_none_or(|p| p.key != q.key));
         let mut all: Vec<Columns> = all
             .map(|q| Columns::of(&q.key, q.field, columns(q, count, ring.then_some(segments))))
@@ -121,7 +121,7 @@ fn ring_and_segments(plan: &Plan, own: &[&AtSites<'_>], on_line: bool) -> (bool,
         _ => site + 1,
     });
     let counted = segments.max().unwrap_or(0);
-    // A last node with a prescribed value has no column, so the chosen count is preferred.
+    // A last node with a prescribed value does not have a column, so the chosen count is preferred.
     let chosen = plan.choice.as_ref().and_then(|c| match *c.counts {
         [only] if on_line => Some(only),
         _ => None,

@@ -168,7 +168,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
         self.bodies
     }
 
-    /// Whether there are no bodies.
+    /// Whether the ensemble is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.bodies == 0

@@ -1,4 +1,4 @@
-//! Γ has no evolution constraint.
+//! Γ lacks an evolution constraint.
 
 clebsch::model! {
     model Top {
