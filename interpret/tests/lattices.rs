@@ -303,7 +303,7 @@ fn what_every_site_keeps_is_one_invariant_with_a_row_for_each_and_of_a_line_thei
             _ => momenta,
         };
         for _ in 0..100 {
-            // A rounding of a momentum a step, in either direction, added over the sites.
+            // One rounding of a momentum in each step, in either direction, summed over the sites.
             let size = clebsch::scalar::largest(known.iter().map(|p: &f64| p.abs()));
             for (own, p) in all[1..].iter().zip(&known) {
                 assert!((own - p).abs() <= 100.0 * f64::EPSILON * size, "{own} {p}");

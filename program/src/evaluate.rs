@@ -38,7 +38,7 @@ impl fmt::Display for Unvalued {
 
 impl std::error::Error for Unvalued {}
 
-/// The outputs of a kernel. `inputs` are in the kernel's order; `sizes` are those of declared names.
+/// The outputs of a kernel. `inputs` are in the kernel's order; `sizes` gives the sizes of declared names.
 ///
 /// # Errors
 /// [`Unvalued`] if an input does not fit, a size is missing or the arithmetic lacks an operation.

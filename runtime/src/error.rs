@@ -303,7 +303,7 @@ impl NotARotation {
         ParameterError {
             field,
             problem: Problem::Rotation(self),
-            remedy: "give a matrix with orthonormal columns and determinant +1, to all digits",
+            remedy: "give a matrix with orthonormal columns and determinant +1, accurate to all digits",
         }
     }
 }

@@ -213,7 +213,7 @@ pub fn orthogonal_of<T: Real>(
             deviation,
             determinant: determinant.least(),
         },
-        remedy: "give a rotation matrix to all digits",
+        remedy: "give a rotation matrix that is accurate to all digits",
     })
 }
 
@@ -278,7 +278,7 @@ fn in_group<T: Real, const R: usize, const C: usize>(
             elements,
             deviation,
         },
-        remedy: "give an element of the group to all digits",
+        remedy: "give an element of the group that is accurate to all digits",
     })
 }
 

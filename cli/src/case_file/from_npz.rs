@@ -318,7 +318,7 @@ fn misshapen(
         _ => String::new(),
     };
     let said = match (counts.first(), array.shape.len()) {
-        (Some(None), 1) => ", of samples with the key `sample`",
+        (Some(None), 1) => "; to read one of several samples, add the key `sample`",
         _ => "",
     };
     format!(

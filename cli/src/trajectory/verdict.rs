@@ -10,10 +10,10 @@ use clebsch::integrate::Drift;
 use clebsch::scalar::larger;
 use serde_json::{Value, json};
 
-/// How an invariant fared.
+/// The outcome of an invariant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Within its bound at every node that was looked at.
+    /// Within its bound at every checked node.
     Kept,
     /// Beyond its bound (or not a number) at some node.
     Left,

@@ -1,7 +1,7 @@
 //! One step of the shipped elastic bodies from random states, compared with hand-written steppers, to rounding times
 //! conditioning. There are ten thousand states for each body, but three hundred for bipolar forms, whose interpreted
 //! steps follow the curve from rest and take about forty milliseconds each; `ELASTIC_STATES=10000` selects more.
-//! Every kind of datum changed by a millionth is noticed.
+//! Every kind of datum changed by a millionth is detected.
 
 use clebsch::card::{Card, Settings};
 use clebsch_oracle::handwritten::ellipsoid::{ElasticEllipsoid, Ellipsoid, Of};

@@ -89,10 +89,10 @@ impl<const N: usize, T: Real> Linear<N, T> {
     }
 }
 
-/// Whether a matrix is one of [`Linear::from_matrix`], of any size.
+/// Checks that [`Linear::from_matrix`] would accept a matrix, for any size.
 ///
 /// # Errors
-/// As there.
+/// The same as [`Linear::from_matrix`].
 pub fn invertible_map<T: Real>(a: &Dense<T>) -> Result<(), NotInvertible> {
     if !a.is_finite() {
         return Err(NotInvertible::NotFinite);

@@ -144,7 +144,7 @@ impl Array {
             Entries::Columns { counts: false, .. } => "<f8",
             Entries::Columns { .. } | Entries::Numbers(_) => "<u8",
         };
-        // A tuple of one needs its comma; more may have it.
+        // A tuple with one entry needs a trailing comma; longer tuples may have one.
         let shape: String = self.shape.iter().map(|n| format!("{n}, ")).collect();
         let mut text = format!(
             "{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}), }}",

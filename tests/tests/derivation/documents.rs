@@ -91,7 +91,7 @@ fn the_extract_on_the_first_page_is_what_is_printed() {
             "not in the derivation any more: {equation}"
         );
         assert!(shown.contains(&flat(equation)), "{equation}");
-        // A changed number or sign is noticed.
+        // A changed number or sign is detected.
         assert!(!printed.contains(&flat(&equation.replace("= ", "= -"))));
     }
     let refused = block_after(&page, "If a model is wrong", "text");

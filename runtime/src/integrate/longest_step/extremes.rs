@@ -1,5 +1,5 @@
 //! The slowest and the fastest of small motions, by Lanczos' method in the inner product of the mass.
-//! Takes answers of a model; gives two motions.
+//! Takes the responses of a model to disturbances; gives the two motions.
 
 use super::probe::Probe;
 use super::unknown::Unknown;
