@@ -112,7 +112,7 @@ pub struct Lower<'a, 'b> {
 /// Lowers a function of a type, with its parameters at given places and locals from `first` on.
 ///
 /// # Errors
-/// [`Refused`] for what emitted code may do and the interpreter does not.
+/// [`Refused`] for emitted code that the interpreter does not support.
 pub fn entry(
     shared: &mut Shared<'_>,
     (ty, name): (&str, &str),

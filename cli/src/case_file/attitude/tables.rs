@@ -113,7 +113,8 @@ fn euler(
     angles: &DeValue<'_>,
     of: &Numbers<'_>,
 ) -> Result<Matrix3<f64>, String> {
-    let wrong = "euler: expected three axes, neighbours different, such as \"zxz\" or \"zyx\"";
+    let wrong =
+        "euler: expected three axes, each different from its neighbour, such as \"zxz\" or \"zyx\"";
     let letters = axes.as_str().ok_or(wrong)?.to_lowercase();
     let axes: Option<Vec<usize>> = letters.chars().map(|c| "xyz".find(c)).collect();
     let axes = axes.ok_or(wrong)?;
