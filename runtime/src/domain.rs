@@ -173,8 +173,8 @@ impl fmt::Display for Contact {
 
 impl std::error::Error for Contact {}
 
-/// Whether a linear map stays invertible from one node to the next: the straight line between them does not meet `det
-/// = 0`, not even twice, and the end is far enough from it.
+/// Whether a linear map stays invertible from one node to the next: the straight line between them does not meet
+/// `det = 0`, not even twice, and the end is far enough from it.
 ///
 /// # Errors
 /// [`Contact`] of the first lane that does not.

@@ -26,7 +26,7 @@ pub(crate) struct AtSites<'a> {
     pub at: Sites,
     /// Whether its value grows by an offset for each turn around a ring.
     pub grows: bool,
-    /// By which parameter, in ASCII.
+    /// The parameter that gives this offset, in ASCII.
     pub offset: Option<String>,
     /// The sites with their columns.
     pub members: Vec<(usize, Range<usize>)>,

@@ -1,5 +1,6 @@
-//! The values that colour the particles of a fluid on its page. They come from the functional in its picture, at the
-//! particles or interpolated between the nodes of a grid. Takes a run; gives a number for each particle of a sample.
+//! The values that colour the particles of a fluid on its page. They come from the functional in its picture,
+//! at the particles or interpolated between the nodes of a grid. Takes a run; gives a number for each particle
+//! of a sample.
 
 use crate::case_file::space::Space;
 use crate::output::fluid::Coloured;

@@ -162,8 +162,8 @@ fn trajectory(name: &str, more: &str, wanted: &[&str]) -> Vec<Vec<f64>> {
     (0..samples.rows.len()).map(row).collect()
 }
 
-/// Stretches and angular momentum of the run of figures 3.1 to 3.3 from another implementation: nodes 1, 2, 10 and
-/// 50.
+/// Stretches and angular momentum of the run of figures 3.1 to 3.3 from another implementation: nodes 1, 2, 10
+/// and 50.
 #[test]
 fn the_pseudo_rigid_body_of_the_thesis_is_that_of_the_reference_run() {
     let rows = trajectory(

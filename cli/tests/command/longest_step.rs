@@ -173,8 +173,8 @@ fn rows_of_springs_have_one_limit_in_all_groups() {
 
 /// A chain of bodies that starts far from equilibrium, with its bonds rotated by up to forty radians. Forces rotate
 /// with the frames of the bodies there, and the stiffness is the symmetric part of their derivative. The numbers are
-/// square roots of the largest and of minus the least eigenvalue of the second derivative of the energy, against the
-/// inertia tensors, by numpy: of 40 sites the latter is 1.096802.
+/// square roots of the largest eigenvalue and of minus the least eigenvalue of the second derivative of the energy,
+/// relative to the inertia tensors, by numpy. For 40 sites, the second number is 1.096802.
 #[test]
 fn a_bent_start_has_the_limit_of_the_symmetric_part() {
     let folder = Folder::new("bent-start");

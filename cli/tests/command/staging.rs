@@ -398,7 +398,7 @@ fn what_a_killed_run_left_behind_is_removed_by_the_next() {
             };
             assert!(hidden("1"));
             run_while(|| (), &inner, &[]).succeeds();
-            assert!(hidden("1"), "that of the run around it");
+            assert!(hidden("1"), "the folder of the outer run remains");
         },
         &out,
         &[],

@@ -19,8 +19,8 @@ const HALVINGS: u32 = 53;
 /// change its sign.
 const ROUNDINGS: f64 = 64.0;
 
-/// The precision with which a crossing is found at least, if zero is known to that many roundings: the square root of
-/// them.
+/// The largest distance of a sign change from the point at which the determinant counts as zero, if both belong to
+/// one zero. It is above the square root of `ROUNDINGS` roundings.
 const SHARPER: f64 = 1e-6;
 
 /// The first `s` from 0 to 1 at which the determinant is zero, or negative to rounding; also where

@@ -52,8 +52,8 @@ use own_operations;
 
 /// A Lie group with the operations that an iteration on it needs.
 ///
-/// Laws that every implementation satisfies to rounding: associativity, neutral element, inverses, and `g.retract(xi)
-/// = g . (1 + hat(xi) + O(xi^2))`.
+/// Laws that every implementation satisfies to rounding: associativity, neutral element, inverses, and
+/// `g.retract(xi) = g . (1 + hat(xi) + O(xi^2))`.
 pub trait Group<T>: Copy {
     /// Dimension of the Lie algebra, the number of coordinates [`Group::retract`] reads.
     const DIMENSION: usize;

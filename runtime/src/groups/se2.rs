@@ -11,8 +11,8 @@ use nalgebra::{Matrix2, Matrix3, SVector, Vector2};
 
 /// A rigid motion of the plane, by convention from the body: `p_plane = R p_body + x`.
 ///
-/// The coordinates of its Lie algebra are `(ω, v)`, one angular and two linear. They represent the matrix `[ω i, v; 0
-/// 0]` with the quarter turn `i`.
+/// The coordinates of its Lie algebra are `(ω, v)`, one angular and two linear. They represent the matrix
+/// `[ω i, v; 0 0]` with the quarter turn `i`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneMotion<T = f64> {
     /// `R`, body -> plane.

@@ -5,8 +5,8 @@
 use crate::Real;
 use nalgebra::SMatrix;
 
-/// `A - 1` of a matrix `A` whose columns have length 1. The diagonal follows from the other entries, since `A_ii - 1
-/// = -|A e_i - e_i|²/2`; the plain difference would contain the rounding error of `A_ii`.
+/// `A - 1` of a matrix `A` whose columns have length 1. The diagonal follows from the other entries, since
+/// `A_ii - 1 = -|A e_i - e_i|²/2`; the plain difference would contain the rounding error of `A_ii`.
 ///
 /// Off the diagonal, an entry of order h has full relative precision; on the diagonal, an entry of order h² has an
 /// error of h² times rounding. The formula does not have poles: the identity holds for every angle.

@@ -5,8 +5,8 @@ use crate::Real;
 use nalgebra::SMatrix;
 
 /// Coefficients of `det(ν + M + λ S)` in which `M` occurs: entry `(j - 1, i)` is the coefficient of
-/// `ν^i λ^(N - j - i)` of degree `j` in `M`; entries with `j + i > N` are zero. By the recursion of
-/// Faddeev and Le Verrier, whose rounding grows with the size: use it for a few rows.
+/// `ν^i λ^(N - j - i)` of degree `j` in `M`; entries with `j + i > N` are zero. Uses the recursion of Faddeev and
+/// Le Verrier, whose rounding error grows with the size: call it for matrices of a few rows.
 #[must_use]
 pub fn pencil_coefficients<T: Real, const N: usize>(
     m: &SMatrix<T, N, N>,

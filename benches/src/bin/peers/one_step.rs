@@ -67,7 +67,7 @@ pub fn tables() {
 /// The table of one body.
 struct Table {
     start: Start,
-    /// Time of the hand-written step over that of the generated step.
+    /// Time of the hand-written step, divided by the time of the generated step.
     by_hand: f64,
 }
 

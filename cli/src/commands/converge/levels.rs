@@ -20,7 +20,7 @@ pub(super) struct Level {
     pub steps: u64,
     /// The error of each quantity, relative to its largest size.
     pub errors: Vec<f64>,
-    /// The order between the previous step size and this one. `None` for the first step size, and if the errors
+    /// The order between the previous step size and this step size. `None` for the first step size, and if the errors
     /// are rounding.
     pub orders: Vec<Option<f64>>,
 }

@@ -189,8 +189,8 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
         (0..self.bodies).filter_map(|i| self.body(i))
     }
 
-    /// A number for every body, in their order, computed for all lanes at once: `ensemble.observe(|model, state|
-    /// model.energy(state))`.
+    /// A number for every body, in their order, computed for all lanes at once:
+    /// `ensemble.observe(|model, state| model.energy(state))`.
     pub fn observe(
         &self,
         number: impl Fn(&Wide<M, N>, &<Wide<M, N> as Stepper>::State) -> Lanes<N>,

@@ -1,6 +1,6 @@
-//! The innermost loops of deposit and gather, for one row of cells. Deposit adds the masses of particles to the `K x
-//! K` nodes around each particle; gather reads derivatives from these nodes. Takes the rows of nodes that the splines
-//! of the row of cells cover. The loops use indices, since iterator adaptors are not inlined.
+//! The innermost loops of deposit and gather, for one row of cells. Deposit adds the masses of particles to the
+//! `K x K` nodes around each particle; gather reads derivatives from these nodes. Takes the rows of nodes that the
+//! splines of the row of cells cover. The loops use indices, since iterator adaptors are not inlined.
 
 use super::position::Position;
 use super::sorted::Particle;

@@ -11,7 +11,7 @@ fn decoded(text: &str) -> Vec<u8> {
         b'0'..=b'9' => letter - b'0' + 52,
         b'+' => 62,
         b'/' => 63,
-        other => panic!("{other} is no letter of base64"),
+        other => panic!("{other} is not a base64 letter"),
     };
     assert!(text.len().is_multiple_of(4), "{}", text.len());
     let letters: Vec<u8> = text.bytes().filter(|c| *c != b'=').map(value).collect();

@@ -2,12 +2,12 @@
 //! T*SO(3). Takes a body, the order of its steps and a trajectory; gives that rotation, a constant of
 //! the trajectory.
 //!
-//! Let `H` be the energy and `C = |mu|^2 / 2`. A map that conserves momentum and energy and is symplectic for
-//! constant `s`, `d` is a composition of the flows of `H` and `C`. A step of the body with inverse moments `s / I +
-//! d` is such a map: a motion of the true body for the time `h s'`, then the flow of `C` for the time `h d'`, a
-//! rotation about the momentum. If `s`, `d` are functions of `H` and `C`, so are `s'` and `d'`, and the map is
-//! symplectic if and only if `s' dH + d' dC` is closed. A further rotation for the time `h b`, where `b` is a
-//! function of `H` and `C`, makes it symplectic if `db/dH = ds'/dC - dd'/dH`.
+//! Let `H` be the energy and `C = |mu|^2 / 2`. A map that conserves momentum and energy and is symplectic for constant
+//! `s`, `d` is a composition of the flows of `H` and `C`. A step of the body with inverse moments `s / I + d` is such
+//! a map: a motion of the true body for the time `h s'`, then the flow of `C` for the time `h d'`, a rotation about
+//! the momentum. If `s`, `d` are functions of `H` and `C`, so are `s'` and `d'`, and the map is symplectic if and only
+//! if `s' dH + d' dC` is closed. A further rotation for the time `h b`, where `b` is a function of `H` and `C`, makes
+//! it symplectic if `db/dH = ds'/dC - dd'/dH`.
 //!
 //! `s'` and `d'` follow from the series of order ten. The series give, for every body, the body to step instead; for
 //! the body with inverse moments `s' / I + d'` this is the body with `s / I + d`. `s'`, `d'` and `b` are polynomials in

@@ -19,8 +19,8 @@ const SMALL: f64 = 1.0 / 32.0;
 const MOST_FAST: usize = 6;
 
 /// Near a double root, Newton's method halves the error per iteration until `g` is at rounding level, after half the
-/// bits of the significand. Before this, the monotone method takes up to about ten iterations. Double-double needs 53
-/// + 10.
+/// bits of the significand. Before this, the monotone method takes up to about ten iterations. Double-double needs
+/// 53 + 10.
 const MOST_MONOTONE: usize = 100;
 
 /// The invariants of the body for the quartic, all over `s3`.
@@ -137,8 +137,8 @@ impl<T: Real> Quartic<T> {
         [self.value(k) * per_fall, bend, twist]
     }
 
-    /// 1 in the lanes where a correction from `k` is exact to rounding, otherwise 0: its error is about `newton^4
-    /// bend (bend^2 + twist)`, up to factors of a few.
+    /// 1 in the lanes where a correction from `k` is exact to rounding, otherwise 0: its error is about
+    /// `newton^4 bend (bend^2 + twist)`, up to factors of a few.
     fn arrives(&self, k: T) -> T {
         let [newton, bend, twist] = self.change(k);
         let square = newton * newton;

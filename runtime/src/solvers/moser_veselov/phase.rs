@@ -3,9 +3,9 @@
 //!
 //! The spatial momentum is constant, so the direction of the momentum in the body and one angle about it determine an
 //! attitude. Let `s(u)` be the shortest rotation that takes the direction of `u` to an axis `e`. Every attitude is
-//! then `g z s(u)`: `g` is constant, `z` a rotation about `e`. A step multiplies `z`, as a complex number, by `(|u|
-//! det + d_e n_e) + i (kappa det + |u| n_e)` over its length: the components of `s(u) (det, n)` along `1` and `e`,
-//! with `u . n = kappa det` and the third row of `(d - hat u) n = det u`. This takes six products instead of the
+//! then `g z s(u)`: `g` is constant, `z` a rotation about `e`. A step multiplies `z`, as a complex number, by
+//! `(|u| det + d_e n_e) + i (kappa det + |u| n_e)` over its length: the components of `s(u) (det, n)` along `1` and
+//! `e`, with `u . n = kappa det` and the third row of `(d - hat u) n = det u`. This takes six products instead of the
 //! twenty products and a root of a quaternion product, and rounding of `z` can only rotate the body about its
 //! momentum.
 //!

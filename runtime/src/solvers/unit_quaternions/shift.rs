@@ -202,7 +202,7 @@ impl<T: Real> Equation<T> {
         (change, turn)
     }
 
-    /// The equation at `s` and its first three derivatives, the latter over their factorials.
+    /// The equation at `s` and its first three derivatives, each divided by the factorial of its order.
     #[inline(always)]
     pub(super) fn taylor(&self, s: T) -> [T; 4] {
         let (two, three, four, six) = (

@@ -36,7 +36,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// In unit quaternions, with a momentum that is no quadratic form's.
+    /// In unit quaternions, with a Lagrangian that is not quadratic in the velocity.
     pub model StiffQuaternion {
         param S: Sym<3>;
         param c: Real;
