@@ -287,11 +287,11 @@ fn an_energy_that_is_lost_is_told_with_its_node() {
             .as_str()
             .is_some_and(|w| w.contains("reduce h"))
     );
-    // Bodies that pass at a distance keep theirs.
+    // Bodies that pass at a distance conserve their energy.
     folder.write("pass.toml", case("[1, 0, 0]", "[0, 0.5, 0]"));
     folder
         .clebsch("run @two-body.clebsch --case @pass.toml")
-        .never_says("is lost");
+        .never_says("is not conserved from");
 }
 
 /// A momentum that is not projected is of first order at its node, while the motion is of second order.

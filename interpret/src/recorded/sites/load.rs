@@ -30,8 +30,8 @@ pub fn numbers_of(value: &Value<f64>, kind: &Value<f64>, out: &mut Vec<f64>) -> 
     }
 }
 
-/// Fills inputs with components of the values at `count` sites of a list, starting at `from`. Lanes beyond repeat the
-/// last site. `components` pairs inputs with components.
+/// Fills inputs with components of the values at `count` sites of a list, starting at `from`. Further lanes repeat
+/// the last site. `components` pairs inputs with components.
 pub fn fill<const L: usize>(
     column: &Column<f64>,
     kind: &Value<f64>,
