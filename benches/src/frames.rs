@@ -10,9 +10,9 @@ use clebsch_oracle::physics::cases::generic_top;
 use std::hint::black_box;
 
 clebsch::model! {
-    /// Ten frames, each bound to the next by their axes, the last to the first.
+    /// Ten frames in a ring, each coupled to the next by their axes.
     model Frames {
-        /// second moments of each
+        /// second moments of each frame
         param J: Sym<3>;
         /// axes that a spring pulls together
         param a, b: Vec<3>;
@@ -47,7 +47,7 @@ clebsch::model! {
 
 // A separate model instead of the gallery's top, which would otherwise no longer be compiled into a single loop.
 clebsch::model! {
-    /// A frame whose axis is bound to one in space: a heavy top.
+    /// A frame whose axis is coupled to a fixed axis in space: a heavy top.
     model Frame {
         /// second moments
         param J: Sym<3>;

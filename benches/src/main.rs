@@ -50,7 +50,7 @@ fn main() {
     let Some(number) = processes::number() else {
         println!("{}; {}", machine(), env!("RUSTC_VERSION"));
         println!(
-            "{} processes, stack and heap shifted; in each {} blocks of {} steps each way, in the order generated, hand, \
+            "{} processes, stack and heap shifted; in each {} blocks of {} steps for each stepper, in the order generated, hand, \
              hand, generated; ns of computing per step, medians; ratios of processes: median, best, worst",
             processes::SHIFTS.len(),
             2 * blocks::QUADRUPLES,

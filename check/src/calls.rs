@@ -143,7 +143,7 @@ fn hat(v: &Matrix) -> Matrix {
     })
 }
 
-/// The imaginary part of a 4 x 4 matrix: a mean over the entries at which a quaternion has it.
+/// The imaginary part of a 4 x 4 matrix: the mean over the entries that contain it in the matrix of a quaternion.
 fn imaginary(m: &Matrix) -> Matrix {
     Matrix::from_entries(3, 1, |which, _| {
         let all = (0..16).map(|k| (k / 4, k % 4, LEFT[k / 4][k % 4]));

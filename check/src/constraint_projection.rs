@@ -1,5 +1,5 @@
 //! Moves a start that was typed with ten digits onto its constraints. Takes the numbers of a node; gives the nearest
-//! configuration that satisfies the constraints to rounding, and how far it is.
+//! configuration that satisfies the constraints to rounding, and its distance.
 
 use crate::displacement::{Frame, Velocity, moved};
 use crate::group::Group;
@@ -58,7 +58,7 @@ pub fn onto_constraints(
     let Some(worst) = worst.filter(|worst| ratio(worst) > 1.0) else {
         return Ok(None);
     };
-    // If a residual is not a number, the start is not near.
+    // If a residual is NaN, the start is not near.
     let is_near = |rate: &Rate| rate.value.abs() <= NEAR * rate.error / UNIT;
     if !start.iter().all(is_near) {
         return Ok(None);

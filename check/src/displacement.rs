@@ -18,7 +18,7 @@ pub enum Frame {
 /// The velocity of a configuration.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Velocity {
-    /// The angular velocity of what turns, by the components of its momentum.
+    /// The angular velocity of a rotating configuration, by the components of its momentum.
     pub turning: Option<(Vec<f64>, Frame)>,
     /// The rate of change of a field, of a linear map, or of the position of a rigid motion, by entries.
     pub moving: Option<Vec<f64>>,
@@ -40,7 +40,7 @@ impl Velocity {
     }
 }
 
-/// The numbers of a configuration after `time`; `None` where sizes do not fit.
+/// The numbers of a configuration after `time`; `None` if sizes do not fit.
 #[must_use]
 pub fn moved(role: &Role, numbers: &[f64], velocity: &Velocity, time: f64) -> Option<Vec<f64>> {
     let shifted = |from: &[f64]| -> Option<Vec<f64>> {
@@ -70,7 +70,7 @@ pub fn moved(role: &Role, numbers: &[f64], velocity: &Velocity, time: f64) -> Op
     }
 }
 
-/// A velocity by the components of the variation of its configuration; `None` where sizes do not fit.
+/// A velocity by the components of the variation of its configuration; `None` if sizes do not fit.
 #[must_use]
 pub fn along(role: &Role, numbers: &[f64], velocity: &Velocity) -> Option<Vec<f64>> {
     let (group, side) = match role {
@@ -97,7 +97,7 @@ pub fn along(role: &Role, numbers: &[f64], velocity: &Velocity) -> Option<Vec<f6
         };
     }
     if let Group::Motion(_) | Group::Linear(_) = group {
-        // The last column of a rigid motion moves as its velocity says, however it turns.
+        // The last column of a rigid motion changes with the linear velocity, whatever the rotation.
         let moving = velocity.moving.as_deref();
         let of = |i: usize| moving.map_or(0.0, |v| v.get(i).copied().unwrap_or(f64::NAN));
         let is_motion = matches!(group, Group::Motion(_));
@@ -119,7 +119,7 @@ pub fn along(role: &Role, numbers: &[f64], velocity: &Velocity) -> Option<Vec<f6
     each.collect()
 }
 
-/// An attitude that has turned; the position of a rigid motion is left as it is.
+/// An attitude after a rotation; the position of a rigid motion is unchanged.
 fn turned(group: Group, numbers: &[f64], velocity: &Velocity, time: f64) -> Option<Vec<f64>> {
     let Some((rates, frame)) = &velocity.turning else {
         return Some(numbers.to_vec());
@@ -128,7 +128,7 @@ fn turned(group: Group, numbers: &[f64], velocity: &Velocity, time: f64) -> Opti
         Group::Rotation(n) | Group::Motion(n) => n,
         Group::Linear(_) | Group::Quaternion => 4,
     };
-    // The first elements of the basis turn.
+    // The first elements of the basis are rotations.
     let basis = group.basis();
     let mut generator = vec![0.0; size * size];
     for (entries, rate) in basis.iter().zip(rates) {
@@ -166,7 +166,7 @@ fn product(a: &[f64], b: &[f64], n: usize) -> Vec<f64> {
     (0..n * n).map(entry).collect()
 }
 
-/// The exponential of a matrix: its series at a part of it, squared.
+/// The exponential of a matrix: the series for a fraction of it, squared repeatedly.
 fn exponential(x: &[f64], n: usize) -> Vec<f64> {
     const TERMS: u32 = 18;
     let size = x.iter().map(|e| e * e).sum::<f64>().sqrt();
@@ -215,7 +215,7 @@ mod tests {
         let third = about(vec![0.0, 0.0, half_pi / 2.0], Frame::Body);
         let found = moved(&role(Group::Rotation(3)), &identity, &third, 2.0).expect("it fits");
         assert!(off(&found, &quarter) < 1e-15, "{found:?}");
-        // A quarter turn about the third axis, then one about the first axis of the body, or of space.
+        // A quarter turn about the third axis, then a quarter turn about the first axis of the body, or of space.
         let first = |frame| about(vec![half_pi, 0.0, 0.0], frame);
         let body = moved(
             &role(Group::Rotation(3)),
@@ -238,7 +238,7 @@ mod tests {
         let found = moved(&role(Group::Quaternion), &one, &third, 2.0).expect("it fits");
         let half = std::f64::consts::FRAC_1_SQRT_2;
         assert!(off(&found, &[half, 0.0, 0.0, half]) < 1e-15, "{found:?}");
-        // A rigid motion of the plane turns, and its position moves in space.
+        // A rigid motion of the plane rotates, and its position moves in space.
         let motion = [1.0, 0.0, 2.0, 0.0, 1.0, 3.0, 0.0, 0.0, 1.0];
         let both = Velocity {
             turning: Some((vec![half_pi], Frame::Body)),

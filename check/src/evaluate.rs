@@ -18,7 +18,7 @@ pub struct Here {
     pub time: i32,
     /// The index along a label.
     pub index: i64,
-    /// Whether the index is the last node, where a segment is the last one.
+    /// Whether the index is the last node, whose segment is the last segment.
     pub at_last: bool,
     /// The node at which quantities are advected from the stored to the varied configuration.
     pub carried: Option<usize>,
@@ -36,7 +36,7 @@ impl Here {
         }
     }
 
-    /// At another node in time.
+    /// The same index at another time level.
     #[must_use]
     pub fn later(self, by: i32) -> Self {
         Self {
@@ -45,7 +45,7 @@ impl Here {
         }
     }
 
-    /// At another index.
+    /// The same time level at another index.
     #[must_use]
     pub fn beside(self, by: i64) -> Self {
         Self {

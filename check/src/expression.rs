@@ -14,13 +14,13 @@ pub struct Expression {
 /// Kinds of expressions.
 #[derive(Clone, Debug)]
 pub enum Kind {
-    /// A quotient of whole numbers.
+    /// A quotient of integers.
     Number(i128, i128),
     /// A double.
     Constant(f64),
     /// A name.
     Name(String),
-    /// An expression with a declared shape: the word, then rows and columns.
+    /// An expression with a declared shape: the keyword, then rows and columns.
     Shaped(Box<Expression>, String, [usize; 2]),
     /// A sum of signed terms: `true` marks a term that is subtracted.
     Sum(Vec<(bool, Expression)>),

@@ -66,7 +66,7 @@ pub fn square_root(x: &Number) -> Number {
     x.through([root, first, second], 1.0)
 }
 
-/// A power by a fraction; whole exponents by products.
+/// A fractional power; integer exponents use products.
 #[must_use]
 pub fn power(x: &Number, numerator: i128, denominator: i128) -> Number {
     match denominator {

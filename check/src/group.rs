@@ -1,4 +1,5 @@
-//! The groups: elements from numbers, a basis of the Lie algebra by which they are varied, inverses, components of momenta.
+//! The groups: elements from numbers, a basis of the Lie algebra for their variations, inverses, components of
+//! momenta.
 
 use crate::matrix::Matrix;
 use crate::number::Number;
@@ -12,7 +13,7 @@ pub enum Group {
     Rotation(usize),
     /// `GL<n>`.
     Linear(usize),
-    /// `SU<2>`, by 4 x 4 matrices of left multiplication.
+    /// `SU<2>`, as 4 x 4 matrices of left multiplication.
     Quaternion,
     /// `SE<n>`, by homogeneous matrices, n = 2 or 3.
     Motion(usize),
@@ -29,7 +30,7 @@ pub const MOST_OF_A_DEFECT: f64 = 256.0;
 /// A matrix by its entries that are not zero: row, column, value.
 pub type Entries = Vec<(usize, usize, f64)>;
 
-/// The matrix of left multiplication by a quaternion: for each entry which component, with its sign.
+/// The matrix of left multiplication by a quaternion: the component and the sign for each entry.
 pub const LEFT: [[(usize, f64); 4]; 4] = [
     [(0, 1.0), (1, -1.0), (2, -1.0), (3, -1.0)],
     [(1, 1.0), (0, 1.0), (3, -1.0), (2, 1.0)],
@@ -63,9 +64,9 @@ impl Group {
     }
 
     /// An element from the numbers of a state in row-major order, or from the four components of a quaternion. `unit`
-    /// is the relative error of one rounding. Entries of rotations have the error of 1, and entries of linear maps have
-    /// the error of the largest entry. A spatial velocity turns the coordinates of a motion, so each has the error of
-    /// the largest coordinate. A body velocity adds to each coordinate, so each has its own error.
+    /// is the relative error of one rounding. Entries of rotations have the error of 1, and entries of linear maps
+    /// have the error of the largest entry. A spatial velocity rotates the coordinates of a motion, so each has the
+    /// error of the largest coordinate. A body velocity adds to each coordinate, so each has its own error.
     #[must_use]
     pub fn element(self, side: Side, numbers: &[f64], unit: f64) -> Option<Matrix> {
         let n = self.rows();
@@ -108,7 +109,7 @@ impl Group {
             .then(|| Matrix::from_entries(n, n, |i, j| entry(i, j).unwrap_or_default()))
     }
 
-    /// By how much the columns of a rotation are not orthonormal, or a quaternion is not of length one; 0 of other groups.
+    /// The defect of a rotation, whose columns should be orthonormal, or of a unit quaternion; 0 for other groups.
     #[must_use]
     pub fn defect(self, numbers: &[f64]) -> f64 {
         let n = self.rows();

@@ -1,5 +1,5 @@
-//! Constraints: they are zero at both nodes, and their reactions act along their gradients. Takes the residuals of the
-//! momenta at a node; gives the part that no multiplier explains.
+//! Constraints: they vanish at both nodes, and their forces act along their gradients. Takes the residuals of the
+//! momenta at a node; gives the part that no multipliers explain.
 
 use crate::evaluate::Here;
 use crate::judge::Part;

@@ -57,7 +57,7 @@ impl Part {
         }
     }
 
-    /// Whether the equation tests anything: rounding is to be expected of its terms.
+    /// Whether the equation tests anything, that is, whether its terms can have rounding errors.
     #[must_use]
     pub fn tests(&self) -> bool {
         self.terms > 0.0 && !self.is_exact
@@ -90,7 +90,7 @@ impl Part {
 pub struct Judged {
     /// The equation whose residual is largest relative to its bound.
     pub worst: Option<Part>,
-    /// The number of equations that test something.
+    /// The number of equations that test anything.
     pub tested: u64,
     /// The largest residual of the tested equations, in roundings of its own terms.
     pub roundings: f64,
@@ -118,7 +118,7 @@ impl Judged {
         self
     }
 
-    /// Takes another equation if its residual is larger than the residuals so far.
+    /// Stores another equation if its residual is the largest so far.
     fn take(&mut self, part: Part) {
         let worse = |a: &Part, b: &Part| a.ratio().is_nan() || b.ratio() <= a.ratio();
         if !self.worst.as_ref().is_some_and(|w| worse(w, &part)) {
@@ -294,7 +294,7 @@ impl Judge {
         let numbers = numbers
             .filter(|n| n.len() == m.components)
             .ok_or_else(missing)?;
-        // Momenta of groups are kept in one frame and turned into the other.
+        // Momenta of groups are stored in one frame and transformed to the other.
         let error = match &q.role {
             Role::Element(..) => 4.0 * UNIT * size,
             _ => UNIT * size,
@@ -308,7 +308,7 @@ struct Momentum {
     error: f64,
 }
 
-/// Whether a number has so few bits that sums and products with its like are exact.
+/// Whether a number has so few bits that sums and products of such numbers are exact.
 fn is_short(x: f64) -> bool {
     let bits = x.to_bits() & ((1 << 52) - 1);
     x == 0.0 || 53 - bits.trailing_zeros().min(52) <= EXACT_BITS

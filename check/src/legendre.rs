@@ -2,9 +2,9 @@
 //! numbers of a node and velocities; gives `-D1 L` of a step that begins with these velocities, in the limit of small
 //! steps.
 //!
-//! The limit is the momentum to every order of the method: a step of size h from it begins with the given velocity. If
-//! the displacement is h times the velocity, `-D1 L` belongs to the mean velocity over that step, which differs by a
-//! term of order h.
+//! The limit is the momentum to every order of the method: a step of size h with this momentum starts with the given
+//! velocity. If the displacement is h times the velocity, `-D1 L` belongs to the mean velocity over the step, which
+//! differs by a term of order h.
 
 mod determined;
 mod step;
@@ -19,7 +19,7 @@ use crate::stated::{Role, Stated};
 use clebsch_core::syntax::ast::Model;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The angle by which the first displacement turns.
+/// The angle of the first rotation.
 const FIRST: f64 = 0.25;
 
 /// The largest error, relative to the momenta, with which a limit counts as converged.
@@ -44,7 +44,7 @@ pub enum NoMomentum {
     Unread(String),
     /// The derivative of the action of a step does not converge for small steps.
     NoLimit,
-    /// A velocity is not tangent to a constraint: its name, the site, and the rate at which it is left.
+    /// A velocity is not tangent to a constraint: its name, the site, and the rate of change of the constraint.
     Across(String, Option<usize>, f64),
     /// The momentum of the first configuration depends on the velocity of the second one.
     Coupled(String, String),
@@ -178,8 +178,8 @@ impl Legendre {
         })
     }
 
-    /// The largest step that is tried. It is a power of two, so that divisions are exact. Rotations turn by at most
-    /// `FIRST` in it. If a configuration moves or nothing turns, it is not larger than the step of the case, which
+    /// The largest step that is tried. It is a power of two, so that divisions are exact. Rotations in it are at most
+    /// `FIRST`. If a configuration moves or nothing rotates, it is not larger than the step of the case, which
     /// resolves the motion.
     fn longest(&self, velocities: &Velocities) -> f64 {
         let turning = velocities.values().filter_map(|v| v.turning.as_ref());

@@ -1,4 +1,4 @@
-//! Small matrices of numbers with derivatives, by rows. Sizes that do not fit give nothing.
+//! Small matrices of numbers with derivatives, by rows. The result is missing if sizes do not fit.
 
 use crate::number::Number;
 
@@ -70,7 +70,7 @@ impl Matrix {
         (self.rows, self.cols)
     }
 
-    /// Each entry by itself.
+    /// Applies a function to each entry.
     #[must_use]
     pub fn map(&self, of: impl Fn(&Number) -> Number) -> Self {
         Self {

@@ -27,7 +27,7 @@ pub struct Number {
     pub value: f64,
     /// A bound on its error, including the error of the data.
     pub error: f64,
-    /// Derivatives, in the order of the variables; those that are missing are zero.
+    /// Derivatives, in the order of the variables; missing derivatives are zero.
     pub slopes: Vec<Slope>,
 }
 
@@ -61,7 +61,7 @@ fn plus((a, ea): (f64, f64), (b, eb): (f64, f64)) -> (f64, f64) {
     (a + b, (ea + eb + of_sum(a, b)) * SLACK)
 }
 
-/// A quotient of two inexact numbers, and a bound on its error; infinite where the divisor may be zero.
+/// A quotient of two inexact numbers, and a bound on its error; infinite if the divisor may be zero.
 fn over((a, ea): (f64, f64), (b, eb): (f64, f64)) -> (f64, f64) {
     let quotient = a / b;
     let rounding = match b.abs() == 1.0 || a == 0.0 {
@@ -94,13 +94,13 @@ impl Number {
         }
     }
 
-    /// Whether it is the constant zero, exactly.
+    /// Whether it is exactly the constant zero.
     #[must_use]
     pub fn is_zero(&self) -> bool {
         self.value == 0.0 && self.error == 0.0 && self.slopes.is_empty()
     }
 
-    /// Adds a derivative by a variable that comes after those before.
+    /// Adds a derivative with respect to a variable that comes after all variables so far.
     #[must_use]
     pub fn with_slope(mut self, of: u32, value: f64, error: f64) -> Self {
         if value != 0.0 || error != 0.0 {

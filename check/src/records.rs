@@ -76,7 +76,7 @@ pub struct Quantity {
 pub struct End {
     /// Its name.
     pub name: String,
-    /// Parameters of its own, and whether each is a quaternion.
+    /// Its own parameters, and whether each is a quaternion.
     pub params: Vec<String>,
     /// Prescribed configurations.
     pub given: Vec<String>,

@@ -1,4 +1,5 @@
-//! The verdict on a run: which steps are judged, and what came out. Takes judgements of steps; gives one verdict, in words and numbers.
+//! The verdict on a run: which steps are judged, and the result. Takes judgements of steps; gives one verdict, as a
+//! sentence and as numbers.
 
 use crate::judge::{Judged, Part};
 use crate::sites::mixed;
@@ -26,8 +27,8 @@ pub enum StepSelection {
     None,
 }
 
-/// The steps that are judged, by their numbers: step n ends at node n. They depend only on the number of steps, so a
-/// resumed run judges the same steps.
+/// The judged steps, by number: step n ends at node n. They depend only on the number of steps, so a resumed run
+/// judges the same steps.
 #[derive(Clone, Debug)]
 pub struct Chosen {
     which: StepSelection,
@@ -71,7 +72,7 @@ pub struct Verdict {
     pub judged: u64,
     /// The worst equation, and the node at the end of its step.
     pub worst: Option<(u64, Part)>,
-    /// How many equations tested something.
+    /// The number of equations that tested anything.
     pub tested: u64,
     /// The largest residual of the tested equations, in roundings of its own terms.
     pub roundings: f64,
@@ -80,7 +81,7 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Takes the judgement of the step that ends at `node`.
+    /// Adds the judgement of the step that ends at `node`.
     pub fn take(&mut self, node: u64, judged: Result<Judged, String>) {
         match judged {
             Ok(judged) => {
@@ -150,7 +151,7 @@ impl Verdict {
         out
     }
 
-    /// A verdict that was kept as numbers; the first one where they are none.
+    /// A verdict from the numbers in which it was saved; an empty verdict if the numbers are invalid.
     #[must_use]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     pub fn of_numbers(numbers: &[f64]) -> Self {

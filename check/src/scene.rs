@@ -1,6 +1,6 @@
 //! The values of names on one edge: the stored numbers of both nodes, and variations about them. Takes the model and
 //! the numbers of a state; gives elements, velocities, fields, and advected quantities. The constraints of advected
-//! quantities carry them from the stored to the varied configuration.
+//! quantities advect them from the stored to the varied configuration.
 
 use crate::evaluate::{Evaluated, Here};
 use crate::expression::Expression;
@@ -129,7 +129,7 @@ impl<'a> Scene<'a> {
         self.offset(q, turns, value)
     }
 
-    /// The site of a quantity, and how often the ring was gone around to it.
+    /// The site of a quantity, and how many times its index has gone around the ring.
     fn site(&self, q: &Quantity, here: Here) -> Result<(Option<usize>, i64), String> {
         let Some((label, sites)) = q.at else {
             return Ok((None, 0));
@@ -275,7 +275,7 @@ impl<'a> Scene<'a> {
         product.map(Value::Known).ok_or_else(|| misread(&q.name))
     }
 
-    /// A parameter, as it was given.
+    /// A parameter, with the given value.
     fn parameter(&self, name: &str, site: Option<usize>, is_quaternion: bool) -> Evaluated {
         let found = self.setup.parameter(name, site);
         let (own, numbers) = found.ok_or_else(|| format!("`{name}` is missing"))?;

@@ -36,7 +36,7 @@ pub struct Setup {
     pub counts: Vec<usize>,
     /// Whether the chain is a ring.
     pub periodic: bool,
-    /// Which end condition holds at the first and at the last site.
+    /// The end conditions at the first and at the last site.
     pub ends: [usize; 2],
     parameters: HashMap<String, Numbers>,
     given: Vec<f64>,

@@ -1,5 +1,5 @@
 //! The sites that are judged in a step, and the indices at which a term involves them. On a short chain all sites are
-//! judged. On a long chain the ends and two windows elsewhere are judged.
+//! judged. On a long chain, the ends and two other windows are judged.
 
 use crate::scene::Varied;
 use crate::setup::Setup;
@@ -62,7 +62,7 @@ pub fn all_moving<'a>(stated: &'a Stated, setup: &Setup) -> Vec<Moving<'a>> {
     moving_at(stated, setup, |count| (0..count).collect())
 }
 
-/// The configurations at the sites that are chosen of each number of sites.
+/// The configurations at the sites that `chosen` returns for each number of sites.
 fn moving_at<'a>(
     stated: &'a Stated,
     setup: &Setup,

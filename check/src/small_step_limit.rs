@@ -13,7 +13,7 @@ const BOUND_OF_ROUNDING: f64 = 1.0 / 16.0;
 pub struct Block {
     /// The values.
     pub values: Vec<f64>,
-    /// Bounds on what rounding leaves of each.
+    /// Bounds on the rounding error of each value.
     pub rounding: Vec<f64>,
     /// Whether values are taken for zero that are within these bounds.
     pub snaps: bool,
@@ -26,7 +26,7 @@ pub struct Refined {
     pub values: Vec<f64>,
     /// An estimate of the largest of their errors.
     pub error: f64,
-    /// The largest bound on rounding where the estimate was made.
+    /// The largest bound on rounding at the steps of the estimate.
     pub rounding: f64,
 }
 
@@ -57,7 +57,8 @@ pub fn limit<E>(mut at: impl FnMut(u32) -> Result<Vec<Block>, E>) -> Result<Vec<
     Ok(best)
 }
 
-/// Adds the values of a step to the table of a block; true where the best estimate is as good as rounding allows.
+/// Adds the values of a step to the table of a block; returns true if the best estimate has reached the rounding
+/// level.
 fn extrapolated(block: Block, row: &mut Vec<Vec<f64>>, best: &mut Refined) -> bool {
     let rounding = block.rounding.iter().fold(0.0, |a, x| f64::max(a, *x));
     let mut is_good = false;
@@ -120,10 +121,10 @@ mod tests {
         let sine = of(|h| (2.0 * h).sin() / h);
         assert!((sine.values[0] - 2.0).abs() < 1e-14, "{sine:?}");
         assert_eq!(of(|h| 3.0 + h * h).values, [3.0]);
-        // Where there is none the estimate says so.
+        // If there is no limit, the estimate has a large error.
         let none = of(|h| 1.0 / h);
         assert!(none.error > 0.1, "{none:?}");
-        // Values that are not numbers are left aside.
+        // Values that are NaN are ignored.
         let root = of(|h| (0.3 - h * h).sqrt());
         assert!((root.values[0] - 0.3_f64.sqrt()).abs() < 1e-12, "{root:?}");
     }

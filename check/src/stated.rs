@@ -146,7 +146,7 @@ impl Stated {
             is_number,
             is_quaternion,
         };
-        // A parameter of several ends is one.
+        // A parameter of several ends is a single quantity.
         self.quantities.entry(name.to_owned()).or_insert(quantity);
     }
 

@@ -53,7 +53,7 @@ pub fn carried(
                     component: i + 1,
                     node: 1,
                     residual: there - here.value,
-                    // The stored value was made of an element and a value at the start.
+                    // The stored value was computed from an element and an initial value.
                     bound: here.error + 4.0 * UNIT * size,
                     terms: 0.0,
                     is_exact: true,

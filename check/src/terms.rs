@@ -1,14 +1,14 @@
-//! The terms of a Lagrangian: over which sites each is summed, and whether it lives on the edge or at one node in time.
-//! Takes an expression with substituted definitions; gives its terms.
+//! The terms of a Lagrangian: the sites over which each is summed, and whether it belongs to the edge or to one time
+//! level. Takes an expression with substituted definitions; gives its terms.
 
 use crate::expression::{Expression, Kind};
 use crate::stated::{Role, Sites, Stated};
 use crate::words::{flat, of_kind, quotient, with_sign, without_sign, words};
 
-/// The place of a term in time.
+/// The time level of a term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TermTime {
-    /// Nothing in it moves.
+    /// No quantity in it moves.
     Nowhere,
     /// At one node, this number of steps after the first node of the edge.
     Node(i32),
@@ -16,7 +16,7 @@ pub enum TermTime {
     Edge,
 }
 
-/// A letter along a label: at which sites it lives, and how far from the index.
+/// A quantity along a label: its sites, and its distance from the index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Letter {
     /// Its sites.
@@ -25,16 +25,16 @@ pub struct Letter {
     pub offset: i64,
 }
 
-/// A term, with a sign and factors of its own.
+/// A term, with its own sign and factors.
 #[derive(Clone, Debug)]
 pub struct Term {
     /// The term.
     pub value: Expression,
-    /// Its place in time.
+    /// Its time level.
     pub lives: TermTime,
     /// The label along which it is summed.
     pub label: Option<usize>,
-    /// Its letters along that label, including the letters of the term that it was split from.
+    /// Its quantities along that label, including the quantities of the term that it was split from.
     pub letters: Vec<Letter>,
     /// The sites that the statement sums over.
     pub over: Option<Sites>,
@@ -175,7 +175,8 @@ impl<'a> Terms<'a> {
     }
 
     /// Splits an expression into parts that are summed over sites separately. Numbers before a bracket are multiplied
-    /// in. Below the top, a bracket with a term of one neighbour stays whole. So does a difference in time.
+    /// in. Below the top level, a bracket with a term of one neighbour is not split. Differences in time are not
+    /// split either.
     fn by_sites(&self, e: &Expression, top: bool) -> Vec<Expression> {
         match &e.kind {
             Kind::Sum(terms) => {
@@ -232,7 +233,7 @@ impl<'a> Terms<'a> {
         first.is_some_and(|o| o != 0 && term.letters.iter().all(|l| l.offset == o))
     }
 
-    /// The summands, each of which lives on the edge or at one node: a common factor or divisor is multiplied in.
+    /// The summands, each of which belongs to the edge or to one node: a common factor or divisor is multiplied in.
     fn in_time(&self, e: &Expression) -> Vec<Expression> {
         match &e.kind {
             Kind::Sum(terms) => {
@@ -268,7 +269,8 @@ impl<'a> Terms<'a> {
         }
     }
 
-    /// A product of which one factor has several summands, multiplied out; one of several such factors stays one term.
+    /// A product with a factor of several summands, expanded; if there are several such factors, one of them is not
+    /// expanded.
     fn multiplied(
         &self,
         e: &Expression,
@@ -295,7 +297,7 @@ impl<'a> Terms<'a> {
         parts.collect()
     }
 
-    /// Whether something in it moves.
+    /// Whether a quantity in it moves.
     fn moves(&self, e: &Expression) -> bool {
         let term = self.whole(e.clone());
         term.is_ok_and(|term| !matches!(term.lives, TermTime::Nowhere))
@@ -348,7 +350,7 @@ impl<'a> Terms<'a> {
         out
     }
 
-    /// The level of an expression at one node, and its words without that.
+    /// The time level of an expression at one node, and its words at level zero.
     fn steps(&self, e: &Expression) -> Option<(i32, String)> {
         let term = self.whole(without_sign(e).1.clone()).ok()?;
         match term.lives {

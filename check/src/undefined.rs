@@ -1,4 +1,4 @@
-//! Finds where the action of a start is not a number. Takes the numbers of a node; gives the smallest part of the
+//! Finds the part of the initial action that is NaN. Takes the numbers of a node; gives the smallest part of the
 //! statement with an infinite or undefined value or derivative, its site and the values of its arguments.
 
 mod text;
@@ -17,15 +17,15 @@ use std::fmt;
 /// A part of the statement that is not finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Undefined {
-    /// The index along the label and the site, of a part that belongs to a site.
+    /// The label's index and the site, if the part belongs to a site.
     pub site: Option<(String, i64)>,
     /// The part, as text of the model.
     pub part: String,
     /// Its value, or `None` if only its derivative is infinite or undefined.
     pub value: Option<f64>,
-    /// Its arguments, each as a statement writes it, with its value.
+    /// Its arguments, each as text of the model, with its value.
     pub arguments: Vec<(String, f64)>,
-    /// The vector of which the part is the length, if it is a length.
+    /// The vector whose length is the part, if the part is a length.
     pub length_of: Option<String>,
 }
 
@@ -57,7 +57,8 @@ impl fmt::Display for Undefined {
 }
 
 impl Undefined {
-    /// The first such part, by sites, at a node from which nothing has moved. The observables of the setup are the initial values.
+    /// The first such part, in the order of sites, at a node with zero displacements. The observables of the setup
+    /// are the initial values.
     ///
     /// # Errors
     /// Why the statement cannot be evaluated.
@@ -71,7 +72,7 @@ impl Undefined {
         let moving = all_moving(&stated, setup);
         let by = varied(&moving);
         let scene = Scene::new(&stated, setup, [node, node], &by);
-        // A root of zero is a reason only where nothing is infinite.
+        // The root of zero is reported only if no part is infinite.
         let kinds: [FaultTest; 2] = [&|scene, e, here| fault(scene, e, here), &root_of_zero];
         for wanted in kinds {
             let mut first: Option<(i64, Undefined)> = None;
@@ -94,7 +95,7 @@ impl Undefined {
     }
 }
 
-/// Where a term is evaluated at the first node of a step.
+/// The position of a term at the first node of a step.
 fn at(term: &Term, index: i64) -> Here {
     let here = Here::at(index);
     match term.lives {
@@ -113,8 +114,8 @@ enum Fault {
 /// A test for the faults that a search looks for.
 type FaultTest<'w> = &'w dyn Fn(&Scene<'_>, &Expression, Here) -> Option<Fault>;
 
-/// The fault of an expression, if its value or derivative is not finite. Expressions that this crate does not evaluate,
-/// such as functionals of all sites, are left to the error of the step.
+/// The fault of an expression, if its value or derivative is not finite. If this crate does not evaluate an
+/// expression, such as a functional of all sites, the error of the step remains.
 fn fault(scene: &Scene<'_>, e: &Expression, here: Here) -> Option<Fault> {
     let Ok(Value::Known(value)) = scene.value(e, here) else {
         return None;
@@ -148,7 +149,7 @@ fn root_of_zero(scene: &Scene<'_>, e: &Expression, here: Here) -> Option<Fault> 
     (moves && zero).then_some(Fault::Slope)
 }
 
-/// The smallest part of an expression that has the wanted fault.
+/// The smallest part of an expression with the given fault.
 fn innermost(
     scene: &Scene<'_>,
     e: &Expression,

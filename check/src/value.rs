@@ -73,7 +73,7 @@ impl Value {
         }
     }
 
-    /// As a matrix of this size, where that fits.
+    /// As a matrix of this size, if it fits.
     #[must_use]
     pub fn sized(&self, rows: usize, cols: usize) -> Option<Matrix> {
         match self {
@@ -86,7 +86,7 @@ impl Value {
         }
     }
 
-    /// Each entry by itself; zeros stay zeros.
+    /// Applies a function to each entry; zeros stay zeros.
     #[must_use]
     pub fn map(&self, of: impl Fn(&Number) -> Number) -> Self {
         match self {
@@ -105,7 +105,7 @@ impl Value {
         self.map(|x| x.clone().negated())
     }
 
-    /// The sum, where sizes fit.
+    /// The sum, if sizes fit.
     #[must_use]
     pub fn plus(&self, other: &Self) -> Option<Self> {
         match (self, other) {
@@ -147,7 +147,7 @@ impl Value {
         }
     }
 
-    /// The product, where sizes fit.
+    /// The product, if sizes fit.
     #[must_use]
     pub fn times(&self, other: &Self) -> Option<Self> {
         match (self, other) {
@@ -210,7 +210,7 @@ impl Sparse {
                     entries.push((*i, *l, x.times(y)));
                 }
             }
-            // The columns of the other's identity.
+            // The entries times the identity of the other operand.
             if other.form == Open::Square && !other.diagonal.is_zero() {
                 entries.push((*i, *j, x.times(&other.diagonal)));
             }
@@ -242,7 +242,7 @@ impl Sparse {
         }))
     }
 
-    /// The sum of the diagonal, where no size is needed for it.
+    /// The trace, if it needs no size.
     #[must_use]
     pub fn trace(&self) -> Option<Number> {
         let own = self.entries.iter().filter(|(i, j, _)| i == j);

@@ -28,7 +28,7 @@ pub fn stored(own: &Numbers, numbers: &[f64], is_quaternion: bool) -> Value {
     })
 }
 
-/// An element with its variations: `R (Id + xi)` or `(Id + xi) R`, by the basis of the Lie algebra.
+/// An element with its variations: `R (Id + xi)` or `(Id + xi) R`, for the basis of the Lie algebra.
 pub fn varied_element(r: &Matrix, group: Group, side: Side, first: u32) -> Matrix {
     let mut out = r.clone();
     for (which, direction) in group.basis().iter().enumerate() {
@@ -61,7 +61,7 @@ fn moved(r: &Matrix, direction: &Entries, side: Side) -> Matrix {
     out
 }
 
-/// A field from its numbers, each a variable.
+/// A field from its numbers, each of which is a variable.
 pub fn field(layout: Layout, own: &Numbers, numbers: &[f64], first: Option<u32>) -> Option<Value> {
     let entry = |k: usize, sign: f64| {
         let x = numbers.get(k).copied().unwrap_or(f64::NAN);

@@ -1,4 +1,4 @@
-//! Expressions taken apart and put together: signs, factors, quotients, and their words, by which they are compared.
+//! Takes expressions apart and assembles them: signs, factors, quotients, and the words by which they are compared.
 
 use crate::expression::{Expression, Kind};
 
@@ -41,7 +41,7 @@ pub fn without_sign(e: &Expression) -> (bool, &Expression) {
     }
 }
 
-/// The words of an expression, without steps in time.
+/// The words of an expression, without shifts in time.
 pub fn words(e: &Expression) -> String {
     let head = match &e.kind {
         Kind::Call(f, list) if f == "next" && list.len() == 1 => {

@@ -1,8 +1,8 @@
 //! The commands of `clebsch`: list, show and copy models, check, run, sweep and compare cases, derive equations.
 //!
-//! The binary only calls [`run_process`]; everything else takes its arguments, its gallery and its
-//! output streams from outside, so that tests run the very same code on models of their own.
-//! Results go to standard output, progress and messages to standard error. Exit codes: [`failure`].
+//! The binary only calls [`run_process`]; everything else takes its arguments, its gallery and its output streams
+//! from its caller, so that tests run the same code on their own models. Results go to standard output, progress and
+//! messages to standard error. Exit codes: [`failure`].
 
 pub mod arguments;
 pub mod case_file;
@@ -39,8 +39,8 @@ pub fn run_process() -> ExitCode {
     run_process_on(&Gallery::shipped())
 }
 
-/// Runs the process's own arguments on the models of `gallery`: all that the `main` of a command line
-/// of one's own needs to call.
+/// Runs the process's own arguments on the models of `gallery`; the `main` of your own command line only needs to
+/// call this.
 #[must_use]
 pub fn run_process_on(gallery: &Gallery) -> ExitCode {
     ExitCode::from(on_streams_of_process(std::env::args_os(), gallery))
@@ -141,12 +141,12 @@ fn dispatch(
             derive::derive(gallery, matches, streams)?;
             Ok(DONE)
         }
-        // clap requires a subcommand and rejects all others.
+        // clap requires a subcommand and rejects unknown ones.
         _ => Err(Failure::Usage("no such command".to_owned())),
     }
 }
 
-/// Help and version are results; every other answer of clap is a usage message.
+/// Help and version are results; clap's other outputs are usage messages.
 fn answer_clap(error: &clap::Error, streams: &mut Streams<'_>) -> u8 {
     let message = error.render();
     if error.use_stderr() {

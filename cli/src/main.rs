@@ -1,5 +1,5 @@
-//! The program `clebsch`: runs its arguments on the shipped models and exits with their code.
-//! Everything it does is in the library part of this crate, so that it can be tested.
+//! The program `clebsch`: runs its arguments on the shipped models and exits with their code. The library part of
+//! this crate contains all of its code, so that it can be tested.
 
 use std::process::ExitCode;
 

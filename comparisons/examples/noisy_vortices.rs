@@ -158,8 +158,8 @@ fn run(boxes: usize, spectral: &mut Spectral, mut now: Fields) -> Left {
 }
 
 fn row(side: usize, of: Depth, seeds: u64) {
-    // Wave numbers are kept up to a third of the number of boxes. This covers almost all waves that the particles resolve, up to
-    // half the number of particles along a side.
+    // Wave numbers up to a third of the number of boxes are kept. This covers almost all waves that the particles
+    // resolve, up to half the number of particles along a side.
     let boxes = (4 * side / 3).next_power_of_two();
     let made = || {
         let smoothing = of.smoothing(1.0 / side as f64);

@@ -7,9 +7,9 @@ use ::clebsch::emitted::*;
 /// The parameters of [`BodyInQuadraticField`](struct@BodyInQuadraticField).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyInQuadraticFieldParameters<T = f64> {
-    /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
+    /// `J`: Poinsot (second-moment) matrix; a matrix of size 3 x 3, symmetric.
     pub J: SMatrix<T, 3, 3>,
-    /// `K`: matrix of the field, body frame: potential energy ½ Γ·KΓ; a 3 x 3 matrix, symmetric.
+    /// `K`: matrix of the field, body frame: potential energy ½ Γ·KΓ; a matrix of size 3 x 3, symmetric.
     pub K: SMatrix<T, 3, 3>,
 }
 /// Rigid body about a fixed point in a quadratic field.

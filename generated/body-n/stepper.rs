@@ -7,7 +7,7 @@ use ::clebsch::emitted::*;
 /// The parameters of [`BodyN`](struct@BodyN).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyNParameters<const N: usize, T = f64> {
-    /// `C`: second moments of mass; any matrix with positive determinant; a n x n matrix.
+    /// `C`: second moments of mass; any matrix with positive determinant; a matrix of size n x n.
     pub C: SMatrix<T, N, N>,
 }
 /// Free rigid body in n dimensions.

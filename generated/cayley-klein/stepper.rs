@@ -7,7 +7,7 @@ use ::clebsch::emitted::*;
 /// The parameters of [`CayleyKlein`](struct@CayleyKlein).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CayleyKleinParameters<T = f64> {
-    /// `I`: principal moments of inertia; a 3 x 3 matrix, diagonal.
+    /// `I`: principal moments of inertia; a matrix of size 3 x 3, diagonal.
     pub I: SMatrix<T, 3, 3>,
     /// `c`: choice of discretisation: 0 for Moser-Veselov, 1 for the thesis; a number.
     pub c: T,

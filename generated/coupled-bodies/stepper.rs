@@ -7,9 +7,9 @@ use ::clebsch::emitted::*;
 /// The parameters of [`CoupledBodies`](struct@CoupledBodies).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoupledBodiesParameters<T = f64> {
-    /// `J1`: Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames; a 3 x 3 matrix, symmetric.
+    /// `J1`: Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames; a matrix of size 3 x 3, symmetric.
     pub J1: SMatrix<T, 3, 3>,
-    /// `J2`: Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames; a 3 x 3 matrix, symmetric.
+    /// `J2`: Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ, body frames; a matrix of size 3 x 3, symmetric.
     pub J2: SMatrix<T, 3, 3>,
     /// `d1`: vectors from the joint to the centres of mass, body frames; a vector of 3 components.
     pub d1: SVector<T, 3>,

@@ -7,9 +7,9 @@ use ::clebsch::emitted::*;
 /// The parameters of [`EllipsoidSpatial`](struct@EllipsoidSpatial).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EllipsoidSpatialParameters<const N: usize, T = f64> {
-    /// `C0`: metric of space; a n x n matrix, symmetric.
+    /// `C0`: metric of space; a matrix of size n x n, symmetric.
     pub C0: SMatrix<T, N, N>,
-    /// `I0`: second moments of mass, reference configuration; a n x n matrix, symmetric.
+    /// `I0`: second moments of mass, reference configuration; a matrix of size n x n, symmetric.
     pub I0: SMatrix<T, N, N>,
     /// `a`: stiffness against changes of length, area and volume; a number.
     pub a: T,

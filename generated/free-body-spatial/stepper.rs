@@ -238,7 +238,7 @@ impl<T: Real> FreeBodySpatial<T> {
         let m = state.spatial_momentum().0;
         m.dot(&(J * (J * m)))
     }
-    /// The discrete energy of the edge between two consecutive states, `-tr(ω_k J_k)/h² + tr(J_k)/h²`: constant, since apart from constants, it is the trace of the left factor times the velocity, which the eigenvalues of the Lax matrix determine.
+    /// The discrete energy of the edge between two consecutive states, `-tr(ω_k J_k)/h² + tr(J_k)/h²`: constant, since up to constants it is the trace of the left factor times the velocity, which the eigenvalues of the Lax matrix determine.
     pub fn discrete_energy(
         &self,
         h: T,

@@ -7,7 +7,7 @@ use ::clebsch::emitted::*;
 /// The parameters of [`FreeBody`](struct@FreeBody).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeBodyParameters<T = f64> {
-    /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
+    /// `J`: Poinsot (second-moment) matrix; a matrix of size 3 x 3, symmetric.
     pub J: SMatrix<T, 3, 3>,
 }
 /// Free rigid body, body representation.
@@ -178,7 +178,7 @@ impl<T: Real> FreeBody<T> {
         let μ = state.body_momentum().0;
         μ.dot(&(J * (J * μ)))
     }
-    /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h²`: constant, since apart from constants, it is the trace of the left factor times the velocity, which the eigenvalues of the Lax matrix determine.
+    /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h²`: constant, since up to constants it is the trace of the left factor times the velocity, which the eigenvalues of the Lax matrix determine.
     pub fn discrete_energy(
         &self,
         h: T,

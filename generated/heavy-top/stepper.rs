@@ -7,7 +7,7 @@ use ::clebsch::emitted::*;
 /// The parameters of [`HeavyTop`](struct@HeavyTop).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeavyTopParameters<T = f64> {
-    /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
+    /// `J`: Poinsot (second-moment) matrix; a matrix of size 3 x 3, symmetric.
     pub J: SMatrix<T, 3, 3>,
     /// `gU`: weight times the vector from support to centre of mass, body frame; a vector of 3 components.
     pub gU: SVector<T, 3>,

@@ -7,11 +7,11 @@ use ::clebsch::emitted::*;
 /// The parameters of [`KirchhoffBody`](struct@KirchhoffBody).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KirchhoffBodyParameters<T = f64> {
-    /// `J`: Poinsot matrix of the rotational inertia plus the added inertia of the fluid, body frame; a 3 x 3 matrix, symmetric.
+    /// `J`: Poinsot matrix of the rotational inertia plus the added inertia of the fluid, body frame; a matrix of size 3 x 3, symmetric.
     pub J: SMatrix<T, 3, 3>,
-    /// `M`: mass plus added mass, body frame; a 3 x 3 matrix, symmetric.
+    /// `M`: mass plus added mass, body frame; a matrix of size 3 x 3, symmetric.
     pub M: SMatrix<T, 3, 3>,
-    /// `D`: coupling of angular and linear velocity, body frame; a 3 x 3 matrix.
+    /// `D`: coupling of angular and linear velocity, body frame; a matrix of size 3 x 3.
     pub D: SMatrix<T, 3, 3>,
     /// `b`: (moment of weight minus buoyancy, net weight), body frame; a vector of 4 components.
     pub b: SVector<T, 4>,

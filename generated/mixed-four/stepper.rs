@@ -7,13 +7,13 @@ use ::clebsch::emitted::*;
 /// The parameters of [`MixedFour`](struct@MixedFour).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixedFourParameters<T = f64> {
-    /// `J`: second moments of mass of the first body about its fixed point, body frame; a 3 x 3 matrix, symmetric.
+    /// `J`: second moments of mass of the first body about its fixed point, body frame; a matrix of size 3 x 3, symmetric.
     pub J: SMatrix<T, 3, 3>,
-    /// `A`: second moments of mass of the free body about its reference point, body frame; a 3 x 3 matrix, symmetric.
+    /// `A`: second moments of mass of the free body about its reference point, body frame; a matrix of size 3 x 3, symmetric.
     pub A: SMatrix<T, 3, 3>,
     /// `M`: mass of the free body; a number.
     pub M: T,
-    /// `I`: principal moments of inertia of the second body; a 3 x 3 matrix, diagonal.
+    /// `I`: principal moments of inertia of the second body; a matrix of size 3 x 3, diagonal.
     pub I: SMatrix<T, 3, 3>,
     /// `m`: mass of the point mass; a number.
     pub m: T,

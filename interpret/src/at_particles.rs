@@ -31,8 +31,8 @@ pub struct AtParticles {
     /// The value at each particle. If the functional lives on a grid, the splines of its deposit interpolate it.
     pub values: Vec<f64>,
     /// The derivatives along each direction, one particle after the other, if the functional lives on a grid. For the
-    /// functional in the potential they are the force per unit mass, as the pull-back of the deposit gives it, up to
-    /// rounding.
+    /// functional in the potential, they are the force per unit mass: the pull-back of the deposit gives the same
+    /// numbers up to rounding.
     pub slopes: Option<Vec<f64>>,
 }
 

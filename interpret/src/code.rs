@@ -1,4 +1,4 @@
-//! The operations of a function, read once: a tree over numbered places. Execution needs no look-up of names.
+//! The operations of a function, parsed once into a tree over numbered places. Execution needs no look-up of names.
 
 mod apply;
 mod map_scalar;
@@ -95,7 +95,7 @@ pub enum Operator {
     AtLeast,
 }
 
-/// A function that is called, not inlined at its calls.
+/// A function that is called, not inlined.
 #[derive(Debug)]
 pub struct Routine<T: Real> {
     /// The number of places that it needs.
@@ -109,7 +109,7 @@ pub struct Routine<T: Real> {
 pub enum Pattern<T: Real> {
     /// Anything.
     Any,
-    /// Anything, under a name.
+    /// Any value, bound to a place.
     Place(usize),
     /// A tuple.
     List(Vec<Pattern<T>>),
@@ -140,13 +140,13 @@ pub struct Arm<T: Real> {
 
 /// A loop: Newton's method, or one over sites.
 pub trait Iterate<T: Real>: std::fmt::Debug + Send + Sync {
-    /// To the solution, or the last site.
+    /// Iterates to the solution, or to the last site.
     ///
     /// # Errors
     /// [`Exit`] with the error of the step.
     fn run(&self, places: &mut Places<T>) -> Result<Value<T>, Exit<T>>;
 
-    /// The loop as a part of a recording, if it can be one.
+    /// The loop as a part of a recording, if it can be recorded.
     fn recorded(self: Arc<Self>) -> Option<Arc<dyn Iterate<Traced>>> {
         None
     }
@@ -231,7 +231,7 @@ pub fn unfit<T: Real, V>(value: Option<V>) -> Result<V, Exit<T>> {
 }
 
 impl<T: Real> Pattern<T> {
-    /// Whether a value is met.
+    /// Whether a value matches.
     pub(crate) fn meets(&self, value: &Value<T>) -> bool {
         match self {
             Pattern::Any | Pattern::Place(_) => true,
@@ -266,7 +266,7 @@ impl<T: Real> Pattern<T> {
         }
     }
 
-    /// Binds a value that is met.
+    /// Binds a value that matches.
     fn bind(&self, value: Value<T>, places: &mut Places<T>) {
         match (self, value) {
             (Pattern::Place(at), value) => {

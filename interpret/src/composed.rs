@@ -11,14 +11,14 @@ use clebsch::integrate::{Reversible, Stepper};
 use clebsch::saved::{Saved, Words};
 use clebsch::{StartError, StepError};
 
-/// A model with its parameters.
+/// A model and its parameters.
 #[derive(Clone, Debug)]
 pub struct Model {
     pub opened: &'static Opened,
     pub model: Value<f64>,
     /// Any state, as a template for the numbers of a state.
     pub state: Value<f64>,
-    /// The parameters as given, and the step size of the whole composition.
+    /// The given parameters, and the step size of the whole composition.
     pub fixed: Fixed,
 }
 

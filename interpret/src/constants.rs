@@ -147,7 +147,7 @@ impl<'a> Constants<'a> {
         }
     }
 
-    /// `Kind::X.field(name, [rows, cols], doc)`, or `spelt` with the name in ASCII where that is another.
+    /// `Kind::X.field(name, [rows, cols], doc)`, or `spelt` with the ASCII name if it differs.
     fn field(&self, e: &syn::Expr) -> Option<Field> {
         let syn::Expr::MethodCall(call) = e else {
             return None;
@@ -271,7 +271,7 @@ fn kind(e: &syn::Expr) -> Option<Kind> {
     })
 }
 
-/// A list for as long as the process, see [`text`].
+/// A list that lives as long as the process, see [`text`].
 fn kept<V>(list: Vec<V>) -> &'static [V] {
     Box::leak(list.into_boxed_slice())
 }

@@ -40,7 +40,7 @@ pub enum Refused {
     Method {
         /// The name of the model.
         model: String,
-        /// How it is solved.
+        /// The method that solves its steps.
         method: String,
     },
     /// The model does not admit the requested size.
@@ -64,7 +64,7 @@ pub enum Refused {
     },
     /// A model with functionals of all sites that cannot run with loops over sites.
     Form {
-        /// Why, in words.
+        /// Why, as a sentence.
         why: String,
     },
     /// More sites than a model without loops over sites supports.
@@ -83,7 +83,7 @@ pub enum Refused {
         /// The largest number of sites.
         most: usize,
     },
-    /// An operation that is not known here.
+    /// An operation that the interpreter does not know.
     Construct(String),
 }
 

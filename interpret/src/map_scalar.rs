@@ -1,4 +1,4 @@
-//! A value over another scalar: every number replaced by its image, always in the same order.
+//! Maps a value to another scalar: replaces every number by its image, always in the same order.
 
 use crate::value::{Struct, Value};
 use clebsch::emitted::Edge;
@@ -52,7 +52,7 @@ pub fn map_scalar<T: Real, U: Real>(
         Value::Domain(domain) => Value::Domain(*domain),
         Value::Function(function) => Value::Function(*function),
         Value::Call(call) => Value::Call(call),
-        // A search is in plain numbers, whatever the scalar around it.
+        // A search uses plain numbers, whatever the scalar.
         Value::Search(search) => Value::Search(search.clone()),
         Value::Struct(s) => Value::Struct(Struct {
             layout: s.layout.clone(),
@@ -74,7 +74,8 @@ fn all<T: Real, U: Real>(
     Some(out)
 }
 
-/// The numbers of a value, in the order of [`map_scalar`]. Nothing for what it does not change either.
+/// The numbers of a value, in the order of [`map_scalar`]. Also appends nothing for data that [`map_scalar`] does not
+/// change.
 pub fn numbers<T: Real>(value: &Value<T>, out: &mut Vec<T>) -> Option<()> {
     match value {
         Value::Real(x) => out.push(*x),
@@ -125,7 +126,7 @@ pub fn fill(value: &mut Value<f64>, from: &mut impl Iterator<Item = f64>) {
     }
 }
 
-/// Whether two values agree in everything but their numbers: in kinds, sizes, counts and names.
+/// Whether two values agree except for their numbers: in kinds, sizes, counts and names.
 pub fn alike<T: Real>(a: &Value<T>, b: &Value<T>) -> bool {
     let lists = |a: &[Value<T>], b: &[Value<T>]| {
         a.len() == b.len() && a.iter().zip(b).all(|(a, b)| alike(a, b))

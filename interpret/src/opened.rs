@@ -1,4 +1,4 @@
-//! A model read from its text: the operations of everything that a trajectory asks for.
+//! A model read from its text: the operations of all functions that a trajectory calls.
 
 use crate::Refused;
 use crate::code::{Places, Routine};
@@ -49,15 +49,15 @@ pub struct Functions {
     pub new: Routine<f64>,
     /// From initial values to the state.
     pub begin: Routine<f64>,
-    /// The same, with momenta projected on the constraints, if there are any.
+    /// The same, with momenta projected on the constraints, if the model has constraints.
     pub projecting: Option<Routine<f64>>,
     /// The model with another solver, if you can choose one.
     pub with_solver: Option<Routine<f64>>,
-    /// The workspace of a state, without trying a step.
+    /// The workspace of a state, without a trial step.
     pub prepared: Routine<f64>,
-    /// The workspace compensated, of a free body.
+    /// The workspace of a free body with compensated steps.
     pub compensated: Option<Routine<f64>>,
-    /// One step that does not keep the state before it, if only the final state is needed.
+    /// A step that does not keep the previous state, for runs that need only the final state.
     pub attempt: Option<Routine<f64>>,
     /// One step.
     pub step: Routine<f64>,
@@ -76,7 +76,7 @@ pub struct Functions {
 pub struct Opened {
     /// The values of its sizes, as declared.
     pub sizes: Vec<usize>,
-    /// The card; its functions are put in by who opens it.
+    /// The card; the caller that opens the model sets its functions.
     pub card: Card,
     /// The functions.
     pub functions: Functions,
@@ -86,7 +86,7 @@ pub struct Opened {
     pub initial: (Arc<Layout>, Vec<InitialForm>),
     /// Quantities whose signs must agree along a chain, if the model is an expanded chain.
     pub signs: Vec<Agreement>,
-    /// The number of the name of a state's node.
+    /// The index of the field name that counts the nodes of a state.
     pub node: u32,
     /// How many places the functions need.
     pub places: usize,
@@ -94,7 +94,7 @@ pub struct Opened {
     pub recordable: OnceLock<Option<Recordable>>,
 }
 
-/// A text derived, and the program that is emitted for it: the same for all sizes.
+/// A derived text and its emitted program, which is the same for all sizes.
 pub struct Text {
     /// The derivation.
     pub derivation: Derivation,
@@ -143,7 +143,7 @@ impl Opened {
         let card = constants.card()?;
         let mut shared = Shared::new(program, values.clone());
         let functions = functions(&mut shared, &name).map_err(|refused| match refused {
-            // An unsupported construct belongs to an unsupported method.
+            // An unsupported construct in Newton's method means an unsupported method.
             Refused::Construct(what) if has_newton(d) => Refused::Method {
                 model: name.clone(),
                 method: format!("{} (at `{what}`)", card.solver),

@@ -34,7 +34,7 @@ impl Packed {
         Some(packed)
     }
 
-    /// Becomes another state of the same model; false if that has more or fewer numbers.
+    /// Sets the numbers and the node; returns false if the count of numbers differs.
     pub fn set(&mut self, all: &[f64], node: u64) -> bool {
         let own = self.numbers.get_mut(..self.count);
         let Some(own) = own.filter(|own| own.len() == all.len()) else {
@@ -55,7 +55,7 @@ impl Packed {
         self.numbers.get(..self.count).unwrap_or_default()
     }
 
-    /// Puts them into a state of the same model.
+    /// Writes the numbers into a state of the same model.
     pub fn put(&self, state: &mut Value<f64>) {
         fill(state, &mut self.numbers().iter().copied());
         if let Value::Struct(s) = state {

@@ -15,7 +15,7 @@ pub struct Program {
     pub variants: BTreeMap<String, Vec<String>>,
     /// Functions by type and name.
     pub functions: BTreeMap<(String, String), syn::ImplItemFn>,
-    /// Functions that the model is given: the path of each by its name in the model.
+    /// The user's functions of the model: the path of each by its name in the model.
     pub given: BTreeMap<String, String>,
     /// Types that have a name of their own.
     pub aliases: BTreeMap<String, syn::Type>,

@@ -32,7 +32,7 @@ impl Parse for Type {
     }
 }
 
-/// How a forced step is made.
+/// The functions of a body with external forces.
 #[derive(Default)]
 struct Forced {
     /// The fields that determine the factor of a trajectory.
@@ -80,7 +80,7 @@ impl Parse for ObservableShape {
 }
 
 impl ObservableShape {
-    /// Its numbers, of the model, a state, the step and the workspace.
+    /// The expression for its numbers, from the model, a state, the step and the workspace.
     fn numbers(&self) -> TokenStream {
         let path: Vec<String> = self.path.iter().map(ToString::to_string).collect();
         let path: Vec<&str> = path.iter().map(String::as_str).collect();
@@ -104,7 +104,7 @@ impl ObservableShape {
     }
 }
 
-/// How a configuration starts.
+/// How the initial value of a configuration is given.
 struct Start {
     element: Ident,
     momentum: Ident,

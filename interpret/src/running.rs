@@ -1,4 +1,4 @@
-//! Trajectories of models that were read from files: the same calls in the same order as emitted ones.
+//! Trajectories of models from files: the same calls in the same order as in emitted code.
 
 use crate::code::{Exit, Places, Routine};
 use crate::composed::Model;
@@ -16,7 +16,7 @@ use clebsch::{ParameterError, StartError, StepError, validate};
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// Runs a function to its value; what cannot be is an error of the step.
+/// Runs a function; a missing value is an error of the step.
 pub fn run(routine: &Routine<f64>, places: &mut Places<f64>) -> Result<Value<f64>, Failure> {
     let value = match routine.body.run(places) {
         Ok(value) => value,
@@ -90,7 +90,7 @@ impl Opened {
         let steps = self
             .ways(card, &mut places, settings, &fixed)
             .map_err(|e| e.beside(kinetic))?;
-        // A look at one step needs no tapes.
+        // A probe of single steps needs no tapes.
         let recordable = self.recordable().filter(|_| !settings.inquiry);
         let own_step = !matches!(steps, Steps::Composed(_));
         let recorded = recordable.map(|all| Recorded::new(all, fixed, own_step));
@@ -110,7 +110,7 @@ impl Opened {
         self.recordable.get_or_init(recordable).as_ref()
     }
 
-    /// Chooses how to make steps with these settings.
+    /// Selects how steps are taken, from these settings.
     fn ways(
         &'static self,
         card: &'static Card,
@@ -171,8 +171,7 @@ impl Opened {
         }
     }
 
-    /// The workspace of the state, put where steps expect it; the first step is tried on a copy, unless steps are only
-    /// looked at.
+    /// Prepares the workspace of the state; the first step is tried on a copy, except in a probe of single steps.
     pub fn prepare(
         &self,
         places: &mut Places<f64>,
@@ -225,7 +224,7 @@ fn collected(
     }))
 }
 
-/// A value of a field, read as its type asks.
+/// The value of a field, in the form that its type needs.
 fn one(read: InitialForm, field: &'static Field, list: &[f64]) -> Result<Value<f64>, OpenError> {
     use clebsch::groups::{invertible_map, nearest_rotation};
     use clebsch::linalg::Dense;
@@ -278,13 +277,13 @@ fn one(read: InitialForm, field: &'static Field, list: &[f64]) -> Result<Value<f
     })
 }
 
-/// How steps are made.
+/// The method that takes steps.
 enum Steps {
-    /// By the model's own step.
+    /// The model's own step.
     Plain,
-    /// By the model's own step, with modified moments.
+    /// The model's own step, with modified moments.
     Modified,
-    /// By several of them.
+    /// A composition of the model's own steps.
     Composed(Box<(Model, Composition<Model>)>),
 }
 
@@ -295,7 +294,7 @@ struct TrajectoryStorage {
 }
 
 impl TrajectoryStorage {
-    /// The places, with what the tapes computed.
+    /// The places, updated from the tapes.
     fn places(&mut self) -> &mut Places<f64> {
         if let Some(recorded) = &mut self.recorded {
             recorded.write(&mut self.places);
@@ -317,7 +316,7 @@ impl TrajectoryStorage {
         newer.or_else(|| self.places.get(at::STATE).and_then(Packed::of))
     }
 
-    /// Puts the numbers of a state there.
+    /// Sets the numbers of a state.
     fn put(&mut self, state: &Packed) {
         if let Some(recorded) = &mut self.recorded
             && recorded.put(state, &self.places)
@@ -370,7 +369,8 @@ impl Opened {
 }
 
 impl Running {
-    /// One step. After each of the model's own steps, calls `seen` with its share of the whole step and the state.
+    /// One step. After each of the model's own steps, calls `seen` with this step as a fraction of the whole step,
+    /// and with the state.
     fn made(&mut self, seen: &mut dyn FnMut(f64, &mut TrajectoryStorage)) -> Result<(), StepError> {
         let held = self.held.get_mut();
         match &mut self.steps {

@@ -6,7 +6,8 @@ use crate::value::Value;
 use clebsch::saved::{Saved, Words, sites};
 use std::sync::Arc;
 
-/// Parts that change. The kind of a value does not, but for what may be there or not.
+/// Saves the changing parts of a value. The kind of a value does not change, except that an optional value may appear
+/// or disappear.
 impl Saved for Value<f64> {
     fn words(&mut self, words: &mut Words) {
         words.same(kind(self));
@@ -35,7 +36,7 @@ impl Saved for Value<f64> {
             Value::Sites(column) => column.words(words),
             Value::Attitude(x) => x.words(words),
             Value::Search(held) => held.words(words),
-            // As given with the trajectory, or nothing at all.
+            // Constant along a trajectory, or empty.
             Value::Unit
             | Value::None
             | Value::Zeros
@@ -47,12 +48,12 @@ impl Saved for Value<f64> {
             | Value::Call(_) => {}
             // The state that a stamp refers to is restored completely.
             Value::Stamp(_) => {}
-            // Begun anew in every step.
+            // Restarted in every step.
             Value::Multipliers(_) | Value::Band(_) => {}
-            // Made of the parameters.
+            // Computed from the parameters.
             Value::Extent(_) | Value::FunctionalSetting(_) => {}
             Value::Functional(held) => held.words(words),
-            // No state or workspace holds these.
+            // These never occur in a state or a workspace.
             Value::Turned(_)
             | Value::Warning(_)
             | Value::Part(..)
@@ -62,7 +63,7 @@ impl Saved for Value<f64> {
     }
 }
 
-/// A number for each kind of value whose words differ.
+/// A number for each kind of value that is saved in its own format.
 fn kind(value: &Value<f64>) -> u64 {
     match value {
         Value::Unit | Value::None => 0,

@@ -1,4 +1,4 @@
-//! Signs of unit quaternions of an expanded chain. They are made to agree in the same way as in a chain with loops over
+//! Signs of unit quaternions of an expanded chain. Signs are aligned in the same way as in a chain with loops over
 //! sites. Takes the initial values in the order of a card; changes the signs of some.
 
 use clebsch::card::Card;

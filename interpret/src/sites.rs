@@ -17,17 +17,17 @@ pub enum Column<T: Real> {
     Arrays([usize; 2], Vec<T>),
     /// Attitudes.
     Attitudes(Vec<Attitude<T>>),
-    /// Structs, a list for each field, and how many they are.
+    /// Structs: a list for each field, and the number of structs.
     Structs(Arc<Layout>, Vec<Column<T>>, usize),
     /// Any others.
     Values(Vec<Value<T>>),
-    /// A list elsewhere that notes which of its values are read.
+    /// A list stored elsewhere that notes which of its values are read.
     Tracked(Arc<dyn TrackedList<T>>),
 }
 
 /// A list that notes which of its sites are read.
 pub trait TrackedList<T: Real>: std::fmt::Debug + Send + Sync {
-    /// How many sites there are.
+    /// The number of sites.
     fn len(&self) -> usize;
 
     /// The value at a site.
@@ -35,7 +35,7 @@ pub trait TrackedList<T: Real>: std::fmt::Debug + Send + Sync {
 }
 
 impl<T: Real> PartialEq for dyn TrackedList<T> {
-    /// Never: the values are elsewhere.
+    /// Never called: the values are stored elsewhere.
     fn eq(&self, _: &Self) -> bool {
         false
     }
@@ -73,7 +73,7 @@ impl<T: Real> Column<T> {
         Some(column)
     }
 
-    /// Numbers of arrays, given row after row.
+    /// Numbers of arrays, row by row.
     pub fn of_rows([rows, cols]: [usize; 2], list: &[T]) -> Self {
         let size = (rows * cols).max(1);
         let mut all = Vec::with_capacity(list.len());
@@ -85,7 +85,7 @@ impl<T: Real> Column<T> {
         Column::Arrays([rows, cols], all)
     }
 
-    /// How many sites there are.
+    /// The number of sites.
     pub fn len(&self) -> usize {
         match self {
             Column::Numbers(all) => all.len(),
@@ -113,7 +113,7 @@ impl<T: Real> Column<T> {
         })
     }
 
-    /// The list of one field, to be changed.
+    /// The list of one field, by mutable reference.
     pub fn field_mut(&mut self, name: u32) -> Option<&mut Column<T>> {
         match self {
             Column::Structs(layout, fields, _) => {
@@ -123,7 +123,7 @@ impl<T: Real> Column<T> {
         }
     }
 
-    /// Puts another value at a site.
+    /// Replaces the value at a site.
     #[inline]
     pub fn set(&mut self, site: usize, value: &Value<T>) -> Option<()> {
         match (self, value) {
@@ -147,7 +147,7 @@ impl<T: Real> Column<T> {
         Some(())
     }
 
-    /// One site more.
+    /// Appends a site.
     pub fn push(&mut self, value: &Value<T>) -> Option<()> {
         match (self, value) {
             (Column::Numbers(all), Value::Real(x)) => all.push(*x),
@@ -169,7 +169,7 @@ impl<T: Real> Column<T> {
         Some(())
     }
 
-    /// So many sites: the first of those there are, then copies of a value.
+    /// Resizes to `count` sites: drops the last sites, or appends copies of a value.
     pub fn resize(&mut self, count: usize, value: &Value<T>) -> Option<()> {
         while self.len() < count {
             self.push(value)?;
@@ -215,7 +215,7 @@ impl<T: Real> Column<T> {
         })
     }
 
-    /// Puts the values of another list from a site on.
+    /// Writes the values of another list, starting at a site.
     pub fn put(&mut self, from: usize, other: &Column<T>) -> Option<()> {
         for site in 0..other.len() {
             self.set(from + site, &other.get(site)?)?;
@@ -256,7 +256,7 @@ pub fn array<T: Real>([rows, cols]: [usize; 2], data: &[T]) -> Value<T> {
     }
 }
 
-/// Puts the numbers of an array.
+/// Writes the numbers of an array.
 fn put<T: Real>(dims: [usize; 2], out: &mut [T], value: &Value<T>) -> Option<()> {
     let (own, data): ([usize; 2], &[T]) = match value {
         Value::Vector(v) => ([3, 1], v.as_slice()),

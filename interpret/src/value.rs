@@ -15,7 +15,7 @@ use clebsch::line;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
-/// The frame a momentum is seen from.
+/// The frame of a momentum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Frame {
     /// The body frame.
@@ -28,7 +28,7 @@ pub enum Frame {
     Field,
 }
 
-/// A group whose elements are kept as their matrices.
+/// A group whose elements are stored as matrices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MatrixGroup {
     /// Rotations of n-dimensional space.
@@ -65,7 +65,7 @@ impl<T: Real> Clone for Struct<T> {
         }
     }
 
-    // The state before a step is kept without allocating anew.
+    // Stores the state before a step without a new allocation.
     fn clone_from(&mut self, source: &Self) {
         if !Arc::ptr_eq(&self.layout, &source.layout) {
             self.layout = source.layout.clone();
@@ -93,7 +93,7 @@ impl<T: Real> Struct<T> {
 /// A value. `Ok(x)` and `Some(x)` are `x` itself.
 #[derive(Clone, Debug)]
 pub enum Value<T: Real> {
-    /// Nothing to tell, `()`.
+    /// `()`.
     Unit,
     /// No value.
     None,
@@ -103,7 +103,7 @@ pub enum Value<T: Real> {
     Int(i64),
     /// A number.
     Real(T),
-    /// A number that is `f64` whatever the scalar.
+    /// A number that is `f64` for any scalar.
     Double(f64),
     /// A text.
     Text(&'static str),
@@ -125,7 +125,7 @@ pub enum Value<T: Real> {
     Motion(Box<RigidMotion<T>>),
     /// A rigid motion of the plane.
     Plane(Box<PlaneMotion<T>>),
-    /// An element kept as its matrix.
+    /// An element stored as its matrix.
     Element(MatrixGroup, Dense<T>),
     /// A momentum of three components.
     Momentum(Frame, Vector3<T>),
@@ -137,9 +137,9 @@ pub enum Value<T: Real> {
     Poinsot(Arc<Poinsot<T>>),
     /// A body on SU(2).
     QuaternionBody(Arc<QuaternionBody<T>>),
-    /// A left factor, by its matrix and prepared.
+    /// A left factor: its matrix and prepared data.
     LeftFactor(crate::library::Factor<T>),
-    /// A free body on its way.
+    /// The solver of a free body.
     Free(Box<Free<T>>),
     /// A solver by name.
     Method(Method),
@@ -149,7 +149,7 @@ pub enum Value<T: Real> {
     Domain(domain::Domain),
     /// A function with a domain.
     Function(domain::Function),
-    /// A function called.
+    /// A function call.
     Call(&'static domain::Call),
     /// A warning about the kinetic energy.
     Warning(KineticWarning),
@@ -161,7 +161,7 @@ pub enum Value<T: Real> {
     Sites(Column<T>),
     /// The attitude of a site.
     Attitude(Box<line::Attitude<T>>),
-    /// Which state a workspace was made for.
+    /// The state for which a workspace was prepared.
     Stamp(line::Stamp),
     /// A quantity at a site.
     At(line::Place),
@@ -171,7 +171,7 @@ pub enum Value<T: Real> {
     Band(Box<line::AnyBand<T>>),
     /// A search for velocities.
     Search(crate::newton::SearchValue),
-    /// Part of an array, from an offset on: the place of the array.
+    /// Part of an array, starting at an offset: the place of the array.
     Part(usize, usize),
     /// A domain of particles.
     Extent(functional::Extent),
@@ -184,7 +184,7 @@ pub enum Value<T: Real> {
 }
 
 impl<T: Real> Value<T> {
-    /// A matrix of any size, in the form that is kept for it.
+    /// A matrix of any size, in its stored form.
     #[inline]
     pub fn of(a: Dense<T>) -> Self {
         match (a.rows, a.cols, a.data.as_slice()) {
@@ -233,7 +233,7 @@ impl<T: Real> Value<T> {
 }
 
 impl<T: Real> PartialEq for Value<T> {
-    /// Compares numbers, matrices, group elements and momenta. Prepared data are never equal.
+    /// Compares numbers, matrices, group elements and momenta. Prepared data never compare equal.
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Value::Unit, Value::Unit) | (Value::None, Value::None) => true,
@@ -263,5 +263,5 @@ impl<T: Real> PartialEq for Value<T> {
     }
 }
 
-// Values are moved all the time.
+// Values are moved often, so they must stay small.
 const _: () = assert!(size_of::<Value<f64>>() <= 128);

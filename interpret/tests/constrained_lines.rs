@@ -124,7 +124,7 @@ fn a_composed_step_that_is_refused_leaves_the_line_where_it_was() {
     let source = compiled::WATER;
     let case = Case::new(40, None);
     let calm = compiled::water(&case);
-    // Particles that run into one another.
+    // Particles that collide.
     let wild = calm.with("momentum_X", |p| p.iter_mut().for_each(|p| *p *= 400.0));
     let settings = Settings {
         order: Some(4),
@@ -261,7 +261,7 @@ fn data_off_a_sum_are_refused_with_the_equation() {
         across.contains("is not tangent to the constraint"),
         "{across}"
     );
-    // All along one axis: no turn changes the length to first order.
+    // All links are along one axis, so no rotation changes the length to first order.
     let straight = data.with("Λ", |turns| {
         let one = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
         turns.chunks_mut(9).for_each(|m| m.copy_from_slice(&one));

@@ -218,7 +218,7 @@ fn matrices_held_to_be_rotations_turn_as_bodies_do() {
     let matrix = observed(&Matrices::CARD, &*matrix);
     let turning = observed(&Turning::CARD, &*turning);
     for (x, y) in matrix.iter().zip(&turning).take(9) {
-        // A hundred steps of a few roundings each.
+        // A hundred steps with a few roundings each.
         assert!((x - y).abs() < 1e-13, "{x} {y}");
     }
     assert!(turning[1].abs() > 0.1);
@@ -253,14 +253,14 @@ fn sizes_of_differences_do_not_grow_with_the_places() {
         lagrangian = (dot(next(x) - x, next(x) - x) + dot(next(y) - y, next(y) - y))/(2*h); }";
     let near = of(&sizes(link, 0.0, 0.5).expect("opens"), "constraint_l");
     let far = of(&sizes(link, 1e6, 0.5).expect("opens"), "constraint_l");
-    // The rounding of two places of three components, by twice the length, in either way to count it.
+    // The rounding of two positions of three components, times twice the length, counted in either way.
     assert!(near < 5.0 && far < 2e7, "{near} {far}");
     assert!(sizes(link, 1e6, 0.51).is_err(), "a link that is too long");
     let spring = "model Spring { param k: Real; field x, y: Vec<3>;
         lagrangian = (dot(next(x) - x, next(x) - x) + dot(next(y) - y, next(y) - y))/(2*h) - h*k*dot(x - y, x - y)^2; }";
     let near = of(&sizes(spring, 0.0, 0.5).expect("opens"), "energy");
     let far = of(&sizes(spring, 1e3, 0.5).expect("opens"), "energy");
-    // Impulses of 1e-3, whose rounding by places of 1e3 is of this size once more.
+    // Impulses of 1e-3, to which positions of 1e3 add a rounding error of the same size.
     assert!(far < 3e2 * near, "{near} {far}");
 }
 
@@ -287,7 +287,7 @@ fn the_length_between_a_number_and_a_vector_is_tested_far_away() {
         };
         for place in [0.0, 1e6] {
             assert!(opened(place, 1.0), "{constraint} at {place}");
-            // By a hundredth: what is admitted, ten digits of 1e7, is a tenth of that.
+            // Wrong by a hundredth, ten times the accepted tolerance, which is ten digits of 1e7.
             assert!(!opened(place, 1.01), "{constraint} at {place}");
         }
     }

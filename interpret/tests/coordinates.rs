@@ -1,5 +1,5 @@
-//! Lines whose sites are linear maps, rotations of the plane and rigid motions: run by loops over sites, in coordinates;
-//! compared with the bodies written out and with actions typed by hand.
+//! Chains whose sites are linear maps, rotations of the plane and rigid motions: run by loops over sites, in
+//! coordinates; compared with the expanded bodies and with actions typed by hand.
 
 #![allow(missing_docs, mixed_script_confusables)]
 
@@ -33,7 +33,7 @@ fn choice(chain: &Chain, n: usize) -> ChainConfig {
     }
 }
 
-/// The model of a text, read once.
+/// The model of a text, parsed once.
 fn read(source: &str) -> Arc<LineModel> {
     static READ: Mutex<BTreeMap<String, Arc<LineModel>>> = Mutex::new(BTreeMap::new());
     let known = READ.lock().expect("is whole").get(source).cloned();
@@ -222,7 +222,7 @@ fn loops_over_sites_move_as_the_bodies_written_out() {
                 let at = site.expect("has a site") * field.count();
                 for (x, y) in own.iter().zip(&list[at..]) {
                     compared += 1;
-                    // Twenty steps of some roundings each, of numbers up to ten.
+                    // Twenty steps with several roundings each, for numbers up to ten.
                     assert!(
                         (x - y).abs() < 1e-12 * x.abs().max(10.0),
                         "{} {:?} {n}: {}: {x} {y}",

@@ -1,4 +1,4 @@
-//! Elastic bodies that run from their texts, against sums typed by hand that share nothing with the engine.
+//! Elastic bodies that run from their texts, against sums typed by hand that share no code with the engine.
 
 #![allow(missing_docs, mixed_script_confusables)]
 

@@ -1,4 +1,4 @@
-//! Terms that join both ends of a step to positions in forms other than the middle of the step. Loops over sites
+//! Terms that couple both ends of a step to positions in forms other than the midpoint of the step. Loops over sites
 //! support them, and the motion is stationary for the action typed by hand.
 
 #![allow(missing_docs, mixed_script_confusables)]
@@ -42,12 +42,12 @@ fn three(line: &mut LineTrajectory, name: &str) -> [Vec<f64>; 3] {
     })
 }
 
-/// Numbers between -1 and 1, the same each time.
+/// Numbers between -1 and 1, the same in every run.
 fn scattered(n: usize, by: f64) -> Vec<f64> {
     (1..=n).map(|i| (by * i as f64).sin()).collect()
 }
 
-/// The action of an edge, by places at its two ends.
+/// The action of an edge, from the positions at its two ends.
 type Numbers = fn(&[D], &[D]) -> D;
 
 /// The largest derivative of the sum of two edges at their common node, relative to the largest derivative of one edge.

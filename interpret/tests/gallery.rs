@@ -1,5 +1,5 @@
-//! The models of the gallery, read from their texts, against the same models built: cards, steps,
-//! observables, invariants and scales agree to the last bit.
+//! The models of the gallery, from their texts and compiled: cards, steps, observables, invariants and scales agree
+//! bit for bit.
 
 mod side_by_side;
 
@@ -10,7 +10,7 @@ use side_by_side::compare;
 /// How many steps are compared.
 const STEPS: u64 = 1000;
 
-/// The card that is read from the text of a built one.
+/// The card that is read from the text of a compiled model.
 fn read(entry: &Entry) -> Option<Card> {
     match clebsch_interpret::card(entry.card.source) {
         Ok(card) => Some(card),
@@ -133,7 +133,7 @@ fn refusals_are_told_alike() {
             let Some(read) = (card.sized)(&sizes) else {
                 panic!("{} {sizes:?}", card.name);
             };
-            // Steps that are too long, for both kinds of start, and values that are not numbers.
+            // Steps that are too large, for both kinds of start, and values that are NaN.
             for h in [0.0, -1.0, f64::NAN, 10.0 * case.h, 1e3 * case.h, 1e9] {
                 compare(&built, &read, case, Settings::step(h), 20);
             }

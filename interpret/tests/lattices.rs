@@ -1,4 +1,4 @@
-//! Lattices that run from their files: closed forms, orders, copies of a single body, and steps equal to the steps of
+//! Chains that run from their files: closed forms, orders, copies of a single body, and steps equal to the steps of
 //! the same bodies typed by hand and compiled.
 
 #![allow(missing_docs)]
@@ -112,7 +112,7 @@ fn a_ring_steps_as_the_same_points_typed_by_hand_and_compiled() {
             _ => 0.3 - 0.2 * j,
         }]
     };
-    // The parameter of the offset is declared with the field, after the others in both.
+    // In both models, the parameter of the offset is declared with the field, after the others.
     assert_eq!(names(Three::CARD.initial), names(read.initial));
     let case = |card: &Card| Case {
         name: "here".to_owned(),
@@ -131,7 +131,7 @@ fn a_ring_steps_as_the_same_points_typed_by_hand_and_compiled() {
     }
 }
 
-/// A soliton of Toda's chain with parameter κ, its place a function of site and time.
+/// A soliton of Toda's chain with parameter κ, its position as a function of site and time.
 fn soliton(kappa: f64, site: f64, time: f64) -> (f64, f64) {
     let beta = kappa.sinh();
     let phase = |n: f64| 2.0 * (kappa * n - beta * time);
@@ -193,7 +193,8 @@ fn a_soliton_keeps_its_form_with_order_two() {
     }
 }
 
-/// A mode of small swings: sites, ends, and whether nodes or bellies of it lie at the ends.
+/// A mode of small oscillations: the sites, the end conditions, and whether the mode has nodes or antinodes at the
+/// ends.
 fn mode_error(ends: [&str; 2], shape: &dyn Fn(f64) -> f64) -> f64 {
     let (count, s, k, h) = (12, 0.5, 0.7, 0.1);
     let wave = std::f64::consts::PI / count as f64;
@@ -231,7 +232,7 @@ fn small_swings_between_pinned_and_free_ends_are_those_of_the_discrete_dispersio
     // The cubic term of the sine is 1e-14 of the linear one, and adds up over thirty radians.
     assert!(mode_error(["pinned", "pinned"], &f64::sin) < 1e-12);
     assert!(mode_error(["free", "free"], &f64::cos) < 1e-12);
-    // Another end has another mode.
+    // Different end conditions have a different mode.
     assert!(mode_error(["free", "pinned"], &f64::cos) > 0.1);
 }
 
@@ -270,7 +271,7 @@ fn tops_in_phase_with_free_ends_are_one_top() {
     }
 }
 
-/// Beads on hoops that a drive along the hoops does not act on, with springs across: places along and across.
+/// Beads on hoops with springs across: a drive along the hoops does not act on the positions across.
 const BEADS: &str = "model Beads { label i in 0..N; periodic; param m, k: Real; field x: Real at nodes; field q: Real at nodes;
     lagrangian = m*((next(x) - x)^2 + (1 + (x^2 + next(x)^2)/2)*(next(q) - q)^2)/(2*h) - (h*k/2)*(next(x, i) - x)^2; }";
 
@@ -302,7 +303,7 @@ fn what_every_site_keeps_is_one_invariant_with_a_row_for_each_and_of_a_line_thei
             _ => momenta,
         };
         for _ in 0..100 {
-            // A rounding of a momentum a step, in either direction, added over the sites.
+            // One rounding of a momentum in each step, in either direction, summed over the sites.
             let size = clebsch::scalar::largest(known.iter().map(|p: &f64| p.abs()));
             for (own, p) in all[1..].iter().zip(&known) {
                 assert!((own - p).abs() <= 100.0 * f64::EPSILON * size, "{own} {p}");
@@ -354,14 +355,14 @@ fn a_total_of_an_open_line_is_not_taken_for_that_of_all_sites() {
         }
         t.invariants(&mut all);
         for (i, own) in read.invariants.iter().enumerate() {
-            // Sums of a hundred terms of size one, a rounding of each a step.
+            // Sums of a hundred terms of size one, each with one rounding per step.
             let exact = own.name == "energy" || (all[i] - start[i]).abs() < 1e-11;
             assert!(exact, "{} {} {}", own.name, start[i], all[i]);
         }
     }
 }
 
-/// One component of a vector that nothing acts on.
+/// One component of a vector without forces on it.
 const SHEET: &str = "model Sheet { label i in 0..N; periodic; param m: Real at nodes; param k: Real at segments; field x_a: Vec<3> at nodes;
     lagrangian = m*dot(next(x_a)-x_a,next(x_a)-x_a)/(2*h) - h*k*(next(x_a,i)[1]-x_a[1])^4/4; }";
 
@@ -392,7 +393,8 @@ fn the_total_of_a_ring_is_told_where_even_and_odd_sites_have_their_own() {
     }
 }
 
-/// Far from the origin the energy of a chain is that near to it, but for the rounding of places: of strains 1e-10 at 1e6.
+/// Far from the origin, the energy of a chain equals its energy near the origin, up to the rounding of positions:
+/// strains have errors of 1e-10 at 1e6.
 #[test]
 fn energies_of_chains_do_not_depend_on_where_they_are() {
     const CHAIN: &str = "model Stiff { label i in 0..N; periodic; param m, k, l, b: Real; field q: Real at nodes offset L;

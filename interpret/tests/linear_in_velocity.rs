@@ -1,6 +1,6 @@
-//! Terms linear in a velocity, `c*x*(next(y) - y)`: one step from random places and momenta against actions typed by hand,
-//! `p = -D1 L(q, q')` and `p' = D2 L(q, q')`. A difference in time is one term: no part of it is moved to another edge. With a
-//! power of the step in the momentum as well.
+//! Terms linear in a velocity, `c*x*(next(y) - y)`: one step from random positions and momenta against actions typed
+//! by hand, `p = -D1 L(q, q')` and `p' = D2 L(q, q')`. A difference in time is one term: no part of it is moved to
+//! another edge. With a power of the step in the momentum as well.
 
 #![allow(missing_docs, deprecated)]
 
@@ -32,7 +32,7 @@ const H: f64 = 0.1;
 /// Momenta are some m Δx/h, of order ten: a hundred roundings of their terms m x/h.
 const ROUNDING: f64 = 3e-13;
 
-/// The change if a part of the action moves to another edge, for numbers of order one.
+/// The size of the change if a part of the action moves to another edge, for numbers of order one.
 const SEEN: f64 = 1e-2;
 
 /// The action of a step from `q` to `r` at the time `t`, by hand; `p` the parameters in order.
@@ -82,7 +82,7 @@ fn drawn(source: &mut Source, fields: &[Field], t: f64) -> Vec<Vec<f64>> {
     each.collect()
 }
 
-/// Places and momenta of a list that belongs to these fields.
+/// Positions and momenta of a list that belongs to these fields.
 fn parted<'a>(fields: impl Iterator<Item = (&'a Field, Vec<f64>)>) -> [Vec<f64>; 2] {
     let mut out = [Vec::new(), Vec::new()];
     for (field, values) in fields.filter(|(f, _)| f.ascii != "t") {
@@ -139,7 +139,7 @@ fn turned(term: &str) -> Card {
     card(&format!("model Turned {{ {TURNED} {term}; }}"))
 }
 
-/// For each way to write the difference.
+/// For each notation of the difference.
 #[test]
 fn a_factor_times_a_difference_is_one_term() {
     let whole: Action = |p, _, q, r| free(p[0], q, r) + of(p[1]) * q[0] * (r[1] - q[1]);
@@ -282,7 +282,7 @@ fn a_power_of_the_step_in_the_momentum_is_run_and_its_invariants_hold() {
 const LINE: &str = "label i in 0..N; param m: Real at nodes; param c, k: Real; field x, y: Real at nodes; \
     lagrangian = m*(next(x) - x)^2/(2*h) + m*(next(y) - y)^2/(2*h) - h*k*(next(x, i) - x)^2/2";
 
-/// Sites, all of `x` before all of `y`, of masses one; the term linear in the velocity with `x` so many sites ahead.
+/// Sites of mass one, all `x` before all `y`; the term linear in the velocity uses `x` this many sites ahead.
 fn line(h: f64, ahead: usize, power: i32, q: &[Dual], r: &[Dual]) -> Dual {
     let sites = q.len() / 2;
     let mut sum = free(1.0, q, r);

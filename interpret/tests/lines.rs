@@ -3,7 +3,7 @@
 
 #![allow(missing_docs, mixed_script_confusables)]
 
-// Constraints and Newton's method have tests of their own.
+// Constraints and Newton's method have separate tests.
 #[allow(dead_code)]
 #[path = "lines/comparison.rs"]
 mod comparison;
@@ -36,10 +36,10 @@ fn the_site_of_a_wrong_value_is_named() {
     let short = numbers.with("momentum_q", |q| q.truncate(49));
     assert_eq!(started(&short), compiled(&short));
     assert!(started(&short).contains("49 sites"), "{}", started(&short));
-    // A step that fails: neighbours are so far apart that the force is not a number.
+    // A step that fails: neighbours are so far apart that the force is NaN.
     let far = numbers.with("q", |q| q[20] = 1e200);
     assert_eq!(started(&far), compiled(&far));
-    // Not at the one before it, which a step spoils too.
+    // The error names this site, not the previous one, which the step also corrupts.
     assert!(started(&far).contains("site 20:"), "{}", started(&far));
     let none = numbers.without("q");
     assert_eq!(started(&none), "`q` is missing");
@@ -47,7 +47,7 @@ fn the_site_of_a_wrong_value_is_named() {
 
 #[test]
 fn a_step_that_is_refused_is_refused_alike_and_leaves_the_state() {
-    // Particles that run into one another.
+    // Particles that collide.
     let source = compiled::WATER;
     let model = LineModel::read(source).expect("is read");
     let case = Case::new(12, None);

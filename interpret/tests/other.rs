@@ -1,5 +1,5 @@
-//! Models outside the gallery, with groups, fields and functions that the gallery lacks. They are built here and read
-//! from their texts.
+//! Models outside the gallery, with groups, fields and functions that the gallery lacks. They are compiled here and
+//! also run from their texts.
 
 #![allow(missing_docs)]
 
@@ -23,7 +23,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A point before a wall, which it must not reach.
+    /// A point in front of a wall, which it must not reach.
     pub model Wall {
         param m: Real;
         param g: Real;
@@ -45,8 +45,8 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A charge in a field that turns with its place, solved by elimination with pivots, beside a point that Newton's method
-    /// solves for.
+    /// A charge in a field that rotates with its position, solved by elimination with pivots, next to a point that
+    /// Newton's method solves for.
     pub model Beside {
         param m: Real;
         param q: Real;
@@ -82,7 +82,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// Four frames in a row, three of them of the same kind, each coupled to the next.
+    /// Four frames in a row, three of the same kind, each coupled to the next.
     pub model Alike {
         param J, K: Sym<3>;
         param a, b: Vec<3>;
@@ -212,7 +212,7 @@ fn fractions_assumptions_and_long_fields() {
         &Nine::CARD,
         &case(0.05, &[&[1.3], &[0.3], &[2.0]], &initial),
     );
-    // Both versions reject each violated assumption alike.
+    // Both versions reject each violated assumption in the same way.
     let read = clebsch_interpret::card(Nine::CARD.source).expect("is read");
     for (k, c, e) in [
         (9.0, 0.3, 2.0),

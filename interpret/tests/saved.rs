@@ -97,8 +97,8 @@ fn entry_goes_on_alike(entry: &Entry) {
     assert!(followed >= 2 * entry.cases.len(), "{}", entry.card.kebab);
 }
 
-/// Slow: the whole gallery runs with every order, built and read. It uses two threads, since the test machines have two
-/// cores and no other test runs at the same time.
+/// Slow: runs the whole gallery with every order, compiled and from texts. It uses two threads, since the test
+/// machines have two cores and no other test runs at the same time.
 #[test]
 fn every_trajectory_goes_on_as_if_it_had_not_been_written_down() {
     let (next, entries) = (AtomicUsize::new(0), gallery());

@@ -1,8 +1,9 @@
-//! Code of the processor for the tapes of model files.
+//! Compiles the tapes of model files to machine code.
 //!
-//! A tape is straight: operations on numbers, then tests. Cranelift compiles it to one function. The function computes the
-//! numbers of [`Machine::run`](clebsch_program::Machine::run), to the last bit. Operations are neither contracted nor
-//! reordered. The code calls the runtime for the sine, the exponential and the like. All `unsafe` code of the project is here.
+//! A tape is straight-line code: first operations on numbers, then tests. Cranelift compiles it to one function. The
+//! function computes the same numbers as [`Machine::run`](clebsch_program::Machine::run), bit for bit. Operations are
+//! neither contracted nor reordered. The code calls the runtime for the sine, the exponential and similar functions.
+//! All `unsafe` code of the project is here.
 
 #![allow(unsafe_code)]
 
@@ -15,7 +16,7 @@ pub use code::{Native, Refusal};
 use clebsch_program::{Compiled, Compiler, Machine, compile_by};
 use std::sync::Arc;
 
-/// Compiling takes as long as several thousand runs save.
+/// Compilation costs as much time as several thousand compiled runs save.
 const AFTER: u32 = 4000;
 
 /// Compiles the frequently run tapes of this process from now on. Returns false if another compiler was set before.

@@ -38,7 +38,7 @@ impl fmt::Display for Unvalued {
 
 impl std::error::Error for Unvalued {}
 
-/// The outputs of a kernel. `inputs` are in the kernel's order; `sizes` are those of declared names.
+/// The outputs of a kernel. `inputs` are in the kernel's order; `sizes` gives the sizes of declared names.
 ///
 /// # Errors
 /// [`Unvalued`] if an input does not fit, a size is missing or the arithmetic lacks an operation.
@@ -92,7 +92,7 @@ impl<A: Arithmetic> Running<'_, A> {
         self.arithmetic.constant(Number::Double(x))
     }
 
-    /// Ones on the diagonal `at` rows below the main diagonal, zeros elsewhere.
+    /// Ones on the diagonal that is `at` rows below the main diagonal, zeros elsewhere.
     fn ones(&self, shape: crate::Shape, at: usize) -> Result<Array<A::Number>, Unvalued> {
         let (one, zero) = (self.double(1.0), self.double(0.0));
         let (rows, cols) = (self.size(shape.rows)?, self.size(shape.cols)?);

@@ -9,7 +9,7 @@ use crate::tape::{Function, Recording, Scalar, Step, Tape};
 use std::cell::RefCell;
 
 impl Tape {
-    /// Records a kernel. `sizes` are those of declared names.
+    /// Records a kernel. `sizes` gives the sizes of declared names.
     ///
     /// # Errors
     /// [`Unvalued`] if the kernel has an operation whose steps depend on values, such as an inverse with pivoting.

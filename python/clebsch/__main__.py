@@ -14,7 +14,7 @@ def main() -> int:
     int
         The exit code of the command.
     """
-    # The command listens to Ctrl-C itself: it stops at the next step and writes its results.
+    # The command handles Ctrl-C itself: it stops at the next step and writes its results.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return command(sys.argv[1:])
 

@@ -1,4 +1,4 @@
-"""Steps a run in short turns, and updates the progress bar and calls the functions of `observe` in between."""
+"""Advances a run in short intervals, and updates the progress bar and calls the functions of `observe` in between."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def finished(
     observe: Mapping[str, Callable[[Sample], Any]] | None,
     progress: bool,
 ) -> Run:
-    """Make all steps. Returns the run even if it is interrupted."""
+    """Take all steps. Returns the run even if it is interrupted."""
     observed: dict[str, list[Any]] = {}
     watch: Callable[[], None] | None = None
     if observe:

@@ -1,4 +1,4 @@
-"""The derivation of a model: its equations, their proof and what they conserve."""
+"""The derivation of a model: its equations, their proof and their invariants."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ class StabilityLimit(NamedTuple):
     Attributes
     ----------
     step : float or None
-        The largest stable step size. None if it was not found or if there is none.
+        The largest stable step size. None if it was not found or does not exist.
     frequency : float or None
         The angular frequency of the fastest small motion.
     text : str
-        The result in words.
+        The result as a sentence.
     """
 
     step: float | None
@@ -30,7 +30,7 @@ class StabilityLimit(NamedTuple):
 class Derivation:
     """The discrete equations of a model in several forms.
 
-    `Model.derivation` gives it. Each form is derived when it is first used.
+    `Model.derivation` returns it. Each form is derived when it is first used.
 
     Attributes
     ----------

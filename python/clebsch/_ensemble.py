@@ -18,17 +18,17 @@ if TYPE_CHECKING:
 
 
 class Ensemble:
-    """The runs of many bodies. `Model.ensemble` gives it.
+    """The runs of many bodies. `Model.ensemble` returns it.
 
     ``ensemble["q"]`` is the array of the quantity `q`: its first index is the body, its second index the sample. A body whose run
-    ended early has NaN behind its last sample.
+    ended early has NaN after its last sample.
 
     Attributes
     ----------
     runs : list of Run
         The run of each body.
     stopped : dict of int to str
-        The bodies whose runs ended before their end, with the reason.
+        The bodies whose runs ended early, with the reason.
     """
 
     def __init__(self, runs: list[Run]) -> None:
@@ -85,7 +85,7 @@ class Ensemble:
         Raises
         ------
         InvariantError
-            An invariant left its bound.
+            An invariant exceeded its bound.
         """
         for run in self.runs:
             run.check()

@@ -18,7 +18,7 @@ class ModelError(ClebschError, ValueError):
     Attributes
     ----------
     line, column : int or None
-        The place of the first mistake, counted from 1.
+        The position of the first mistake, counted from 1.
     hint : str or None
         The correction.
     """
@@ -60,7 +60,7 @@ class StepError(ClebschError, RuntimeError):
     time : float or None
         The time at that node, in the unit of time of the model.
     hint : str or None
-        The remedy.
+        The suggested remedy.
     run : Run or None
         The results up to that node. It is None if the first step failed.
     """
@@ -84,12 +84,12 @@ class StepError(ClebschError, RuntimeError):
 
 
 class InvariantError(ClebschError, RuntimeError):
-    """An invariant of a run left its bound, or a step does not solve the equations of the action as stated.
+    """An invariant of a run exceeded its bound, or a step does not solve the equations of the action as stated.
 
     Attributes
     ----------
     names : tuple of str
-        The invariants that left their bounds.
+        The invariants that exceeded their bounds.
     run : Run
         The run.
     """

@@ -113,7 +113,7 @@ class Model:
     def card(self) -> dict[str, Any]:
         """dict : Parameters, initial values, observables, invariants, solver and order of the model.
 
-        The quantities of a chain or a fluid are those of the default number of sites.
+        For a chain or a fluid, they belong to the default number of sites.
         """
         if self._card is None:
             self._card = self._inner.card()
@@ -131,7 +131,7 @@ class Model:
 
     @property
     def cases(self) -> dict[str, str]:
-        """dict : The names of the cases of a shipped model or a model file, the default one first, each with a description."""
+        """dict : The names of the cases of a shipped model or a model file, the default case first, each with a description."""
         if self._cases is None:
             self._cases = self._inner.cases()
         return dict(self._cases)
@@ -148,7 +148,7 @@ class Model:
         -------
         dict
             Values by the keys of a case file: `h`, `steps`, `parameters`, `initial`, and for chains and fluids `labels`,
-            `ends` and `domain`. Each is an argument of `run` of the same name.
+            `ends` and `domain`. `run` has an argument with the name of each key.
 
         Raises
         ------
@@ -187,28 +187,28 @@ class Model:
         Parameters
         ----------
         case : str, optional
-            A name of `cases` or the path of a case file. The values below replace those of the case. A shipped model takes its
-            first case by default; a model of your own needs all values.
+            A name of `cases` or the path of a case file. The values below override the values of the case. A shipped model uses
+            its first case by default; your own model needs all values.
         parameters : dict, optional
             Parameters by name, in any consistent system of units. A number, a vector of shape (n,), a matrix of shape (n, m),
-            or a text with an expression such as ``"2*pi/T"``. Second moments `J` may be given by the inertia,
+            or a text with an expression such as ``"2*pi/T"``. You may give the inertia instead of second moments `J`,
             ``dict(I=[1, 2, 3])``. At the sites of a chain: one value for all sites, an expression in the site's number,
-            or an array whose first index is the site. A value of None removes the value of the case.
+            or an array whose first index is the site. None removes the value of the case.
         initial : dict, optional
             Configurations at node 0, with momenta or velocities. A rotation is a matrix of shape (3, 3) that maps the body
             frame to the space frame, a unit quaternion (w, x, y, z), or a dictionary such as
-            ``dict(axis=[0, 0, 1], angle=1)``. Momenta have the names of `initial`. In their place stand
-            ``velocity_x`` for a field `x`, and for a rotation ``angular_velocity`` in the body frame or
-            ``spatial_angular_velocity`` in the space frame; if several bodies turn, with the body's name behind it, as in
-            ``angular_velocity_R``. A configuration without either starts at rest.
+            ``dict(axis=[0, 0, 1], angle=1)``. Momenta have the names in `initial`. You may give velocities
+            instead: ``velocity_x`` for a field `x`, and for a rotation ``angular_velocity`` in the body frame or
+            ``spatial_angular_velocity`` in the space frame. If several bodies rotate, append the name of the body, as in
+            ``angular_velocity_R``. A configuration without momentum and velocity starts at rest.
         h : float, optional
             The step size, in the unit of time of the model.
         steps : int, optional
             The number of steps.
         until : float, optional
-            The time to run to, in place of `steps`. The run ends at the node nearest to it.
+            The final time, instead of `steps`. The run ends at the nearest node.
         every : int, optional
-            Sample every so many nodes, and the last one. By default at most 10,000 nodes; 0 samples the start and the end.
+            The number of nodes between samples. By default at most 10,000 nodes are sampled; 0 samples only the start and the end.
         order : int, optional
             The order of accuracy of a step, one of ``card["orders"]``.
         solver : str, optional
@@ -229,25 +229,25 @@ class Model:
         bounds : dict, optional
             The largest drift of each invariant, relative to its scale. `Run.check` compares with it.
         observe : dict, optional
-            Functions of a `Sample`, evaluated at every sample while the run goes on. Each gives a number or an array, and
-            the run has an array of that name.
+            Functions of a `Sample`, evaluated at every sample during the run. Each returns a number or an array, and the run
+            has an array with its name.
         judge : {'sample', 'all'}, optional
-            Judge a hundred random steps and the last, or all steps, by the action as stated, which shares no code with the
-            derivation. See `Run.stated`.
+            Compare a sample of a hundred steps and the last step, or all steps, with the action as stated. This check is
+            independent of the derivation. See `Run.stated`.
         progress : bool, default True
-            Show a progress bar from one second on, if tqdm is installed.
+            Show a progress bar after one second, if tqdm is installed.
 
         Returns
         -------
         Run
-            Arrays by name. A run that you interrupt (Ctrl-C) ends there: `Run.stopped` says so.
+            Arrays by name. If you interrupt the run (Ctrl-C), it ends at this node, and `Run.stopped` contains the reason.
 
         Raises
         ------
         DataError
             A value is wrong. The message names the argument.
         StepError
-            A step failed. Its `run` has what was computed before.
+            A step failed. The attribute `run` contains the results before it.
         """
         running = self._start(
             case,
@@ -260,7 +260,7 @@ class Model:
         return finished(self, running, observe, progress)
 
     def start(self, case: str | None = None, **values: Any) -> Simulation:
-        """Start a simulation that is stepped by hand.
+        """Start a simulation that you advance step by step.
 
         Parameters
         ----------
@@ -302,20 +302,20 @@ class Model:
             Parameters or initial values by name, each with a sequence of values. A name with a point is a component, as in
             ``"chi.z"`` or ``"J.11"``.
         h : float or sequence of float, optional
-            The step size, or several ones, which are one more direction of the grid.
+            The step size, or several step sizes, which add a direction to the grid.
         workers : int, optional
-            The number of threads. The default is the number of cores. No result depends on it.
+            The number of threads. The default is the number of cores. Results do not depend on it.
         progress : bool, default True
-            Show a progress bar from one second on, if tqdm is installed.
+            Show a progress bar after one second, if tqdm is installed.
         **values
             The other values and options of `run`.
 
         Returns
         -------
         pandas.DataFrame
-            One row for each point, the last name varies fastest: the values, `status` (``"complete"``, ``"stopped"``,
-            ``"refused"``, or ``"interrupted"`` after Ctrl-C), `why`, `steps`, `time`, `within_bounds`, the drift of every
-            invariant, and the observables at the end. If a varied initial value and an observable have the same name, the
+            One row for each point; the last name varies fastest. The columns are the values, `status` (``"complete"``,
+            ``"stopped"``, ``"refused"``, or ``"interrupted"`` after Ctrl-C), `why`, `steps`, `time`, `within_bounds`, the drift of
+            every invariant, and the observables at the end. If a varied initial value and an observable have the same name, the
             column of the initial value is ``initial.name``. A dictionary of arrays if pandas is not installed.
 
         Raises
@@ -347,9 +347,9 @@ class Model:
             As for `run`. An array with one more index in front has a value for each body. A sequence has a dictionary
             for each body.
         workers : int, optional
-            The number of threads. The default is the number of cores. No result depends on it.
+            The number of threads. The default is the number of cores. Results do not depend on it.
         progress : bool, default True
-            Show a progress bar from one second on, if tqdm is installed.
+            Show a progress bar after one second, if tqdm is installed.
         **values
             The other values and options of `run`, the same for all bodies.
 
@@ -370,7 +370,7 @@ class Model:
     # Assembly of a case.
 
     def _base(self, case: str | None) -> tuple[str, str] | None:
-        """The case that values are added to: its name in messages, and its text."""
+        """The case to which values are added: its name in messages, and its text."""
         if case is None and not self.cases:
             return None
         # The file may have changed.
@@ -419,7 +419,7 @@ class Model:
         return f"<Model {self.name}: parameters {parameters}; initial {initial}{cases}>"
 
     def _short(self, which: str) -> list[str]:
-        """The names of fields, those of a quantity at many sites once."""
+        """The names of fields; a quantity at many sites occurs once."""
         names: list[str] = []
         for field in self.card[which]:
             stem, _, number = field["name"].rpartition("_")

@@ -24,9 +24,9 @@ class Invariant(NamedTuple):
     name, formula : str
         The name and the formula.
     exact : bool
-        Whether it is conserved to rounding. The others oscillate within a bound.
+        Whether it is conserved to rounding. Other invariants oscillate within a bound.
     scale : float
-        The sum of the absolute values of its terms, the largest along the run.
+        The largest sum of the absolute values of its terms along the run.
     worst : float
         The largest drift at a sample, relative to the scale. It is absolute if the scale is zero.
     last : float
@@ -34,7 +34,7 @@ class Invariant(NamedTuple):
     bound : float or None
         The bound of the case.
     verdict : str
-        The word of the command: ``"within bound"``, ``"EXCEEDED"`` or ``"no bound"``.
+        The verdict of the command: ``"within bound"``, ``"EXCEEDED"`` or ``"no bound"``.
     """
 
     name: str
@@ -48,7 +48,7 @@ class Invariant(NamedTuple):
 
 
 class _Finished:
-    """The answers of a `Running` after its last step, as plain values: what a pickled run keeps of it."""
+    """The answers of a `Running` after its last step, as plain values: the part that a pickled run contains."""
 
     _ASKED = ("arrays", "case", "columns", "fields", "halvings", "outcomes", "stated", "summary", "warnings")
 
@@ -65,10 +65,9 @@ class _Finished:
 class Run:
     """The results of a run.
 
-    ``run["q"]`` is the array of the quantity `q`: its first index is the sample, the others are those of the quantity. The names
-    and shapes are those of ``trajectory.npz``, which the command writes: the observables under their names, the invariants with
-    ``invariant_`` before theirs, which may be left out. Arrays are views on the same memory where that is possible. A run can be
-    pickled.
+    ``run["q"]`` is the array of the quantity `q`: its first index is the sample, the other indices belong to the quantity. Names
+    and shapes are the same as in ``trajectory.npz``, which the command writes: observables have their names, and invariants have
+    the prefix ``invariant_``, which you may omit. Arrays are views of the same memory if possible. A run can be pickled.
 
     Attributes
     ----------
@@ -79,9 +78,9 @@ class Run:
     model : Model
         The model.
     steps : int
-        The number of steps that were made.
+        The number of completed steps.
     stopped : str or None
-        Why the run ended before its end. None if it is complete.
+        The reason if the run ended early. None if it is complete.
     warnings : list of str
         Warnings: a kinetic energy that is not positive definite, an invariant that was lost.
     """
@@ -144,7 +143,7 @@ class Run:
 
     @property
     def complete(self) -> bool:
-        """bool : Whether all steps were made."""
+        """bool : Whether all steps are complete."""
         return self.stopped is None
 
     # Numbers of the run.
@@ -168,7 +167,7 @@ class Run:
 
     @property
     def initial(self) -> dict[str, Any]:
-        """dict : The initial values, with the momenta that belong to velocities, as arrays."""
+        """dict : The initial values, including the momenta computed from velocities, as arrays."""
         return self.case["initial"]
 
     # Invariants.
@@ -187,8 +186,8 @@ class Run:
     def drift(self) -> dict[str, NDArray[np.float64]]:
         """dict of str to ndarray : The drift of each invariant since the start, relative to its scale, at every sample.
 
-        The shape is (samples,), or (samples, n) for an invariant of n components. A component whose scale is zero has its
-        absolute drift.
+        The shape is (samples,), or (samples, n) for an invariant of n components. If the scale of a component is zero, its drift
+        is absolute.
         """
         found = {}
         for own in self._outcomes():
@@ -199,15 +198,15 @@ class Run:
 
     @property
     def stated(self) -> tuple[str, int, bool | None] | None:
-        """tuple or None : The verdict of the action as stated on the judged steps.
+        """tuple or None : The result of the independent check against the action as stated.
 
-        A sentence, the number of judged steps, and whether they hold. None if no step was to be judged.
+        A sentence, the number of judged steps, and whether they passed. None if no step was judged.
         """
         return self._running.stated()
 
     @property
     def substeps(self) -> tuple[int, int] | None:
-        """tuple of int or None : How many steps were made by substeps, and by how many at most. None without `halve`."""
+        """tuple of int or None : The number of subdivided steps, and the largest number of substeps. None without `halve`."""
         return self._running.halvings()
 
     @property
@@ -228,7 +227,7 @@ class Run:
         Raises
         ------
         InvariantError
-            An invariant left its bound, or a judged step does not solve the equations of the action as stated.
+            An invariant exceeded its bound, or a judged step does not solve the equations of the action as stated.
         """
         beyond = [own for own in self._outcomes() if own["exceeded"]]
         wrong = [
@@ -314,20 +313,20 @@ class Run:
         return plot(self, names)
 
     def animate(self, name: str | None = None, seconds: float = 8.0):
-        """Show the motion as a film.
+        """Show the motion as an animation.
 
         Parameters
         ----------
         name : str, optional
-            The quantity to show: a rotation as three axes, a place in the plane or in space as a point with its path, values
+            The quantity to show: a rotation as three axes, a position in the plane or in space as a point with its path, values
             at the sites of a chain as a line, the particles of a fluid as points. By default the first such quantity.
         seconds : float, default 8
-            The length of the film.
+            The length of the animation in seconds.
 
         Returns
         -------
         matplotlib.animation.FuncAnimation
-            Notebooks play it. Its method `save` writes a file.
+            Notebooks can play it; its method `save` writes a file.
         """
         from ._plots import animate
 

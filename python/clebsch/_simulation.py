@@ -1,4 +1,4 @@
-"""A simulation that is stepped by hand, saved and resumed."""
+"""A simulation that you can advance step by step, save and resume."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MAGIC = b"clebsch simulation 1\n"
 
 
 class Simulation:
-    """A model at a node in time. `Model.start` and `resume` give it.
+    """A model at a node in time. `Model.start` and `resume` return it.
 
     Attributes
     ----------
@@ -36,12 +36,12 @@ class Simulation:
         self._numbers: dict[str, Any] | None = None
 
     def step(self, steps: int = 1) -> Simulation:
-        """Make steps.
+        """Take steps.
 
         Parameters
         ----------
         steps : int, default 1
-            How many.
+            The number of steps.
 
         Returns
         -------
@@ -51,9 +51,9 @@ class Simulation:
         Raises
         ------
         StepError
-            A step failed. The state is that of the node before it.
+            A step failed. The simulation stays at the node before it.
         KeyboardInterrupt
-            You interrupted the steps. The state is that of the node that was reached.
+            You interrupted the steps. The simulation stays at the node that it reached.
         """
         if steps < 0:
             raise DataError(f"steps: expected at least 0, found {steps}", "steps")
@@ -91,7 +91,7 @@ class Simulation:
 
     @property
     def case(self) -> dict[str, Any]:
-        """dict : The numbers of the start: `h`, `order`, and `parameters` and `initial` with all values."""
+        """dict : The initial data: `h`, `order`, and `parameters` and `initial` with all values."""
         if self._numbers is None:
             self._numbers = self._running.case()
         return self._numbers
@@ -109,17 +109,17 @@ class Simulation:
         }
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the simulation into a file, from which `resume` continues to the same bits.
+        """Write the simulation to a file, from which `resume` continues bit for bit.
 
         Parameters
         ----------
         path : path
-            The file. An existing one is replaced when the new one is complete.
+            The file. An existing file is replaced once the new file is complete.
 
         Raises
         ------
         StepError
-            The state of this model cannot be written down.
+            The state of this model cannot be saved.
         """
         state = self._running.save()
         if state is None:
@@ -156,7 +156,7 @@ def started(model: Model, case: str | None, values: dict[str, Any]) -> Simulatio
 
 
 def resume(path: str | os.PathLike[str]) -> Simulation:
-    """Continue a simulation that was saved.
+    """Continue a saved simulation.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def resume(path: str | os.PathLike[str]) -> Simulation:
     Returns
     -------
     Simulation
-        Its steps have the same bits as those of a simulation that was never saved.
+        Its steps equal the steps of a simulation that was never saved, bit for bit.
 
     Raises
     ------

@@ -110,7 +110,7 @@ def swept(
     if not vary:
         raise DataError("vary: give at least one name with its values, such as vary=dict(k=[1, 2])", "vary")
     if values.get("every") is not None:
-        raise DataError("every: a sweep keeps the end of each run; remove `every`", "every")
+        raise DataError("every: a sweep records only the end of each run; remove `every`", "every")
     values["every"] = 0
     for name, own in vary.items():
         if isinstance(own, (str, Mapping)) or not hasattr(own, "__len__") or len(own) == 0:

@@ -12,7 +12,7 @@ pub(crate) fn guarded<T>(call: impl FnOnce() -> PyResult<T>) -> PyResult<T> {
         let text = panic.downcast_ref::<String>().map(String::as_str);
         let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
         Err(PyRuntimeError::new_err(format!(
-            "clebsch met an internal error: {}. Please report it with the model and the case; start from a new Model",
+            "internal error in clebsch: {}. Please report it with the model and the case; start again from a new Model",
             text.unwrap_or("no message")
         )))
     })

@@ -104,7 +104,7 @@ pub(crate) fn run_many<'py>(
             // A panic in one case must not end the others.
             let own = catch_unwind(AssertUnwindSafe(|| one(model, case, &request, &stop)));
             let own =
-                own.unwrap_or_else(|_| Ended::Refused("clebsch met an internal error".to_owned()));
+                own.unwrap_or_else(|_| Ended::Refused("internal error in clebsch".to_owned()));
             *place.lock().unwrap_or_else(PoisonError::into_inner) = own;
             done.fetch_add(1, Ordering::Relaxed);
         }

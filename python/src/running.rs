@@ -59,7 +59,7 @@ impl Running {
                 "another thread is stepping this run; give each thread a run of its own",
             )),
             Err(TryLockError::Poisoned(_)) => Err(PyRuntimeError::new_err(
-                "this run met an internal error earlier; start it again",
+                "an internal error occurred earlier in this run; start it again",
             )),
         }
     }

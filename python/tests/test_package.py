@@ -1,4 +1,4 @@
-"""The package itself: its documentation, its types, its memory, and the command that it carries."""
+"""The package itself: its documentation, its types, its memory, and the included command."""
 
 from __future__ import annotations
 

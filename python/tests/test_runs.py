@@ -13,7 +13,7 @@ import clebsch as cl
 
 
 def command(*arguments: str) -> None:
-    """Run the command that the package carries."""
+    """Run the command that the package includes."""
     done = subprocess.run([sys.executable, "-m", "clebsch", *arguments], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 

@@ -237,7 +237,7 @@ pub type Open = &'static (
 /// admit these sizes.
 pub type Resize = &'static (dyn Fn(&[usize]) -> Option<Card> + Sync);
 
-/// The complete description of a model whose type is hidden.
+/// The complete description of a model without its Rust type.
 #[derive(Clone, Copy)]
 pub struct Card {
     /// The model's name, such as `HeavyTop`.
@@ -248,7 +248,7 @@ pub struct Card {
     pub doc: &'static str,
     /// The model's text as written.
     pub source: &'static str,
-    /// A hash of the text and the generator, so that results can be traced to it.
+    /// A hash of the text and the generator, by which results can be traced to the model.
     pub fingerprint: u64,
     /// A summary of the derivation, in a few lines.
     pub summary: &'static str,
@@ -270,8 +270,8 @@ pub struct Card {
     pub observables: &'static [Field],
     /// The invariants, in the order [`Trajectory::invariants`] gives them.
     pub invariants: &'static [Invariant],
-    /// The discrete energy of an edge, computed from the states at its two ends: minus the derivative
-    /// of the action by the step size. The model's `discrete_energy` gives its value.
+    /// The discrete energy of an edge, computed from the states at its two ends: minus the derivative of the action
+    /// with respect to the step size. The model's `discrete_energy` gives its value.
     pub discrete_energy: Invariant,
     /// Starts a trajectory.
     pub open: Open,
@@ -295,7 +295,7 @@ impl fmt::Debug for Card {
 }
 
 impl Card {
-    /// Describes how steps of an order above the plain order are made, and which structure they lose.
+    /// Describes how steps of a higher order are composed, and which structure they lose.
     #[must_use]
     pub fn method_of_order(&self, order: u32, compensated: bool) -> String {
         if self.preprocessed && compensated {
@@ -358,11 +358,11 @@ impl Card {
     }
 }
 
-/// The callback of [`Trajectory::step_in_parts`]. It receives the length of a part as a share of the whole step, and
-/// all observables before and after the part.
+/// The callback of [`Trajectory::step_in_parts`]. It receives the length of a substep as a fraction of the whole
+/// step, and all observables before and after the substep.
 pub type PartSeen<'a> = dyn FnMut(f64, &[f64], &[f64]) + 'a;
 
-/// A running trajectory whose model type is hidden.
+/// A running trajectory of a model whose Rust type is hidden.
 ///
 /// A slice that is too short receives only the first numbers.
 pub trait Trajectory: Send {
@@ -378,12 +378,13 @@ pub trait Trajectory: Send {
     /// [`StepError`]; the state is then unchanged.
     fn step(&mut self) -> Result<(), StepError>;
 
-    /// Advances by one step as [`step`](Self::step) does, and calls `seen` for each of the model's own steps within it.
-    /// `seen` receives the length as a share of the whole step, and all observables before and after. A step with
-    /// modified moments, or one that is halved, does not call `seen`.
+    /// Advances by one step as [`step`](Self::step) does, and calls `seen` for each of the model's own steps within
+    /// it. `seen` receives the length as a fraction of the whole step, and all observables before and after. Steps
+    /// with modified moments and subdivided steps do not call `seen`.
     ///
     /// # Errors
-    /// [`StepError`]; the state is then unchanged. `seen` was already called for the parts before the one that failed.
+    /// [`StepError`]; the state is then unchanged. If a substep fails, `seen` was already called for the substeps
+    /// before it.
     fn step_in_parts(&mut self, seen: &mut PartSeen<'_>) -> Result<(), StepError> {
         let none = vec![0.0; self.card().observable_count()];
         let [mut before, mut after] = [none.clone(), none];
@@ -404,8 +405,7 @@ pub trait Trajectory: Send {
         None
     }
 
-    /// How many steps were halved. `None` if a failed step ends a run, see
-    /// [`Halved`](crate::integrate::Halved).
+    /// How many steps were halved. `None` if a failed step ends a run, see [`Halved`](crate::integrate::Halved).
     fn halvings(&self) -> Option<Halvings> {
         None
     }
@@ -455,7 +455,7 @@ pub enum OpenError {
         field: &'static str,
         /// How many are needed.
         expected: usize,
-        /// How many were given.
+        /// The number of values found.
         found: usize,
     },
     /// The model does not offer steps of this order.

@@ -1,5 +1,5 @@
-//! Checks that a step stays in the domain of every function of the model, and keeps linear maps invertible.
-//! Takes values at both ends of a step; gives an error that says which domain was left, and when.
+//! Checks that a step stays in the domain of every function of the model, and keeps linear maps invertible. Takes
+//! values at both ends of a step; gives an error that names the domain, and the time at which the motion left it.
 
 mod segment;
 
@@ -11,8 +11,8 @@ use crate::solvers::largest_step::search_of;
 use core::fmt;
 use nalgebra::SMatrix;
 
-/// The smallest over the largest singular value below which a map counts as singular: its inverse
-/// would have at most four correct digits.
+/// The smallest ratio of singular values at which a map still counts as invertible: below it, the inverse would have
+/// at most four correct digits.
 pub const LEAST_RATIO: f64 = 1e-12;
 
 /// If the squared entries of `V - 1` add up to less than this, every real eigenvalue of the velocity
@@ -22,7 +22,7 @@ const NEAR: f64 = 0.98;
 /// Why a step left the domain of its model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Met {
-    /// A linear map loses its inverse: the straight line from one node to the next meets `det = 0`.
+    /// A linear map becomes singular: the straight line from one node to the next meets `det = 0`.
     Singular {
         /// The configuration.
         configuration: &'static str,
@@ -38,9 +38,9 @@ pub enum Met {
     Outside {
         /// The function and its argument.
         call: &'static Call,
-        /// The argument at the start of the step; on an edge, where nothing moves.
+        /// The argument at the start of the step; for an edge, the argument at rest.
         before: f64,
-        /// The argument at its end; on an edge, at the velocity of the step.
+        /// The argument at the end of the step; for an edge, the argument at the velocity of the step.
         after: f64,
     },
 }
@@ -50,9 +50,8 @@ pub enum Met {
 pub struct Contact {
     /// Why the step left the domain.
     pub met: Met,
-    /// The time of contact as a share of the step, from 0 to 1: where the straight line between the
-    /// nodes meets `det = 0`, or where the interpolated argument meets its bound. `None` if the
-    /// velocity itself is outside.
+    /// The time of contact as a fraction of the step, from 0 to 1: where the straight line between the nodes meets
+    /// `det = 0`, or where the interpolated argument meets its bound. `None` if the velocity itself is outside.
     pub share: Option<f64>,
     /// The size of the failed step.
     pub h: f64,
@@ -63,12 +62,12 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Whether an argument left its domain between finite values. If so, that explains numbers that are not
-    /// finite after the step. If the step overflows instead, its contact means nothing.
+    /// Whether an argument left its domain between finite values. If so, this explains numbers after the step that
+    /// are not finite. If the step overflows instead, the time of contact is meaningless.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         match self.met {
-            // If the end of the step overflows, the share is `None`, not finite or zero.
+            // If the end of the step overflows, the fraction is `None`, not finite or zero.
             Met::Singular { .. } => self.share.is_some_and(|s| s.is_finite() && s > 0.0),
             Met::NearlySingular { .. } => false,
             Met::Outside { before, after, .. } => before.is_finite() && after.is_finite(),
@@ -174,8 +173,8 @@ impl fmt::Display for Contact {
 
 impl std::error::Error for Contact {}
 
-/// Whether a linear map stays invertible from one node to the next: the straight line between them
-/// meets no `det = 0`, not even twice, and the end is far enough from it.
+/// Whether a linear map stays invertible from one node to the next: the straight line between them does not meet
+/// `det = 0`, not even twice, and the end is far enough from it.
 ///
 /// # Errors
 /// [`Contact`] of the first lane that does not.
@@ -360,7 +359,7 @@ impl Domain {
         }
     }
 
-    /// The condition in words.
+    /// The condition as a sentence.
     #[must_use]
     pub fn needs(self) -> &'static str {
         match self {
@@ -421,8 +420,8 @@ impl Domain {
         Ok(())
     }
 
-    /// Whether an argument is inside for the velocity of a step; `rest` is its value where nothing
-    /// moves, from which it must not have gone through zero.
+    /// Whether an argument is inside its domain at the velocity of a step; `rest` is its value at rest, and the
+    /// argument must not have crossed zero since.
     ///
     /// # Errors
     /// [`Contact`] of the first lane where it is not.

@@ -50,7 +50,7 @@ pub fn inverse_or_nan<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<
     crate::linalg::small_inverse(a).unwrap_or_else(|| SMatrix::repeat(T::from_f64(f64::NAN)))
 }
 
-/// The solution of `a x = b`; all NaN where there is none.
+/// The solution of `a x = b`; all NaN if a solution does not exist.
 #[inline]
 #[must_use]
 pub fn solve_or_nan<T: Real, const N: usize>(
@@ -67,13 +67,13 @@ pub fn sum_of_sizes<T: Real>((kinetic, potential): (T, T)) -> T {
     kinetic.abs() + potential.abs()
 }
 
-/// If impulses cancel at a node, the rounding of an energy is at most this share of the kinetic energy that momenta
-/// of the size of these impulses would have.
+/// If impulses cancel at a node, the rounding error of an energy is at most this fraction of the kinetic energy of
+/// momenta as large as these impulses.
 const CANCELLED: f64 = 1e-12;
 
-/// The size of a kinetic and a potential energy. `enlarged` is the kinetic energy of momenta that are at least as large
-/// as the impulses of the node. A share of it bounds the size from below: the kinetic energy of a body at equilibrium
-/// may be rounding alone.
+/// The size of a kinetic and a potential energy. `enlarged` is the kinetic energy of momenta that are at least as
+/// large as the impulses of the node. A fraction of it bounds the size from below: the kinetic energy of a body at
+/// equilibrium may be only a rounding error.
 #[inline]
 #[must_use]
 pub fn size_of_energy<T: Real>((kinetic, potential): (T, T), (enlarged, _): (T, T)) -> T {
@@ -86,7 +86,7 @@ pub fn spectrum<const N: usize>(coefficients: SMatrix<f64, N, N>) -> impl Iterat
     crate::linalg::even_degrees(N).map(move |at| coefficients[at])
 }
 
-/// Scales of [`spectrum`]: the lengths of `M` and `S` to the degree of each coefficient.
+/// Scales of [`spectrum`]: the lengths of `M` and `S`, raised to the degree of each coefficient.
 pub fn spectrum_scales<const N: usize>(m: f64, s: f64) -> impl Iterator<Item = f64> {
     spectrum_scales_of(N, m, s)
 }
@@ -170,7 +170,7 @@ pub fn basis<T: Real>(axis: usize) -> SMatrix<T, 3, 3> {
     hat(&unit(axis))
 }
 
-/// The solution of the leading equations of `a x = b`, `size` of them; all NaN where there is none.
+/// The solution of the leading `size` equations of `a x = b`; all NaN if it does not exist.
 #[inline]
 #[must_use]
 pub fn solve_leading_or_nan<T: Real, const N: usize>(
@@ -356,7 +356,7 @@ impl<T: Real> Compared for T {
 impl<T: Real, const R: usize, const C: usize> Compared for SMatrix<T, R, C> {
     #[inline(always)]
     fn same(&self, other: &Self) -> bool {
-        // They nearly always are: no branch before the end.
+        // They are nearly always equal, so the only branch is at the end.
         self.iter()
             .zip(other.iter())
             .fold(true, |all, (x, y)| all & (x == y))
@@ -370,7 +370,7 @@ pub fn all_finite<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>)
     line::Finite::is_finite(a)
 }
 
-/// Copies `values` to the front of `out` and returns what is left of it.
+/// Copies `values` to the front of `out` and returns the rest of `out`.
 pub fn put(out: &mut [f64], values: impl IntoIterator<Item = f64>) -> &mut [f64] {
     let mut filled = 0;
     for (slot, x) in out.iter_mut().zip(values) {

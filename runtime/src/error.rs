@@ -112,7 +112,7 @@ pub enum Problem {
     OffConstraint {
         /// The constraint as the model writes it.
         equation: &'static str,
-        /// The left side minus the right side.
+        /// The difference of the left and the right side.
         size: f64,
         /// The size of its terms.
         scale: f64,
@@ -136,7 +136,7 @@ pub enum Problem {
         /// One of them.
         equation: &'static str,
     },
-    /// Unit quaternions around a ring come back with the opposite sign, which changes a coupling term of neighbours.
+    /// Around a ring, unit quaternions return with the opposite sign, which changes a coupling term of neighbours.
     SignAroundRing,
     /// A function of parameters is undefined at their values.
     OutsideDomain {
@@ -303,7 +303,7 @@ impl NotARotation {
         ParameterError {
             field,
             problem: Problem::Rotation(self),
-            remedy: "give a matrix with orthonormal columns and determinant +1, to all digits",
+            remedy: "give a matrix with orthonormal columns and determinant +1, accurate to all digits",
         }
     }
 }
@@ -445,7 +445,7 @@ pub enum StepCause {
         quantity: &'static str,
         /// Why.
         cause: MeshError,
-        /// A shorter step that was tried and works, where one was found.
+        /// A shorter step that was tried successfully, if one was found.
         works: Option<f64>,
     },
     /// A model that is read from its text needs an operation that only a compiled model has.
@@ -562,7 +562,7 @@ impl std::error::Error for StepCause {
 }
 
 impl StepError {
-    /// The time of contact from node 0, in equal steps, if the motion left the domain of its model.
+    /// The time of contact since node 0, for equal steps, if the motion left the domain of its model.
     #[must_use]
     pub fn contact_time(&self) -> Option<f64> {
         match &self.cause {

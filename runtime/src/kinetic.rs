@@ -1,6 +1,6 @@
-//! Whether the kinetic energy of a model is positive where a trajectory starts. Takes the matrix of
-//! the quadratic form in all velocities together; gives a warning if it is not positive definite.
-//! The warning states the sign convention, because a wrong sign is the most common mistake.
+//! Checks whether the kinetic energy of a model is positive at the start of a trajectory. Takes the matrix of the
+//! quadratic form in all velocities together; gives a warning if it is not positive definite. The warning states the
+//! sign convention, because a wrong sign is the most common mistake.
 
 use crate::scalar::largest;
 use core::fmt;
@@ -36,8 +36,8 @@ impl KineticWarning {
     /// Like `of`, for a matrix of `n` rows given by its entries.
     #[must_use]
     pub fn of_entries(n: usize, form: &dyn Fn(usize, usize) -> f64) -> Option<Self> {
-        // Velocities have units of their own: each is scaled by its own energy or, if that
-        // vanishes, by its largest coupling.
+        // Velocities have different units: each is scaled by its own energy or, if that vanishes, by its largest
+        // coupling.
         let size = |i: usize| {
             let own = form(i, i).abs();
             let row = largest((0..n).map(|j| form(i, j)));
@@ -153,7 +153,7 @@ mod tests {
         let judged = |m: Matrix3<f64>| KineticWarning::of(&m, 3);
         let diagonal = |a, b, c| Matrix3::from_diagonal(&nalgebra::Vector3::new(a, b, c));
         assert_eq!(judged(diagonal(2.0, 2.0, 1.0)), None);
-        // Units of their own: twenty orders of magnitude.
+        // Different units: twenty orders of magnitude.
         assert_eq!(judged(diagonal(1e-10, 1.0, 1e10)), None);
         let counts = |m| judged(m).map(|w| (w.negative, w.vanishing));
         assert_eq!(counts(diagonal(-2.0, -2.0, -1.0)), Some((3, 0)));
@@ -161,7 +161,7 @@ mod tests {
         assert_eq!(counts(diagonal(2.0, 0.0, 1.0)), Some((0, 1)));
         assert_eq!(counts(diagonal(0.0, 0.0, 0.0)), Some((0, 3)));
         assert_eq!(counts(diagonal(2.0, f64::NAN, 1.0)), Some((0, 3)));
-        // A rank-one form, and one that is indefinite by its coupling alone.
+        // A form of rank one, and a form that is indefinite only because of its coupling.
         let v = nalgebra::Vector3::new(0.3, -1.2, 0.7);
         assert_eq!(counts(v * v.transpose()), Some((0, 2)));
         let coupled = Matrix3::new(1.0, 2.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0, 5.0);

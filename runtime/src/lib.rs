@@ -14,10 +14,9 @@
 //!
 //! [`prelude`] imports the names that most programs need. [`Error`] collects all errors.
 //!
-//! Conventions everywhere: a rotation `R` maps body to space; `hat(v) w = v x w`; `J` is the
-//! Poinsot (second-moment) matrix and `I = tr(J) 1 - J` the moment of inertia; node `k` carries
-//! configurations and momenta, edge `k -> k+1` carries discrete velocities
-//! `Omega = R_k^T R_{k+1}`.
+//! Conventions: a rotation `R` maps body to space; `hat(v) w = v x w`; `J` is the Poinsot (second-moment) matrix and
+//! `I = tr(J) 1 - J` the moment of inertia; node `k` has configurations and momenta, edge `k -> k+1` has discrete
+//! velocities `Omega = R_k^T R_{k+1}`.
 
 mod any_error;
 pub mod card;
@@ -62,7 +61,7 @@ pub use solvers::newton::NewtonError;
 /// States a model; see the crate documentation.
 pub use clebsch_macros::model;
 
-/// The linear algebra of the public interface, so that emitted code names this very version.
+/// The linear algebra of the public interface, so that emitted code uses exactly this version.
 pub use nalgebra;
 /// The traits `Zero` and `One` that [`Real`] builds on.
 pub use num_traits;

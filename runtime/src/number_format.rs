@@ -1,10 +1,10 @@
-//! Numbers in messages: short, and such that you can type a suggested number as it is.
-//! Takes a number; gives its text.
+//! Numbers in messages: short, and such that you can type a suggested number unchanged. Takes a number; gives its
+//! text.
 
 use crate::solvers::largest_step::SHORTEST_SHARE;
 use core::fmt;
 
-/// The shortest decimals that read back as this number, with an exponent where they would be long.
+/// The shortest decimals that parse to this number, with an exponent if they would be long.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plain(pub f64);
 
@@ -29,12 +29,11 @@ impl fmt::Display for Short {
     }
 }
 
-/// Seven digits of a bound, rounded towards zero: a step that is too long by the last digit would
-/// be refused again.
+/// Seven digits of a bound, rounded towards zero: if the last digit were rounded up, the step would fail again.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AtMost(pub f64);
 
-/// More than half a unit of the seventh digit, whatever the first.
+/// More than half a unit of the seventh digit, for any first digit.
 const DIGIT: f64 = 1e-6;
 
 impl AtMost {
@@ -54,7 +53,7 @@ impl fmt::Display for AtMost {
     }
 }
 
-/// How many times a bound is exceeded; a hair above one is seen to be above.
+/// The ratio of a value to its bound; a ratio slightly above one is printed as above one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Times(pub f64);
 
@@ -100,7 +99,7 @@ pub(crate) fn shorter(f: &mut fmt::Formatter<'_>, steps: Option<(f64, f64)>) -> 
     }
 }
 
-/// Which shorter step has been tried and works, if one was found.
+/// The shorter step that was tried successfully, if one was found.
 pub(crate) fn works(f: &mut fmt::Formatter<'_>, step: Option<f64>) -> fmt::Result {
     match step {
         Some(h) => write!(f, "; a step of {h} succeeds"),
@@ -113,7 +112,7 @@ pub(crate) fn place(row: usize, column: usize) -> String {
     format!("({}, {})", row + 1, column + 1)
 }
 
-/// Which lane a refusal is of, from 1; nothing for the first, which types without lanes have, too.
+/// The lane of a failure, counted from 1; nothing for the first lane, since types without lanes have it too.
 pub(crate) fn in_lane(f: &mut fmt::Formatter<'_>, lane: impl Into<u32>) -> fmt::Result {
     match lane.into() {
         0 => Ok(()),
@@ -154,7 +153,7 @@ mod tests {
             let back: f64 = AtMost(-x).to_string().parse().expect("a number");
             assert_eq!(back, -said);
         }
-        // Rounding to the nearest would be above, so the test can fail.
+        // Rounding to nearest would be above the number, so the test can fail.
         assert_eq!(format!("{:.6e}", 0.095_999_999_99), "9.600000e-2");
         assert_eq!(AtMost(0.095_999_999_99).to_string(), "0.0959999");
         assert_eq!(AtMost(0.25).to_string(), "0.25");

@@ -1,6 +1,6 @@
-//! Values from lists of numbers: how the fields of a card become the parameters and the initial data of a
-//! model. Takes the numbers of one field, row by row; gives its value, or says which field they are not.
-//! And back: the numbers of observables and invariants.
+//! Values from lists of numbers: how the fields of a card become the parameters and the initial data of a model.
+//! Takes the numbers of one field, row by row; gives its value, or an error that names the field. And back: the
+//! numbers of observables and invariants.
 
 use crate::StartError;
 use crate::card::{Field, OpenError};
@@ -13,7 +13,7 @@ use crate::groups::{
 use core::marker::PhantomData;
 use nalgebra::SMatrix;
 
-/// A type whose values are given as numbers.
+/// A type whose values can be built from numbers.
 pub trait OfNumbers: Sized {
     /// The value of these numbers, matrices row by row.
     ///
@@ -22,18 +22,18 @@ pub trait OfNumbers: Sized {
     fn of_numbers(field: &'static str, values: &[f64]) -> Result<Self, OpenError>;
 }
 
-/// A type whose values are shown as numbers.
+/// A type whose values can be written as numbers.
 pub trait Shown: Sized {
     /// The numbers, matrices row by row.
     fn numbers(self) -> impl Iterator<Item = f64>;
 }
 
-/// Writes the numbers of a value to the front of `out`; gives what is left of it.
+/// Writes the numbers of a value to the front of `out`; returns the rest of `out`.
 pub fn put(value: impl Shown, out: &mut [f64]) -> &mut [f64] {
     crate::emitted::put(out, value.numbers())
 }
 
-/// The numbers of several fields, taken one field after the other.
+/// The numbers of several fields, read field by field.
 pub struct FieldNumbers<'a> {
     fields: core::slice::Iter<'a, Field>,
     values: core::slice::Iter<'a, Vec<f64>>,
@@ -109,7 +109,7 @@ impl<const R: usize, const C: usize> Shown for Additive<R, C, f64> {
     }
 }
 
-/// A unit quaternion is shown as it is given.
+/// The output of a unit quaternion equals its input.
 impl Shown for UnitQuaternion<f64> {
     fn numbers(self) -> impl Iterator<Item = f64> {
         self.components().into_iter()
@@ -125,7 +125,7 @@ impl OfNumbers for UnitQuaternion<f64> {
     }
 }
 
-/// Elements of groups are given by their matrices, of rigid motions the homogeneous ones.
+/// Elements of groups are given by their matrices; for rigid motions these are homogeneous.
 macro_rules! elements {
     ($($Element:ty [$($N:ident)?] of $rows:tt;)*) => {$(
         impl $(<const $N: usize>)? OfNumbers for $Element {

@@ -1,5 +1,5 @@
-//! The names that nearly every program with a model needs: `use clebsch::prelude::*;`.
-//! Takes nothing; gives the macro, the groups and momenta, the loop, the errors, and the matrices of nalgebra.
+//! The names that nearly every program with a model needs: `use clebsch::prelude::*;`. The prelude: the macro, the
+//! groups and momenta, the loop, the errors, and the matrices of nalgebra.
 
 pub use crate::card::Card;
 pub use crate::integrate::{Ensemble, Model, Stepper, Summary, Watch, run};

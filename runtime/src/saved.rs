@@ -202,17 +202,17 @@ given!(
     core::marker::PhantomData<f64>
 );
 
-/// Values of sites, whose number does not change.
+/// Values at sites, whose number does not change.
 #[doc(hidden)]
 pub fn sites<X: Saved>(list: &mut [X], words: &mut Words) {
     words.same(list.len() as u64);
     list.iter_mut().for_each(|x| x.words(words));
 }
 
-/// A list of values of sites, whose number does not change.
+/// A list of values at sites, whose number does not change.
 #[doc(hidden)]
 pub trait Sites {
-    /// All of them, one after the other.
+    /// All values, in order.
     fn sites(&mut self, words: &mut Words);
 }
 
@@ -222,8 +222,8 @@ impl<X: Saved> Sites for Vec<X> {
     }
 }
 
-/// [`Saved`](crate::saved::Saved) for the state of a line over plain numbers; all lists of its sites are named. The workspace is
-/// made again from it.
+/// [`Saved`](crate::saved::Saved) for the state of a line over plain numbers; all lists of its sites are named. The
+/// workspace is rebuilt from it.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! saved_line {
@@ -244,7 +244,7 @@ macro_rules! saved_line {
     };
 }
 
-/// A value that may be there or not, put into one that is as it should be or made by `blank`.
+/// An optional value. If it is missing but was saved, `blank` creates the value to restore into.
 pub(crate) fn optional<X: Saved>(
     value: &mut Option<X>,
     words: &mut Words,

@@ -1,7 +1,8 @@
 //! Saves a state, a workspace or a whole trajectory outside the program, to resume it later bit for bit.
 //! Takes a value that is [`Saved`]; gives words with a checksum, as bytes or, with the feature `serde`, as text.
 //!
-//! The bytes: `clebsch`, a version, the number of words, the words, a checksum of all before; numbers little-endian.
+//! The bytes: `clebsch`, a version, the number of words, the words, a checksum of everything before it; numbers are
+//! little-endian.
 
 use crate::card::Trajectory;
 use crate::saved::{Saved, Words};
@@ -44,12 +45,12 @@ pub enum SnapshotError {
     NotSaved,
     /// It was taken from a value of another kind or another size.
     Unlike {
-        /// How many words it holds.
+        /// The number of its words.
         words: usize,
     },
     /// The bytes are not a snapshot, or have a version that this program does not know.
     Foreign,
-    /// It was changed or cut after it was written.
+    /// It was changed or truncated after it was written.
     Damaged,
 }
 
@@ -176,7 +177,7 @@ fn checksum(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, mixed)
 }
 
-/// As text: the bytes of [`Snapshot::to_bytes`] in hexadecimal digits, whatever the format.
+/// As text: the bytes of [`Snapshot::to_bytes`] in hexadecimal digits, for any format.
 #[cfg(feature = "serde")]
 mod as_text {
     use super::Snapshot;

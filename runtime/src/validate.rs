@@ -1,5 +1,5 @@
-//! Checks of parameters and initial values, as emitted constructors call them.
-//! Takes a name and a value; gives nothing, or a [`ParameterError`] with the offending numbers.
+//! Checks of parameters and initial values, as emitted constructors call them. Takes a name and a value; gives a
+//! [`ParameterError`] with the offending numbers if a check fails.
 
 mod constraints;
 mod initial;
@@ -15,8 +15,8 @@ use crate::scalar::largest;
 use crate::{ParameterError, Problem, Real};
 use nalgebra::SMatrix;
 
-/// Entries typed by hand agree to their last digit; those computed from an inertia tensor in other
-/// axes agree to a few roundings of the largest entry.
+/// Entries typed by hand agree to their last digit; entries computed from an inertia tensor in other axes agree to a
+/// few roundings of the largest entry.
 pub(crate) const ROUNDINGS: f64 = 64.0;
 
 /// Every component, in every lane and with every derivative part, is finite.
@@ -77,7 +77,7 @@ pub fn finite_entries_of<T: Real>(
     Ok(())
 }
 
-/// The value itself if that is what is not finite, else the size of the lane or derivative.
+/// The value itself if it is not finite, otherwise the largest component of lanes and derivatives.
 fn offending<T: Real>(x: &T) -> f64 {
     if x.value().is_finite() {
         x.magnitude()
@@ -203,7 +203,7 @@ pub fn orthogonal_of<T: Real>(
     let defect = matrix.tr_mul(matrix).minus_one();
     let deviation = largest(defect.data.iter().map(|x| x.magnitude()));
     let determinant = matrix.determinant();
-    // Entries of a rotation are at most 1. Written so that NaN is refused.
+    // Entries of a rotation are at most 1. Written so that NaN is rejected.
     if deviation <= ROUNDINGS * T::EPSILON && determinant.exceeds(T::zero()) {
         return Ok(());
     }
@@ -213,7 +213,7 @@ pub fn orthogonal_of<T: Real>(
             deviation,
             determinant: determinant.least(),
         },
-        remedy: "give a rotation matrix to all digits",
+        remedy: "give a rotation matrix that is accurate to all digits",
     })
 }
 
@@ -259,7 +259,7 @@ where
     )
 }
 
-/// Refuses a matrix whose difference to an element of its group is more than rounding.
+/// Rejects a matrix that differs from an element of its group by more than rounding.
 fn in_group<T: Real, const R: usize, const C: usize>(
     field: &'static str,
     difference: SMatrix<T, R, C>,
@@ -268,7 +268,7 @@ fn in_group<T: Real, const R: usize, const C: usize>(
 ) -> Result<(), ParameterError> {
     let entries = difference.iter().map(|x| x.magnitude());
     let deviation = largest(entries.chain([length.magnitude()]));
-    // Written so that NaN is refused.
+    // Written so that NaN is rejected.
     if deviation <= ROUNDINGS * T::EPSILON {
         return Ok(());
     }
@@ -278,7 +278,7 @@ fn in_group<T: Real, const R: usize, const C: usize>(
             elements,
             deviation,
         },
-        remedy: "give an element of the group to all digits",
+        remedy: "give an element of the group that is accurate to all digits",
     })
 }
 
@@ -415,7 +415,7 @@ pub(crate) fn mirrored_difference<T: Real, const N: usize>(
     mirrored(&Dense::of(matrix), |upper, lower| upper - lower, 1)
 }
 
-/// Compares entries across the diagonal, the first `offset` diagonals above it left out.
+/// Compares entries across the diagonal, without the first `offset` diagonals above it.
 fn mirrored<T: Real>(
     matrix: &Dense<T>,
     defect: impl Fn(T, T) -> T,
@@ -426,7 +426,7 @@ fn mirrored<T: Real>(
     for row in 0..matrix.rows {
         for column in row + offset..matrix.rows {
             let (upper, lower) = (matrix.at(row, column), matrix.at(column, row));
-            // Written so that NaN is refused.
+            // Written so that NaN is rejected.
             let agree = defect(upper, lower).magnitude() <= allowed;
             if !agree {
                 return Err((row, column, upper.value(), lower.value()));
@@ -490,7 +490,8 @@ mod tests {
 
     #[test]
     fn a_few_roundings_pass_and_thousands_do_not() {
-        // An entry computed in another way differs by some roundings, a mistyped digit by far more.
+        // An entry computed in another way differs by a few roundings, a mistyped digit causes a far larger
+        // difference.
         for (roundings, passes) in [(8.0, true), (1e4, false)] {
             let off = roundings * f64::EPSILON;
             let matrix = Matrix2::new(1.0, 2.0, 2.0 * (1.0 + off), 3.0);

@@ -541,7 +541,7 @@ fn for_every_case(mut look: impl FnMut(&str, &Case, &Derivation, Start)) {
             if !named {
                 look(name, case, &derived, *start);
             } else if case.parameters[0].len() <= 25 {
-                // A bracket in a dimension left open has no matrix.
+                // If the dimension is open, the bracket has no matrix.
                 let d = derive_source(&of_size(entry.card.source, case)).expect("derives");
                 look(name, case, &d, *start);
             }

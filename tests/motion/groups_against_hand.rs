@@ -71,7 +71,7 @@ pub(super) trait System: Sized {
     /// Kinds of data: 0 is the momentum, the others are parameters and advected quantities.
     const KINDS: usize;
     fn draw(source: &mut Source) -> Self;
-    /// The same state with one kind of datum increased by this fraction.
+    /// The same state, with the data of one kind increased by this fraction.
     fn nudged(&self, kind: usize, share: f64) -> Self;
     fn by_hand(&self) -> Option<Vec<f64>>;
     fn generated(&self) -> Option<Vec<f64>>;

@@ -1,5 +1,5 @@
-//! Tests steps that are too large and are split into substeps. Nodes equal those of the shorter steps, steps that can be made whole
-//! are made whole, the run reports the count, and a saved run continues bit for bit.
+//! Tests steps that are too large and are split into substeps. Nodes equal the nodes of the shorter steps, a step
+//! that can be made undivided is made undivided, the run reports the count, and a saved run continues bit for bit.
 
 use clebsch::card::{Card, Settings, Trajectory};
 use clebsch::integrate::{Halved, Halvings};

@@ -36,7 +36,7 @@ const ONE_STEP: f64 = 1e-14;
 /// Relative change of the data to measure conditioning: far above rounding, far below one.
 const NUDGE: f64 = 1e-6;
 
-/// A state with its data, one step of it in two ways, and a copy with one kind of datum slightly changed.
+/// A state with its data, one step from it in two ways, and a copy with the data of one kind slightly changed.
 trait System: Sized {
     /// Number of random states.
     const STATES: u32 = 10_000;

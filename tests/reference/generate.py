@@ -3,11 +3,11 @@
 
     python3 tests/reference/generate.py > tests/reference/states.txt
 
-needs nothing but Python 3 (fifty decimal digits of its module `decimal`, half a minute) and is not run by the tests, which
-compare the tables with the committed output. Nothing here is shared with the program: every step solves the discrete
-equations, stated in matrices below, by Newton's method with a tangent of differences, from the solution of the step before.
+The script needs only Python 3 and half a minute; it computes with fifty decimal digits of the module `decimal`. The tests do
+not run it, but compare the tables with the committed output. It shares no code with the program: every step solves the
+discrete equations, stated in matrices below, by Newton's method with a difference tangent, from the previous solution.
 
-One line a state: name of the table, place in it, numbers in rows, 32 significant digits.
+Each line is a state: name of the table, index in it, numbers row by row, 32 significant digits.
 """
 
 from decimal import Decimal, getcontext
@@ -17,7 +17,7 @@ D = Decimal
 ZERO, ONE, TWO = D(0), D(1), D(2)
 NODES = (1, 10, 100, 1000)
 H = D("0.1")
-# Newton's method ends where a correction is below this, and a tangent of differences over SMALL is good to its size.
+# Newton's method stops when a correction is below DONE; the difference tangent over SMALL is accurate to its size.
 SMALL, DONE = D("1e-25"), D("1e-42")
 
 
@@ -147,12 +147,12 @@ def write(name, place, numbers):
     def flat(x):
         return [y for part in x for y in flat(part)] if isinstance(x, list) else [x]
 
-    # What is zero but for the last of the fifty digits is written as zero.
+    # Numbers that are zero up to the last of the fifty digits are written as zero.
     print(name, place, *(f"{x:.31e}" if abs(x) > DONE else "0" for x in flat(numbers)))
 
 
 def inputs(table, **numbers):
-    """What starts a run, so that it is compared too."""
+    """The initial values of a run, so that they are compared too."""
     for name, value in numbers.items():
         write(f"{table}.{name}", 0, value)
 
@@ -163,7 +163,7 @@ def poinsot(moments):
 
 
 def top_steps(moments, arm, attitude, momentum, h, steps):
-    """The body with weight `arm` (none: a free body) in body axes, half of the kick on either side of the turn."""
+    """The body with weight `arm` (zero for a free body) in body axes, with half of the kick before and after the rotation."""
     j, turn = diagonal(poinsot(moments)), MoserVeselov()
     vertical = attitude[2]
     for _ in range(steps):
@@ -245,7 +245,7 @@ def lagrange():
             write("top_lagrange.ATTITUDE", NODES.index(k), attitude)
     write("top_lagrange.ENERGY_DEVIATION", 0, [min(deviations), max(deviations)])
 
-    # In space: the Poinsot matrix and the arm are carried, the vertical is fixed.
+    # In space: the Poinsot matrix and the arm are advected, and the vertical is fixed.
     turn = MoserVeselov()
     j = product(product(tilted, diagonal(poinsot(moments))), transposed(tilted))
     momentum, carried = apply(tilted, start), apply(tilted, arm)

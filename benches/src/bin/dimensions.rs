@@ -22,7 +22,7 @@ const QUADRUPLES: usize = 41;
 fn main() {
     println!("{}", env!("RUSTC_VERSION"));
     println!(
-        "us per step, medians of {} blocks of {STEPS} steps each way, interleaved\n",
+        "us per step, medians of {} blocks of {STEPS} steps for each stepper, interleaved\n",
         2 * QUADRUPLES
     );
     println!("| n | part of the bound | generated | by hand | ratio |");

@@ -41,7 +41,7 @@ fn main() {
     explicit::same_motions(100);
     println!("{}", env!("RUSTC_VERSION"));
     println!(
-        "nanoseconds of computing time per site and step, medians of {BLOCKS} blocks each way, interleaved\n"
+        "nanoseconds of computing time per site and step, medians of {BLOCKS} interleaved blocks for each stepper\n"
     );
     println!("| line | sites | generated | beside | ratio |");
     println!("|---|---|---|---|---|");

@@ -19,7 +19,7 @@ const BLOCKS: usize = 7;
 
 fn main() {
     println!(
-        "nanoseconds of computing time per particle and step, medians of {BLOCKS} blocks each way, interleaved;"
+        "nanoseconds of computing time per particle and step, medians of {BLOCKS} interleaved blocks for each stepper;"
     );
     println!("the plain loop leaves smoothing to the same functional\n");
     println!("| grid | particles | runtime | depth | smoothing | forces | plain loop | ratio |");

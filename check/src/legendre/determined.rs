@@ -1,5 +1,5 @@
-//! Checks that the momenta determine the velocities. Without kinetic energy, the velocity of a configuration would be
-//! lost. Takes the momenta; compares them with the momenta at rest.
+//! Checks that the momenta determine the velocities. Without kinetic energy, the velocity of a configuration would
+//! not affect the momenta. Takes the momenta; compares them with the momenta at rest.
 
 use super::{Legendre, Momentum, NoMomentum, Velocities, copy, mean};
 use crate::displacement::Velocity;
@@ -9,8 +9,8 @@ use crate::sites::Moving;
 /// The smallest change of a momentum in the limit that counts, relative to its change over a step.
 const KNOWN: f64 = 1e-9;
 
-/// A velocity below this fraction of the largest velocity may vanish in the rounding of a momentum, such as far from a
-/// vortex.
+/// A velocity below this fraction of the largest velocity may vanish in the rounding of a momentum, for example far
+/// from a vortex.
 const SLIGHT: f64 = 1e-9;
 
 /// The largest number of configurations that are tried separately.
@@ -39,7 +39,7 @@ impl Legendre {
             .filter(|((m, (with, without)), steps)| {
                 is_moved(velocities.get(&copy(m))) && !is_changed(with, without, *steps)
             });
-        // A velocity may be known by the momentum of another configuration.
+        // A velocity may be determined by the momentum of another configuration.
         for ((m, _), _) in doubtful.take(MOST) {
             let name = copy(m);
             let mut alone = Velocities::new();

@@ -1,5 +1,5 @@
-//! The derivative of the action of a step that begins with given velocities. Takes the numbers of a node, velocities and the length of
-//! the step; gives `-D1 L` by the components of each configuration.
+//! The derivative of the action of a step with given initial velocities. Takes the numbers of a node, velocities and
+//! the length of the step; gives `-D1 L` by the components of each configuration.
 
 use super::{Legendre, NoMomentum, Velocities, copy, most};
 use crate::displacement::moved;
@@ -12,7 +12,7 @@ use crate::sites::{Moving, varied};
 use crate::small_step_limit::Block;
 use crate::stated::Role;
 
-/// Configurations whose derivatives are taken together.
+/// Number of configurations whose derivatives are computed together.
 const TOGETHER: usize = 32;
 
 /// The largest number of corrections for the missing part of a velocity.
@@ -55,7 +55,7 @@ impl Legendre {
             if largest <= 0.25 * UNIT * speed {
                 break;
             }
-            // So small that momenta are linear over it, so large that it is not lost in rounding.
+            // Small enough that momenta are linear over it, and large enough not to vanish in rounding.
             let wanted = f64::max(SMALL * speed, UNIT * size / (SMALL * step.abs()));
             let by = (wanted / largest).log2().ceil().exp2().max(1.0);
             if !by.is_finite() {

@@ -1,8 +1,8 @@
-//! An expression as a statement would have it. Takes the tree; gives text with as few parentheses as its meaning allows.
+//! An expression as text of the model. Takes the tree; gives text with as few parentheses as its meaning allows.
 
 use crate::expression::{Expression, Kind};
 
-/// How tightly parts hold together.
+/// The precedence of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 enum Strength {
     Sum,
@@ -16,7 +16,7 @@ pub(super) fn of(e: &Expression) -> String {
     written(e).0
 }
 
-/// In parentheses where it holds less together than this.
+/// In parentheses if its precedence is lower than `least`.
 fn within(e: &Expression, least: Strength) -> String {
     let (text, strength) = written(e);
     match strength < least {
@@ -67,7 +67,7 @@ fn written(e: &Expression) -> (String, Strength) {
                 Strength::Power,
             )
         }
-        // A component is read as a product with a unit vector.
+        // A component is parsed as a product with a unit vector.
         Kind::Call(f, all) if f == "dot" && component(all).is_some() => {
             (component(all).unwrap_or_default(), Strength::Atom)
         }

@@ -1,4 +1,5 @@
-//! Every model and case of the gallery is judged to be within its bound, step by step, and a wrong number is seen.
+//! Every model and case of the gallery is judged to be within its bound, step by step, and a wrong number is
+//! detected.
 
 use clebsch::card::{Card, Field, Kind, Settings};
 use clebsch_check::{Judge, Judged, Setup, Verdict};
@@ -81,7 +82,7 @@ fn steps_of_the_gallery_hold() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A part of a millionth, of a number or of its neighbours.
+/// A relative change of a millionth, of a number or of its neighbours.
 const WRONG: f64 = 1e-6;
 
 /// The observables that start a run, by position: elements, momenta on the stated side, advected quantities.
@@ -97,7 +98,7 @@ fn of_the_state(card: &Card) -> Vec<(Field, usize)> {
     out
 }
 
-/// The numbers of a field after a turn or a change of one coordinate; nothing beyond its coordinates.
+/// The numbers of a field after a rotation or after a change of one coordinate; `None` beyond its coordinates.
 fn changed(field: &Field, own: &[f64], which: usize) -> Option<Vec<f64>> {
     let mut out = own.to_vec();
     let (n, size) = (field.rows, own.iter().fold(0.0, |a: f64, x| a.max(x.abs())));
@@ -154,7 +155,7 @@ fn is_skew(field: &Field, own: &[f64]) -> bool {
     field.cols == n && n > 1 && (0..n * n).all(|k| opposite(k / n, k % n))
 }
 
-/// The component of this number, counted from 1, with the sign of the number; zero of none.
+/// The component with this number, counted from 1, with the sign of the number; zero for the number zero.
 fn signed(own: &[f64], which: i32) -> f64 {
     match usize::try_from(which.abs()) {
         Ok(0) | Err(_) => 0.0,

@@ -1,4 +1,5 @@
-//! The judge of steps: the gallery within its bounds, and running errors that are bounds.
+//! Tests the judge of steps: steps of shipped models stay within its bounds, and its running errors bound the
+//! errors of computed numbers.
 
 mod gallery;
 mod numbers;

@@ -185,7 +185,7 @@ fn the_running_error_covers_the_true_one_and_little_more() {
         ] {
             let wrong = error(found, twin);
             assert!(wrong <= bound, "{found}: {wrong:e} > {bound:e}");
-            // An error may be zero by chance: a rounding of the terms is what a computation is known to.
+            // An error may be zero by chance, so at least one rounding of the terms is assumed.
             let least = wrong.max(UNIT * terms);
             widest = widest.max(bound / least);
             ratios.push(bound / least);
@@ -199,7 +199,7 @@ fn the_running_error_covers_the_true_one_and_little_more() {
     );
 }
 
-/// Functions of the standard library: their bound holds what another way to compute them differs by.
+/// Functions of the standard library: the bound covers the difference between two ways to compute them.
 #[test]
 fn functions_agree_with_their_identities() {
     let mut random = Random(11);

@@ -1,5 +1,5 @@
-//! Options as other programs name them: `--time` for `--until`. Takes an error of clap; gives the error with
-//! the right option.
+//! Options with the names that other programs use: `--time` for `--until`. Takes an error of clap; gives the error
+//! with the right option.
 
 use clap::error::{ContextKind, ContextValue};
 
@@ -16,7 +16,7 @@ const NAMES: [(&str, &str); 9] = [
     ("--output", "--out"),
 ];
 
-/// The error with the name of the option that is meant, if the command has it.
+/// The error, with the name of the intended option if the command has it.
 pub(crate) fn explained(
     mut error: clap::Error,
     command: &clap::Command,

@@ -15,10 +15,10 @@ use clap::{Arg, Command};
 use of_a_case::{model, of_a_case, shown_case};
 use option::{json, option};
 
-/// The largest width of help, since longer lines are hard to read.
+/// The largest width of help, because longer lines are hard to read.
 const WIDEST: usize = 100;
 
-/// The whole command line. Help fits `width` letters if it is given.
+/// The whole command line. Help lines have at most `width` characters, if it is given.
 #[must_use]
 pub fn command(width: Option<usize>) -> Command {
     Command::new("clebsch")
@@ -30,7 +30,7 @@ pub fn command(width: Option<usize>) -> Command {
         .after_help(
             "Examples:\n  clebsch list\n  clebsch run heavy-top\n  clebsch derive heavy-top\n  clebsch new my-model\n\nExit \
              codes: 0 success, 1 failure, 2 wrong usage, 3 an invariant exceeded the bound of its case (results are \
-             written). A sweep writes its table and exits with 1 if a point was refused or stopped early, otherwise with 3 \
+             written). A sweep writes its table and exits with 1 if a point was rejected or stopped early, otherwise with 3 \
              if an invariant exceeded its bound at a point.",
         )
         .subcommand_required(true)

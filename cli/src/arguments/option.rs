@@ -38,7 +38,7 @@ pub(super) fn positive_count(text: &str) -> Result<u64, String> {
     }
 }
 
-/// Which orders there are depends on the model, whose message lists them.
+/// The available orders depend on the model, whose message lists them.
 pub(super) fn order_number(text: &str) -> Result<u32, String> {
     let order = text.parse::<u32>();
     order.map_err(|_| "give a whole number: 2, 4, 6, 8, or 10 for a free body".to_owned())

@@ -43,7 +43,7 @@ pub(super) fn run() -> Command {
     .arg(
         flag(
             "csv",
-            "Write trajectory.csv even if it has more than 500000 numbers; trajectory.npz always has all numbers",
+            "Write trajectory.csv even if it has more than 500000 numbers; trajectory.npz always contains all numbers",
         )
         .requires("out"),
     )
@@ -61,7 +61,7 @@ pub(super) fn run() -> Command {
         option(
             "stability-limit",
             "SECONDS",
-            "Longest search for the stability limit of the step size, which the run only reports; 0 disables the search",
+            "Time limit of the search for the stability limit of the step size, which the run only reports; 0 disables the search",
         )
         .default_value("1")
         .value_parser(seconds),
@@ -141,8 +141,8 @@ pub(super) fn sweep() -> Command {
         option(
             "vary",
             "NAME=VALUES",
-            "Parameter, initial value or step h, with its component, and its values as FROM:TO:COUNT or A,B,...; with several, \
-             the last varies fastest",
+            "Parameter, initial value or step h, with its component, and its values as FROM:TO:COUNT or A,B,...; if you give \
+             --vary several times, the last quantity varies fastest",
         )
         .action(ArgAction::Append)
         .required(true),

@@ -1,4 +1,4 @@
-//! A part of a sweep, as `--shard` gives it. Takes a text; gives the points of the part.
+//! A part of a sweep, from `--shard`. Takes a text; gives the points of the part.
 
 /// A part of a sweep: `3/16`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

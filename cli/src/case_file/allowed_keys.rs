@@ -15,8 +15,8 @@ impl Fields<'_> {
         let Some(values) = table.values else {
             return Ok(());
         };
-        // Two more kinds of keys are accepted: in [initial], a configuration whose every copy is given; in
-        // [parameters], a parameter of an alternative that is not chosen.
+        // Two more kinds of keys are accepted: in [initial], a configuration whose value is given at every site; in
+        // [parameters], a parameter of an end condition that is not chosen.
         let is_left = |sites: &AtSites<'_>, key: &str| match table.name {
             "initial" => sites.group(key).is_some(),
             _ => sites.stated.of_other_ends(key),

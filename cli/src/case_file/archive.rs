@@ -34,7 +34,7 @@ struct Member {
 /// An array of numbers.
 #[derive(Clone, Debug)]
 pub(crate) struct Array {
-    /// How many entries along each index.
+    /// The length along each index.
     pub shape: Vec<usize>,
     entry: Entry,
     /// Whether the first index runs fastest.
@@ -175,7 +175,7 @@ impl Archive {
     }
 }
 
-/// So many bytes of a file.
+/// Reads this many bytes of a file.
 fn bytes(mut file: impl Read + Seek, from: u64, size: u64) -> std::io::Result<Vec<u8>> {
     file.seek(SeekFrom::Start(from))?;
     let mut out = Vec::new();

@@ -1,5 +1,5 @@
-//! The sites of a case, if the model has labels: the names that expressions can read there, and the element of
-//! a list or an array for each site.
+//! The sites of a case, if the model has labels: the names that expressions can use there, and the element of a list
+//! or an array for each site.
 
 use super::chain_choice;
 use super::copies::{Base, Copies, Group, base};
@@ -24,7 +24,7 @@ pub(super) struct AtSites<'a> {
     pub choice: ChainConfig,
     pub fluid: Option<Fluid>,
     copies: Copies,
-    /// Expressions by their texts, each read once for all sites.
+    /// Expressions by their texts, each parsed once for all sites.
     expressions: RefCell<HashMap<String, Rc<SiteData>>>,
 }
 
@@ -60,7 +60,7 @@ impl<'a> AtSites<'a> {
         self.copies.groups.iter().find(|group| group.of == of)
     }
 
-    /// The letter of the sites of a copy.
+    /// The label of the sites of a copy.
     pub(super) fn index(&self, base: &Base<'_>) -> &str {
         let label = self.stated.lattice.labels.get(base.label);
         label.map_or("i", |l| l.index.text.as_str())
@@ -75,7 +75,8 @@ impl<'a> AtSites<'a> {
 
     /// At which of its sites a field is.
     pub(super) fn at<'f>(&self, field: &'f Field, base: &Base<'_>) -> Site<'f> {
-        // A momentum is undefined at sites whose configuration is given; a list may omit these sites.
+        // A momentum is undefined at sites whose configuration an end condition prescribes; a list may omit these
+        // sites.
         let group = self.group(base.of);
         let (every, left) = group.map_or((&[][..], &[][..]), |g| (&g.sites[..], &g.moving[..]));
         let place = |list: &[usize]| list.binary_search(&base.site).unwrap_or(0);
@@ -88,7 +89,7 @@ impl<'a> AtSites<'a> {
     }
 }
 
-/// The names that an expression can read: the numbers of the case, and at a site its number.
+/// The names that an expression can use: the numbers of the case, and at a site its number.
 pub(super) struct Here<'a> {
     pub scope: &'a Scope,
     pub sites: Option<&'a AtSites<'a>>,

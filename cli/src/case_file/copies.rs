@@ -1,5 +1,5 @@
-//! The sites of each quantity of a chain, and the sites at which its value is given.
-//! Takes a model with labels and a choice; gives the sites of each quantity, in order.
+//! The sites of each quantity of a chain, and the sites at which its value is prescribed. Takes a model with labels
+//! and a choice; gives the sites of each quantity, in order.
 
 use super::stated::Stated;
 use clebsch::card::Field;
@@ -22,7 +22,7 @@ pub(crate) struct Group {
     pub label: Option<usize>,
     /// Its sites.
     pub sites: Vec<usize>,
-    /// The sites at which the value is not given.
+    /// The sites at which the value is not prescribed.
     pub moving: Vec<usize>,
 }
 
@@ -142,11 +142,11 @@ pub(crate) struct Base<'a> {
     pub label: usize,
     /// Whether it belongs to an end condition.
     pub end: bool,
-    /// Whether its value is given at an end.
+    /// Whether its value is prescribed at an end.
     pub given: bool,
     /// The ASCII name of the quantity. For a momentum, the name of its configuration.
     pub of: &'a str,
-    /// Whether it is a momentum of that.
+    /// Whether the field is the momentum of this configuration.
     pub is_momentum: bool,
 }
 

@@ -16,7 +16,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The names that the expression of a site may read, for messages.
+/// The names that the expression of a site may use, for messages.
 const READS: &str = ": an expression at a site may contain its label, the number of sites, and numbers of the case that are \
     the same at all sites";
 
@@ -98,7 +98,7 @@ impl<'a> Fields<'a> {
                 let Some(sites) = self.sites else {
                     return wrong(&format!("{own}{dot}"), &self.scope.explained(why), &span);
                 };
-                // A mistake that is the same at every site is reported for the key as the case writes it.
+                // A mistake that is the same at every site is reported for the key as the case contains it.
                 let other = |table: &DeTable<'_>| !table.contains_key("I");
                 let is_whole = is_element(field) || value.get_ref().as_table().is_some_and(other);
                 let unvalued = match is_whole {
@@ -107,7 +107,7 @@ impl<'a> Fields<'a> {
                 };
                 match (unvalued, base) {
                     (None, _) => {
-                        // The site is named, so that the expression is known.
+                        // The message contains the site, which identifies the expression.
                         let why = why.rsplit_once("\": ").map_or(why.as_str(), |(_, why)| why);
                         wrong(&format!("{written}{dot}"), why, &span)
                     }

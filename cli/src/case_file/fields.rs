@@ -29,9 +29,9 @@ pub(super) struct Fields<'a> {
     pub lines: BTreeMap<String, usize>,
     /// The velocities that the case gives, and the configurations that start at rest.
     pub motion: Motion,
-    /// Keys of each table that gave a value.
+    /// Keys of each table from which a value was read.
     pub seen: BTreeMap<&'static str, HashSet<String>>,
-    /// Quantities whose line at all sites is kept.
+    /// Quantities whose lines are stored for all sites.
     pub quantities: HashSet<(&'static str, &'static str)>,
 }
 
@@ -152,7 +152,7 @@ impl Fields<'_> {
         Some(self.file.wrong(Some(&other.value.span()), &message))
     }
 
-    /// The velocities of a configuration without a given momentum. Without velocities it starts at rest.
+    /// The velocities of a configuration without a given momentum. Without velocities, it starts at rest.
     fn velocities(
         &mut self,
         table: &Table<'_, '_>,

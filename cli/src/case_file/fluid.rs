@@ -32,7 +32,7 @@ pub(super) struct Column {
     numbers: Vec<f64>,
     /// How many there are at a site.
     size: usize,
-    /// The line of the file that they came from.
+    /// The line of the file that contains them.
     line: usize,
 }
 
@@ -55,7 +55,7 @@ struct Reader<'a> {
     scope: Scope,
     /// The positions of the nodes of the grid, and their weights.
     nodes: (Vec<Vec<f64>>, Vec<f64>),
-    /// Meshes at the particles, by number, once an expression takes them.
+    /// Meshes at the particles, by number, if an expression uses them.
     meshes: RefCell<BTreeMap<usize, Rc<AtParticles>>>,
     arrays: Arrays,
     fluid: Fluid,
@@ -133,7 +133,7 @@ impl Fluid {
         Ok(Some(reader.fluid))
     }
 
-    /// The numbers of a field of the card, by its name or by its quantity and its site, and the line that they came from.
+    /// The numbers of a field of the card, found by its name or by its quantity and site, and their line.
     pub(super) fn numbers(
         &self,
         field: &str,
@@ -207,7 +207,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Where particles are.
+    /// The positions of the particles.
     fn places(&mut self, q: &Quantity, value: OptionalValue<'_, '_>) -> Result<(), Failure> {
         let key = ascii(&q.name.text);
         let named = format!("initial.{key}");
@@ -339,8 +339,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads momenta or velocities. Without either the particles start at rest. Momenta are computed from
-    /// velocities later, when the card is filled.
+    /// Reads momenta or velocities. Without either, the particles start at rest. Momenta are computed from velocities
+    /// later, when the card is filled.
     fn motion(&mut self, q: &Quantity, initial: Option<&DeTable<'_>>) -> Result<(), Failure> {
         let name = ascii(&q.name.text);
         for key in ["momentum", "velocity"].map(|word| format!("{word}_{name}")) {

@@ -30,7 +30,7 @@ pub(super) struct AcceptedShapes<'a> {
     pub values: &'a [Vec<usize>],
     /// The sites of the quantity, if it has sites.
     pub sites: Option<&'a [usize]>,
-    /// For momenta: the sites whose configuration no end gives. An array may contain only these sites.
+    /// For momenta: the sites whose configuration no end condition prescribes. An array may contain only these sites.
     pub moving: Option<&'a [usize]>,
 }
 
@@ -130,7 +130,8 @@ impl Arrays {
         };
         let named = key.unwrap_or(named);
         let array = archive.array(named).map_err(of_key)?;
-        // If the value at some site is given, the run lists the sites of its array in a second array.
+        // If an end condition prescribes the value at some site, the run lists the sites of its array in a second
+        // array.
         let told = format!("sites_of_{named}");
         let told = match wanted.sites.is_some() && archive.has(&told) {
             true => Some(whole_numbers(&archive.array(&told).map_err(of_key)?)),
@@ -249,8 +250,8 @@ struct Fit {
     value: Vec<usize>,
 }
 
-/// The way to read an array of a shape. Unless samples are requested, it tries to read the array without
-/// samples first.
+/// The interpretation of an array with a given shape. Unless samples are requested, it first tries to read the array
+/// without samples.
 fn fit(
     shape: &[usize],
     wanted: AcceptedShapes<'_>,
@@ -282,8 +283,8 @@ fn fit(
     };
     match sampled {
         true => with_samples().or_else(|| plain(shape, None)),
-        // A list of numbers may be intended as values at sites, so it is not read as samples; the message
-        // explains this.
+        // A list of numbers may be intended as values at sites, so it is not read as samples; the message explains
+        // this.
         false if wanted.sites.is_none() && shape.len() == 1 => plain(shape, None),
         false => plain(shape, None).or_else(with_samples),
     }
@@ -317,7 +318,7 @@ fn misshapen(
         _ => String::new(),
     };
     let said = match (counts.first(), array.shape.len()) {
-        (Some(None), 1) => ", of samples with the key `sample`",
+        (Some(None), 1) => "; to read one of several samples, add the key `sample`",
         _ => "",
     };
     format!(

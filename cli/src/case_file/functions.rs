@@ -1,6 +1,6 @@
 //! Functions that a case gives: `[functions]` with `b = "0.1*cos(2*pi*x/Lx)"` for `given b(Vec<2>): Real = case;`.
-//! Takes the text of a model and a case; gives the text with these expressions, which are differentiated like
-//! the others.
+//! Takes the text of a model and a case; gives the text with these expressions, which are differentiated like all
+//! others.
 
 use super::location::File;
 use super::space::Space;
@@ -240,7 +240,7 @@ fn replaced(text: &str, open: &[Open], written: &[Vec<String>]) -> Filled {
     }
 }
 
-/// The byte after the word `case` that starts at this line and column.
+/// The byte after the keyword `case` that starts at this line and column.
 fn after_word(text: &str, place: (usize, usize)) -> Option<usize> {
     let at = offset(text, place)?;
     text.get(at..)?.starts_with("case").then_some(at + 4)

@@ -69,7 +69,7 @@ pub(super) fn second_moments(
     let inertia = self::field(field);
     let wanted = "expected the principal moments of inertia [a, b, c] or the matrix [[..], ..]";
     let entries = numbers(&inertia, value, of).map_err(|message| {
-        // A message about a single entry is kept. A message about the whole value asks for the inertia instead.
+        // A message about a single entry is unchanged. A message about the whole value asks for the inertia instead.
         match message.split_once(", found ") {
             Some((_, found)) => format!("{wanted}, found {found}"),
             None => message,

@@ -84,7 +84,7 @@ pub(crate) fn write_lattice(
         for (at, field) in fields.iter().enumerate() {
             let base = base(&copies, field);
             let key = base.as_ref().map_or(field.ascii, |b| &*b.key);
-            // A value given at an end is an element of the list of all sites.
+            // A value prescribed at an end is an element of the list of all sites.
             if base.as_ref().is_some_and(|b| b.given) || told.iter().any(|t| t == key) {
                 continue;
             }

@@ -13,7 +13,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeTable;
 
-/// A case and the lines its values came from.
+/// A case and the lines of its values.
 #[derive(Clone, Debug)]
 pub struct Located {
     /// The case.
@@ -22,9 +22,9 @@ pub struct Located {
     pub file: String,
     /// Line, from 1, of each key such as `parameters.J`.
     pub lines: BTreeMap<String, usize>,
-    /// The velocities of the start, and the configurations at rest.
+    /// The initial velocities, and the configurations at rest.
     pub(crate) motion: Motion,
-    /// How many sites a model with labels has, and how its line ends.
+    /// The number of sites of a model with labels, and its end conditions.
     pub(crate) choice: Option<ChainConfig>,
 }
 
@@ -32,7 +32,7 @@ pub struct Located {
 pub(super) struct File<'a> {
     pub name: &'a str,
     pub text: &'a str,
-    /// Where its lines end.
+    /// The byte offsets of the line ends.
     ends: Vec<usize>,
 }
 
@@ -65,7 +65,7 @@ impl<'a> File<'a> {
         })
     }
 
-    /// Line, from 1, where `span` begins.
+    /// Line, from 1, in which `span` starts.
     pub fn line(&self, span: &Range<usize>) -> usize {
         1 + self.ends.partition_point(|end| *end < span.start)
     }

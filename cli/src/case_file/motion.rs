@@ -30,7 +30,7 @@ pub(super) struct Start {
     pub numbers: Vec<f64>,
 }
 
-/// How the configurations of a case start whose momenta it does not give.
+/// How the configurations without a given momentum start.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Motion {
     pub(super) given: Vec<Start>,
@@ -53,8 +53,8 @@ impl Motion {
         self.given.is_empty() && self.resting.is_empty()
     }
 
-    /// Moves the configuration of a case onto its constraints, if it is as near to them as ten digits are, and puts the momenta
-    /// into the case, for its parameters and configuration.
+    /// Moves the configuration of a case onto its constraints, if it satisfies them to ten digits, and computes the
+    /// momenta of the case from its parameters and configuration.
     pub(crate) fn put(
         &mut self,
         card: &Card,

@@ -3,12 +3,12 @@
 use clebsch_core::lattice::value::SiteData;
 use std::rc::Rc;
 
-/// The names that an expression can read.
+/// The names that an expression can use.
 pub(super) trait Names {
     /// The value of a name.
     fn number(&self, name: &str) -> Option<f64>;
 
-    /// The expression of a text. If one is evaluated at many sites, it is read once.
+    /// The expression of a text. An expression for many sites is parsed only once.
     fn expression(&self, text: &str) -> Result<Rc<SiteData>, String> {
         SiteData::read(text).map(Rc::new)
     }
@@ -26,7 +26,7 @@ impl Names for Nameless {
     }
 }
 
-/// The value of an expression, whatever number it is.
+/// The value of an expression, even if it is not finite.
 pub(super) fn value(text: &str, of: &Numbers<'_>) -> Result<f64, String> {
     let data = of.expression(text);
     let value = data.and_then(|data| data.value(&|name| of.number(name)));

@@ -8,7 +8,7 @@ use std::fmt;
 use std::ops::Range;
 use toml::de::DeValue;
 
-/// Words for no value at all.
+/// Words for a missing value.
 const NOTHING: [&str; 5] = ["None", "null", "nil", "NULL", "NaN"];
 
 /// The correct notation for the value at which TOML stopped; `None` if the value is of none of these kinds.

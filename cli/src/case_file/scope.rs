@@ -1,5 +1,5 @@
-//! The numbers that expressions of a case can read: its step size `h`, and its parameters with a single value.
-//! Takes the tables of a case; gives the values of names, which may be given in any order.
+//! The numbers that expressions of a case can use: its step size `h`, and its parameters with a single value. Takes
+//! the tables of a case; gives the values of names, which may be defined in any order.
 
 use super::names::{Nameless, Names};
 use super::value::number;
@@ -14,7 +14,7 @@ const LISTED: usize = 12;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scope {
     known: HashMap<String, f64>,
-    /// Expressions without a value, by their names: of a site, in a circle, or wrong.
+    /// Expressions without a value, by name: they depend on a site, are circular, or are wrong.
     open: BTreeMap<String, String>,
     /// Names with a value.
     names: Vec<String>,

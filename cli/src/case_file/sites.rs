@@ -15,14 +15,14 @@ pub(super) struct Site<'a> {
     pub place: usize,
     /// How many sites there are.
     pub count: usize,
-    /// The index and count among the sites without a given value. A list may omit the other sites.
+    /// The index and count among the sites without a prescribed value. A list may omit the other sites.
     pub moving: Option<(usize, usize)>,
 }
 
 /// The reason why a part of a value cannot be evaluated; `None` if all parts can.
 pub(super) fn unvalued(value: &DeValue<'_>, of: &Numbers<'_>) -> Option<String> {
     match value {
-        // A number that is not finite belongs to its site.
+        // A number that is not finite is reported for its site.
         DeValue::String(text) => names::value(text, of).err(),
         DeValue::Array(list) => list.iter().find_map(|v| unvalued(v.get_ref(), of)),
         DeValue::Table(table) => table.iter().find_map(|(_, v)| unvalued(v.get_ref(), of)),

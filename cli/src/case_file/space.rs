@@ -13,9 +13,9 @@ use toml::de::{DeTable, DeValue};
 /// The domain of a fluid, in one or two dimensions, with its grid.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Space {
-    /// Along each direction.
+    /// Lengths along each direction.
     pub lengths: Vec<f64>,
-    /// Whether each ends in walls.
+    /// Whether each direction has walls.
     pub walls: Vec<bool>,
     /// Cells of the grid, if the model has a grid.
     pub cells: Option<Vec<usize>>,
@@ -147,7 +147,7 @@ impl Space {
             .fold(1, usize::saturating_mul)
     }
 
-    /// The numbers of the parameter that the model takes: of a torus its lengths, of a box its walls too.
+    /// The numbers of the parameter that the model needs: the lengths of a torus, the lengths and walls of a box.
     pub(crate) fn numbers(&self, is_box: bool) -> Vec<f64> {
         let walls = self.walls.iter().map(|w| f64::from(u8::from(*w)));
         let lengths = self.lengths.iter().copied();

@@ -107,7 +107,7 @@ pub(super) fn places(
         }
         _ => return Err("lattices exist in one and two dimensions only".to_owned()),
     };
-    // Walls end the room that jitter has.
+    // Jitter must not move a particle beyond a wall.
     let lengths = space.lengths.iter().zip(&space.walls).cycle();
     for (x, (length, solid)) in all.iter_mut().zip(lengths) {
         if *solid {
@@ -134,7 +134,7 @@ fn centred(width: f64, columns: usize) -> f64 {
     0.25 * width / columns.max(1) as f64
 }
 
-/// How far the cells of a lattice are from squares: the logarithm of their longer side by the shorter one.
+/// How far the cells of a lattice are from squares: the logarithm of the ratio of the longer to the shorter side.
 #[allow(clippy::cast_precision_loss)]
 fn off([columns, rows]: [usize; 2], aspect: f64) -> f64 {
     (columns as f64 / rows as f64 / aspect).ln().abs()

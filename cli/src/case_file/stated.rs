@@ -1,4 +1,5 @@
-//! A model with labels, as its file states it, and which keys of a case belong to ends that are not chosen.
+//! A model with labels, as its file states it, and the keys of a case that belong to end conditions that are not
+//! chosen.
 
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::Lattice;
@@ -22,7 +23,7 @@ impl Stated {
         Some(Stated { model, lattice })
     }
 
-    /// Whether a key belongs to an end condition or a ring that is not chosen: a case keeps it.
+    /// Whether a key belongs to an end condition or a ring that is not chosen: a case may contain it.
     pub(super) fn of_other_ends(&self, key: &str) -> bool {
         let ends = self.lattice.ends.iter().flatten();
         let mut names = ends

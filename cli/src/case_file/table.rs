@@ -18,7 +18,7 @@ pub(super) struct Table<'t, 'i> {
     pub values: Option<&'t DeTable<'i>>,
     /// The range of the table in the text.
     pub span: Option<Range<usize>>,
-    /// The initial values, which may include values at an end.
+    /// The initial values, which may include values prescribed at an end.
     others: Option<&'t DeTable<'i>>,
     /// The field names that could also be the key of another field, such as its inertia or its velocity.
     /// Without labels these are all names.
@@ -49,7 +49,7 @@ pub(super) struct CaseValue<'k, 't, 'i> {
 }
 
 impl<'t, 'i> Table<'t, 'i> {
-    /// The table with this name. If `held` is true, values at an end may be among the initial values.
+    /// The table with this name. If `held` is true, values prescribed at an end may be among the initial values.
     pub(super) fn of(
         top: &'t DeTable<'i>,
         (name, fields): (&'static str, &'static [Field]),
@@ -100,7 +100,7 @@ impl<'t, 'i> Table<'t, 'i> {
         })
     }
 
-    /// The keys of a field, which at the last end has the name `end` too.
+    /// The keys of a field; at the last end, the name `end` is a key too.
     pub(super) fn keys<'k>(
         &self,
         field: &'static Field,
@@ -177,8 +177,8 @@ impl<'t, 'i> Table<'t, 'i> {
         Some((self.fields.get(momentum)?, element))
     }
 
-    /// The name of all copies of a quantity with numbered names: `x` for `x1`, `x_2`. `None` if a field has
-    /// this name.
+    /// The name of all copies of a quantity with numbered names: `x` for `x1`, `x_2`. `None` if a field has this
+    /// name.
     fn of_all_copies<'k>(&self, name: &'k str) -> Option<&'k str> {
         let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
         if self.at_sites || stem.len() == name.len() {

@@ -16,7 +16,7 @@ pub(super) enum TakenAs {
 }
 
 impl TakenAs {
-    /// The field whose shape an array has.
+    /// The field whose shape an array must have.
     pub(super) fn of_array(self, field: &Field) -> Field {
         match self {
             Self::Inertia => inertia::field(field),
@@ -54,7 +54,7 @@ impl TakenAs {
     }
 }
 
-/// A velocity, both halves of whose skew matrix agree.
+/// Checks that the matrix of a velocity is skew.
 fn checked(field: &Field, all: Vec<f64>) -> Result<Vec<f64>, String> {
     let n = field.rows;
     let at = |i: usize, j: usize| all.get(i * n + j).copied().unwrap_or_default();

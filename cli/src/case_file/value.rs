@@ -120,7 +120,7 @@ pub(super) enum Shape {
     Vector(usize),
     Matrix(usize, usize),
     Ragged,
-    /// A table that is meant for a file.
+    /// A table that describes a file.
     File,
     Other(&'static str),
 }

@@ -127,7 +127,7 @@ pub(super) fn momentum_of(element: &Field, momentum: &Field, components: &[f64])
     out
 }
 
-/// Whether a key that is not known is meant for a velocity.
+/// Whether an unknown key is probably intended as a velocity.
 pub(super) fn is_meant(key: &str) -> bool {
     let word = key.to_lowercase();
     word.contains("veloc")

@@ -1,5 +1,5 @@
-//! Prints a case as a complete TOML file that reads back to the same numbers, bit by bit.
-//! Takes a card and a case; gives the text, with comments on shape, frame and units.
+//! Prints a case as a complete TOML file that parses to the same numbers, bit for bit. Takes a card and a case; gives
+//! the text, with comments on shape, frame and units.
 
 use super::motion::elements;
 use super::velocity::Way;
@@ -10,8 +10,8 @@ use clebsch::card::{Card, Conserved, Field, Kind};
 use clebsch_core::pipeline;
 use std::fmt::Write as _;
 
-/// The default bound on the drift of an exactly conserved invariant. Rounding adds at most about 1e-16 per
-/// step, so the bound suffices for 1e4 steps of any stepper and 1e6 steps of a careful one.
+/// The default bound on the drift of an exactly conserved invariant. Rounding adds at most about 1e-16 per step, so
+/// the bound suffices for 1e4 steps of any stepper and 1e6 steps of a careful one.
 pub(crate) const DEFAULT_BOUND: f64 = 1e-12;
 
 /// The TOML text of `case`, of the model that is called `named` on the command line: its name, or a path.
@@ -55,7 +55,7 @@ pub fn write(card: &Card, case: &Case, named: &str) -> String {
     text
 }
 
-/// As it is typed: a path with spaces in quotes.
+/// For a command line: a path with spaces is quoted.
 fn on_a_line(named: &str) -> String {
     let named = shown(named).to_string();
     match named.contains(char::is_whitespace) {
@@ -172,7 +172,7 @@ fn value(field: &Field, numbers: &[f64]) -> String {
 }
 
 fn list(numbers: &[f64]) -> String {
-    // `{:?}` is the shortest text that reads back to the same f64.
+    // `{:?}` is the shortest text that parses to the same f64.
     let numbers: Vec<String> = numbers.iter().map(|x| format!("{x:?}")).collect();
     format!("[{}]", numbers.join(", "))
 }

@@ -1,5 +1,5 @@
-//! `clebsch check`: whether a model derives and a case starts, without a run.
-//! Takes a model and a case; gives one line for each thing that was checked, or the first error.
+//! `clebsch check`: whether a model derives and a case starts, without a run. Takes a model and a case; gives one
+//! line for each check, or the first error.
 
 use crate::models::gallery::Gallery;
 use crate::named::cases::WhichCase;

@@ -14,7 +14,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use toml::de::DeTable;
 
-/// Two bodies and a spring: the model to start from if none is named.
+/// Two bodies and a spring: the default model.
 const TEMPLATE: [&str; 2] = [
     include_str!("new/template.clebsch"),
     include_str!("new/template.toml"),
@@ -120,7 +120,7 @@ fn admitted(declared: &str) -> Result<(), Failure> {
     )))
 }
 
-/// A model's text that declares another name.
+/// The text of a model with another name.
 fn renamed(text: &str, name: &str) -> String {
     let Some(old) = declared(text) else {
         return text.to_owned();
@@ -145,7 +145,7 @@ fn renamed(text: &str, name: &str) -> String {
     lines.collect()
 }
 
-/// A case of the new model: its comments at the head say how to run it, and the rest is unchanged.
+/// A case of the new model: comments at its start say how to run it, and the rest is unchanged.
 fn case_of(case: &str, name: &str, model: &str) -> String {
     let head: usize = case
         .split_inclusive('\n')

@@ -1,5 +1,5 @@
-//! `clebsch show` and `clebsch case`: the text of a model, and a case as TOML to start your own from.
-//! Takes the names on the command line; gives the texts as they would be in files.
+//! `clebsch show` and `clebsch case`: the text of a model, and a case as TOML as a template for your own. Takes the
+//! names on the command line; gives the texts in the form of files.
 
 use crate::case_file::{self, stated::Stated};
 use crate::models::gallery::{self, Gallery};
@@ -47,8 +47,8 @@ pub(crate) fn statement<'n>(named: &'n NamedModel<'_>) -> &'n str {
     }
 }
 
-/// A case of a model as TOML. Without a name it is the first case of a model of the gallery, or placeholder
-/// values for a file.
+/// A case of a model as TOML. Without a name it is the first case of a shipped model, or placeholder values for a
+/// file.
 ///
 /// # Errors
 /// Usage: the case is unknown, or the text does not derive.

@@ -10,7 +10,7 @@ pub(crate) fn is_momentum(field: &Field) -> bool {
     )
 }
 
-/// Whether bodies turn: momenta of square shape are skew.
+/// Whether bodies rotate: square momenta are skew.
 pub(crate) fn turns(card: &Card) -> bool {
     card.initial.iter().any(|f| f.kind == Kind::Rotation)
 }

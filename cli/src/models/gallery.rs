@@ -1,5 +1,5 @@
-//! Every model the commands offer: compiled ones, each a card with named cases, and shipped model files.
-//! Takes both lists; gives look-up by name, and a suggestion if no model has the name.
+//! Every model that the commands offer: compiled models, each a card with named cases, and shipped model files. Takes
+//! both lists; gives look-up by name, and a suggestion if no model has the name.
 
 use crate::terminal::failure::Failure;
 use crate::words::plain::shown;

@@ -1,5 +1,5 @@
-//! The cases of a model given as text: `MODEL.toml` next to the file, then those of the folder `MODEL/`.
-//! Takes a model file or a shipped model; gives its cases by name, with their texts.
+//! The cases of a model given as text: `MODEL.toml` next to the file, then the cases in the folder `MODEL/`. Takes a
+//! model file or a shipped model; gives its cases by name, with their texts.
 
 use crate::models::gallery::ModelFile;
 use crate::overrides::substitute::substituted;
@@ -30,8 +30,8 @@ pub(crate) enum WhichCase {
 }
 
 impl WhichCase {
-    /// This case with values of the step size and of parameters inserted into its text, so that expressions use
-    /// the new values.
+    /// This case with values of the step size and of parameters inserted into its text, so that expressions use the
+    /// new values.
     #[must_use]
     pub fn with(self, values: &[(String, String)]) -> Self {
         match self {
@@ -84,8 +84,7 @@ pub(crate) struct NamedCases {
 }
 
 impl NamedCases {
-    /// The cases next to a model file. The case with the name of the model file is known by the name in its
-    /// text.
+    /// The cases next to a model file. The name of the case that belongs to the model file is the name in its text.
     pub fn beside(model: &Path) -> Self {
         let own = model.with_extension("toml");
         let mut cases = Vec::new();

@@ -1,4 +1,4 @@
-//! Finds the objects that a command line names: a model of the gallery or a file, and one of its cases.
+//! Finds the model and the case that a command line names: a shipped model or a file, and one of its cases.
 
 pub(crate) mod cases;
 pub(crate) mod model_file;

@@ -1,5 +1,5 @@
-//! A model in a file: read, derived and executed without a build.
-//! Takes a path; gives the model with a case of sample values, to start one's own from.
+//! A model in a file: read, derived and executed without a build. Takes a path; gives the model with a case of
+//! placeholder values, as a template for your own.
 
 use crate::case_file;
 use crate::case_file::stated::Stated;
@@ -104,7 +104,7 @@ fn sample(card: &Card, file: &str) -> Case {
     case
 }
 
-/// Moves fields of one shape apart, since many Lagrangians are singular if two positions coincide.
+/// Separates fields of one shape, since many Lagrangians are singular if two positions coincide.
 fn apart(model: &Model, card: &Card, case: &mut Case) {
     let is_field = |name: &str| {
         model.statements.iter().any(|s| match s {

@@ -1,5 +1,5 @@
-//! The model and the case that a command line names: a model of the gallery, or a model file.
-//! Takes MODEL or MODEL:CASE and the option `--case`; gives the model, ready to run, and which case is meant.
+//! The model and the case that a command line names: a model of the gallery, or a model file. Takes MODEL or
+//! MODEL:CASE and the option `--case`; gives the model, ready to run, and the selected case.
 
 use crate::case_file;
 use crate::models::gallery::{self, Entry, Gallery, GalleryModel};
@@ -27,7 +27,7 @@ pub(crate) struct ModelText {
     pub text: String,
     /// Its cases.
     pub cases: NamedCases,
-    /// Whether it is a file of the user's, whose name is a path.
+    /// Whether it is a model file, named by its path.
     pub is_path: bool,
 }
 
@@ -95,7 +95,7 @@ pub(crate) fn resolved<'a>(
     }
 }
 
-/// A case of a compiled model as a file would have it.
+/// A case of a compiled model as the text of a case file.
 fn written(entry: &Entry, name: Option<&str>) -> Result<CaseText, Failure> {
     let case = gallery::case(entry, name)?;
     Ok(CaseText {
@@ -164,7 +164,7 @@ fn is_name(text: &str) -> bool {
             .all(|c| c.is_alphanumeric() || "-_.".contains(c))
 }
 
-/// The model that a name refers to: a model of the gallery, else a file. `but` ends the message for a case
+/// The model that a name refers to: a model of the gallery, else a file. `but` is the end of the message for a case
 /// file.
 ///
 /// # Errors

@@ -1,5 +1,5 @@
-//! Sample positions that satisfy the constraints. Takes a model and sample values; gives fields moved onto the
-//! constraints by the least change, so that the sample runs.
+//! Sample positions that satisfy the constraints. Takes a model and placeholder values; gives fields moved onto the
+//! constraints by the smallest change, so that the case runs.
 
 use crate::models::gallery::Case;
 use clebsch::card::{Card, Kind};
@@ -33,7 +33,7 @@ struct ConstrainedCase<'a> {
 }
 
 impl ConstrainedCase<'_> {
-    /// The entries that may move, each as a field and an entry of it.
+    /// The entries that may change, each as a field and an entry of it.
     fn free(&self) -> Vec<(usize, usize)> {
         let symbols = &self.spec.symbols;
         let is_field = |name: &str| {
@@ -109,7 +109,7 @@ impl ConstrainedCase<'_> {
                     }
                 }
                 // The constraints have no independent derivatives, as for the distance of two equal positions:
-                // move the entries apart.
+                // separate the entries.
                 None => {
                     for (n, &(i, entry)) in free.iter().enumerate() {
                         at[i][entry] += 0.1 * (1 + n + round) as f64;

@@ -31,12 +31,12 @@ pub(crate) fn arrays(card: &Card, samples: u64) -> Vec<Array> {
         shape.extend((rows * cols > 1).then_some(rows));
         shape.extend((cols > 1).then_some(cols));
         let mut members = q.members.iter().enumerate();
-        // A value given at the last end is a parameter.
+        // A value prescribed at the last end is a parameter.
         let behind = format!("{}_{}", ascii(&q.name), q.members.len());
         let whole = members.all(|(i, (site, _))| i == *site)
             && card.parameters.iter().all(|f| f.ascii != behind);
         if !whole {
-            // The value at some site is given.
+            // The value at some site is prescribed.
             let numbers = q.members.iter().map(|(site, _)| *site as u64);
             let name = format!("sites_of_{}", q.key);
             arrays.push(Array::of_numbers(&name, numbers.collect()));

@@ -48,14 +48,14 @@ pub(super) fn keep(hidden: &Path) {
     });
 }
 
-/// From here on it is not removed: it is complete, or removed already.
+/// From here on it is not removed: it is complete, or already removed.
 pub(super) fn end(hidden: &Path) {
     with_begun(|all| all.retain(|begun| begun.hidden != hidden));
 }
 
 /// Removes a hidden folder and the parents that were made for it.
 pub(super) fn remove(hidden: &Path, created: &[PathBuf]) {
-    // Nothing can be done about errors here.
+    // Errors here cannot be handled.
     if !hidden.as_os_str().is_empty() {
         let _ = fs::remove_dir_all(hidden);
     }
@@ -64,7 +64,7 @@ pub(super) fn remove(hidden: &Path, created: &[PathBuf]) {
     }
 }
 
-/// While this value exists, a run stops by itself when a signal requests it.
+/// While this value exists, a signal stops the run at the next step.
 pub(crate) struct SignalListener(());
 
 impl SignalListener {
@@ -109,7 +109,7 @@ fn watch() {
                 if first && LISTENING.load(Ordering::SeqCst) > 0 {
                     continue;
                 }
-                // Locked to the end: no other folder is begun, and none is completed while it is removed.
+                // The lock is held until the end: no folder can be created or completed during the removal.
                 with_begun(|all| {
                     for begun in all.iter().filter(|begun| !begun.kept) {
                         remove(&begun.hidden, &begun.created);

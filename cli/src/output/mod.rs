@@ -31,7 +31,7 @@ use std::path::Path;
 
 /// Where and why a run stopped before its end.
 pub struct Stopped {
-    /// The last node reached.
+    /// The last node that was reached.
     pub node: u64,
     /// The time there.
     pub time: f64,

@@ -24,7 +24,7 @@ type Entry = (OsString, u64, Option<SystemTime>);
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct EarlierFiles(Vec<Entry>);
 
-/// Whether results may be written to `target`: `None` if it does not exist, else the results to replace.
+/// Whether results may be written to `target`: `None` if it does not exist, otherwise the results to replace.
 ///
 /// # Errors
 /// Usage: `target` exists and `force` is not given, or it is not a folder, or it contains a file that is not
@@ -55,7 +55,7 @@ pub(super) fn at(
     match look(target, known) {
         Ok(Ok(standing)) => Ok(Some(standing)),
         Ok(Err(foreign)) => Err(wrong(format!(
-            "not replaced, because it contains `{}`, which no run wrote; remove that or choose another folder",
+            "not replaced, because it contains `{}`, which no run wrote; remove it or choose another folder",
             shown(foreign)
         ))),
         Err(error) => Err(Failure::io(
@@ -65,8 +65,8 @@ pub(super) fn at(
     }
 }
 
-/// The files in `folder`, or the name of a file that no run wrote. A name with a trailing slash means an inner
-/// folder, whose files must have the endings of files for ParaView.
+/// The files in `folder`, or the name of a file that no run wrote. A name with a trailing slash denotes an inner
+/// folder, whose files must have the extensions of files for ParaView.
 pub(super) fn look(folder: &Path, known: &[&str]) -> io::Result<Result<EarlierFiles, OsString>> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder)? {

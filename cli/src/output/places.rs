@@ -1,5 +1,5 @@
-//! The positions at which bodies at the sites of a chain are drawn: the point of their node, or the midpoint of
-//! their segment. They include points given at an end, and the first point of a ring repeated at the end.
+//! The positions at which bodies at the sites of a chain are drawn: the point of their node, or the midpoint of their
+//! segment. They include points with prescribed positions, and the first point of a ring, repeated at the end.
 
 use crate::output::sites::{AtSites, at_sites};
 use crate::plan::Plan;
@@ -11,14 +11,14 @@ use std::ops::Range;
 /// A point that a body is drawn at.
 #[derive(Clone)]
 pub(crate) enum Point {
-    /// A point that moves, in these columns, with the offset added once around a ring.
+    /// A moving point, in these columns, with the offset for one turn around a ring.
     Moving(Range<usize>, Vec<f64>),
-    /// One that an end holds.
+    /// A point whose position an end condition prescribes.
     Held(Vec<f64>),
 }
 
 impl Point {
-    /// The columns of the point; `None` if the point is given.
+    /// The columns of the point; `None` if its position is prescribed.
     pub(crate) fn columns(&self) -> Option<Range<usize>> {
         match self {
             Point::Held(_) => None,
@@ -46,7 +46,7 @@ pub(crate) struct Places<'a> {
     points: &'a AtSites<'a>,
     /// Offsets from the site of a body to the sites of the points next to it.
     next: [isize; 2],
-    /// The number of points, without the points given at an end.
+    /// The number of points, without the points with prescribed positions.
     count: usize,
 }
 
@@ -75,7 +75,7 @@ impl<'a> Places<'a> {
         })
     }
 
-    /// These points, at their own sites.
+    /// These points at their own sites.
     pub(crate) fn themselves((card, plan): (&'a Card, &'a Plan), points: &'a AtSites<'a>) -> Self {
         Places {
             card,
@@ -86,8 +86,8 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The points next to a site. At an end of a chain only one exists and is given twice. `None` if there is
-    /// none.
+    /// The points next to a site. At an end of a chain there is only one, which is returned twice. `None` if such a
+    /// point does not exist.
     pub(crate) fn at(&self, site: usize) -> Option<(Point, Point)> {
         let beside = self.next.map(|by| {
             let wanted = isize::try_from(site).ok()? + by;
@@ -106,8 +106,8 @@ impl<'a> Places<'a> {
     /// The point at a site. On a ring the site may be beyond the last one.
     pub(crate) fn point(&self, wanted: isize) -> Option<Point> {
         let found = |site: usize| {
-            // There may be a hundred thousand points. They are in the order of their sites, so a binary search
-            // finds one.
+            // There may be a hundred thousand points. They are in the order of their sites, so a binary search finds
+            // a site.
             let members = &self.points.members;
             let at = members.binary_search_by_key(&site, |(s, _)| *s).ok()?;
             members.get(at).map(|(_, c)| c.clone())
@@ -143,7 +143,7 @@ impl<'a> Places<'a> {
         Some(value.clone())
     }
 
-    /// An open chain has one node more than segments. Positions given at its ends are found before.
+    /// An open chain has one node more than segments. Positions prescribed at its ends were handled above.
     fn is_ring(&self) -> bool {
         if let Some(choice) = &self.plan.choice {
             return choice.periodic;

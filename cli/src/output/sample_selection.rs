@@ -1,5 +1,5 @@
-//! As many samples as a picture needs: all of a short run, the extremes of each stretch of a long one.
-//! Takes the rows of a run; gives a record of bounded size.
+//! Selects the samples for a picture: all samples of a short run, the extremes of each interval of a long run. Takes
+//! the rows of a run; gives a record of bounded size.
 
 use super::samples::Rows;
 use clebsch::card::Card;
@@ -9,11 +9,12 @@ use std::io;
 /// If a record has more numbers than this, stretches of samples are drawn by their extremes.
 const MOST: u64 = 1 << 22;
 
-/// Fewer samples are always kept: a picture has about as many columns of pixels, drawn four times finer.
+/// The smallest number of samples that is reduced: a picture has about as many columns of pixels, drawn four times
+/// finer.
 const FEWEST: u64 = 20_000;
 
-/// The rows as a record. Each stretch of a long run becomes two rows, which contain the two extremes of every
-/// number in the order in which they occur.
+/// The rows as a record. Each interval of a long run becomes two rows, which contain the two extremes of every number
+/// in the order in which they occur.
 pub(crate) fn record(card: &Card, rows: &Rows) -> io::Result<Record> {
     let [observables, invariants] = [card.observable_count(), card.invariant_count()];
     let most = (MOST / (2 + observables + invariants) as u64).max(FEWEST);

@@ -1,5 +1,4 @@
-//! The samples of a run on disk: rows of eight-byte numbers, appended while it runs, read row by row for its
-//! files.
+//! The samples of a run on disk: rows of eight-byte numbers, appended during the run, read row by row for its files.
 //! Takes the samples of the integration loop; gives rows. Memory does not grow with their number.
 
 use clebsch::card::Card;
@@ -7,7 +6,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// The name of the file. It is removed when a run is complete.
+/// The name of the file. The file is removed when a run is complete.
 pub(crate) const NAME: &str = "samples.bin";
 
 /// Bytes read or written at once.
@@ -28,7 +27,7 @@ pub(crate) struct Stream {
     row: Vec<u8>,
     rows: u64,
     sum: crc32fast::Hasher,
-    /// The first error. Nothing was written after it.
+    /// The first error. No row was written after it.
     failed: Option<io::Error>,
 }
 
@@ -90,7 +89,7 @@ impl Stream {
         }))
     }
 
-    /// Appends a row. An error is kept for [`Stream::settled`].
+    /// Appends a row. An error is stored for [`Stream::settled`].
     pub(crate) fn push(&mut self, node: u64, time: f64, observables: &[f64], invariants: &[f64]) {
         if self.failed.is_some() {
             return;
@@ -107,7 +106,7 @@ impl Stream {
         }
     }
 
-    /// Sees everything so far to the disk; gives the number of rows and their checksum.
+    /// Flushes everything so far to the disk; returns the number of rows and their checksum.
     pub(crate) fn settled(&mut self) -> io::Result<(u64, u32)> {
         self.check()?;
         self.file.flush()?;
@@ -120,7 +119,7 @@ impl Stream {
         self.failed.take().map_or(Ok(()), Err)
     }
 
-    /// Ends the file; gives its rows.
+    /// Closes the file; returns its rows.
     pub(crate) fn into_rows(mut self) -> io::Result<Rows> {
         self.check()?;
         self.file.flush()?;

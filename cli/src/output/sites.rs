@@ -14,7 +14,7 @@ pub(crate) struct AtSites<'a> {
     pub key: String,
     /// Its name in print, such as `q`.
     pub name: String,
-    /// The letter of its index.
+    /// The label of its index.
     pub index: String,
     /// The observable at its first site, which determines the shape.
     pub field: &'a Field,
@@ -22,11 +22,11 @@ pub(crate) struct AtSites<'a> {
     pub moves: bool,
     /// Whether its sites have neighbours.
     pub on_line: bool,
-    /// Where on a line its sites are.
+    /// Its sites: nodes or segments.
     pub at: Sites,
-    /// Whether it grows once around a ring.
+    /// Whether its value grows by an offset for each turn around a ring.
     pub grows: bool,
-    /// By which parameter, in ASCII.
+    /// The parameter that gives this offset, in ASCII.
     pub offset: Option<String>,
     /// The sites with their columns.
     pub members: Vec<(usize, Range<usize>)>,
@@ -87,7 +87,8 @@ fn copy_of<'a>(field: &Field, quantities: &'a [Quantity]) -> Option<(String, usi
     Some((key.to_owned(), site, own))
 }
 
-/// The single configuration that moves, and its site: a ring of one site has one, and a chain whose ends prescribe all sites but one.
+/// The single configuration that moves, and its site: in a ring of one site, or in a chain whose ends prescribe all
+/// sites but one.
 fn the_only_one<'a>(card: &Card, quantities: &'a [Quantity]) -> Option<(usize, &'a Quantity)> {
     let mut copies = card.observables.iter().filter_map(|field| {
         let (key, site, own) = copy_of(field, quantities)?;

@@ -1,11 +1,11 @@
-//! A folder that appears complete or not at all, and never replaces anything else.
-//! Takes the folder's final name; gives a hidden sibling to write into. At the end the sibling takes the final
-//! name if that name is free, and another name next to it otherwise.
+//! A folder that appears complete or not at all, and never replaces other contents. Takes the folder's final name;
+//! gives a hidden sibling to write into. At the end the sibling gets the final name if this name is free, otherwise
+//! another name next to it.
 //!
 //! The final name is checked twice. The check at the start rejects a run that could not be written before it
-//! computes. At the end only atomic operations of the file system decide: a folder is made only if it does not
-//! exist ([`fs::create_dir`]), and renamed only over an empty one. If several runs write into one folder, one
-//! takes the name, and each of the others keeps its results.
+//! computes. At the end only atomic operations of the file system decide: a folder is created only if it does not
+//! exist ([`fs::create_dir`]), and renamed only over an empty folder. If several runs write into one folder, one run
+//! gets the name, and each of the others keeps its results under another name.
 //!
 //! A run locks its hidden folder, and the system releases the lock however the run ends. The next run into the
 //! same folder removes the remains of killed runs, unless they can be resumed: see [`resumed`].
@@ -49,7 +49,7 @@ pub struct Staging {
 }
 
 impl Staging {
-    /// Checks that `target` may be written and makes the hidden sibling.
+    /// Checks that `target` may be written and creates the hidden sibling.
     ///
     /// # Errors
     /// Usage: `target` exists and `force` is not given, or it is not the folder of an earlier run. Such a
@@ -90,7 +90,7 @@ impl Staging {
         for parent in missing.iter().rev() {
             match fs::create_dir(parent) {
                 Ok(()) => self.created.insert(0, parent.clone()),
-                // Another run has just made it.
+                // Another run has just created it.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
             }
@@ -128,7 +128,7 @@ impl Staging {
         }
     }
 
-    /// Makes a hidden sibling that was not there. The process id only keeps the search short.
+    /// Creates a hidden sibling with a new name. The process id only shortens the search.
     fn fresh(&self, role: &str) -> io::Result<PathBuf> {
         let id = std::process::id();
         first_free(|count| {
@@ -137,7 +137,7 @@ impl Staging {
         })
     }
 
-    /// `target` with something before and behind its name.
+    /// `target` with a prefix and a suffix around its name.
     fn sibling(&self, before: &str, behind: &str) -> PathBuf {
         let mut name = OsString::from(before);
         name.push(self.target.file_name().unwrap_or_default());
@@ -156,7 +156,7 @@ impl Staging {
         interrupted::keep(&self.hidden);
     }
 
-    /// Makes an inner folder. The names of its files start with its name.
+    /// Creates an inner folder. The names of its files start with its name.
     ///
     /// # Errors
     /// Failed: the folder cannot be made.
@@ -194,7 +194,7 @@ impl Staging {
     /// existing folder is then left unchanged, and the results are kept next to it. The message gives their
     /// path.
     pub fn commit(mut self) -> Result<(), Failure> {
-        // From here on the results are complete: whatever happens, they are not removed.
+        // From here on the results are complete and are never removed.
         self.complete();
         let target = shown(&self.target);
         let earlier = match self.set_aside() {
@@ -245,7 +245,7 @@ impl Staging {
         interrupted::end(&self.hidden);
     }
 
-    /// Moves the results to be replaced aside, if they are unchanged since the start. Gives their new path, or
+    /// Moves the results to be replaced aside, if they are unchanged since the start. Returns their new path, or
     /// `None` if there is nothing to replace.
     fn set_aside(&self) -> Result<Option<PathBuf>, String> {
         let Some(standing) = &self.standing else {
@@ -254,17 +254,17 @@ impl Staging {
         let why = |error: io::Error| format!("cannot move the earlier contents: {error}");
         let aside = self.fresh("replaced").map_err(why)?;
         if let Err(error) = rename(&self.target, &aside) {
-            // The folder is empty and was made here, so it does not matter if it cannot be removed.
+            // The folder is empty and was created here, so it does not matter if it cannot be removed.
             let _ = fs::remove_dir(&aside);
             return match error.kind() {
                 io::ErrorKind::NotFound => Ok(None),
                 _ => Err(why(error)),
             };
         }
-        // Looked at after the move, so that no run can exchange it between the look and the move.
+        // Checked after the move, so that no run can exchange it between the check and the move.
         match output_target::look(&aside, &self.known) {
             Ok(Ok(now)) if now == *standing => Ok(Some(aside)),
-            // An empty folder contains no results: another run has just made it to take the name.
+            // An empty folder contains no results: another run has just created it to reserve the name.
             _ if fs::remove_dir(&aside).is_ok() => Ok(None),
             _ => Err(format!(
                 "its contents changed during the run, so it is not replaced{}",
@@ -293,7 +293,7 @@ impl Staging {
         Failure::Failed(format!("--out {target}: {why}; the results are in {place}"))
     }
 
-    /// Renames a folder to the first free name of `target-2`, `target-3` and so on, and gives its path.
+    /// Renames a folder to the first free name of `target-2`, `target-3` and so on, and returns its path.
     fn beside(&self, folder: &Path) -> PrintableName {
         let kept = first_free(|count| {
             let path = self.sibling("", &format!("-{}", count + 2));

@@ -17,7 +17,7 @@ use clebsch::card::Card;
 /// The largest number of steps of a run. Up to this number an f64 is exact.
 const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
 
-/// Puts the options into a case, which was read from this text if it has one. Gives the names that `--set` set.
+/// Applies the options to a case, and to the text of the case if it has one. Gives the names that `--set` set.
 ///
 /// # Errors
 /// Usage: a quantity that the model does not have, a value that is not a number, or more steps than can be counted.
@@ -108,7 +108,7 @@ pub(crate) fn until(matches: &ArgMatches) -> Option<f64> {
 /// The number of steps of `h` that ends nearest to a time, at least one. `None` if it is too large to count.
 pub(crate) fn steps_to(time: f64, h: f64) -> Option<u64> {
     let steps = (time / h).abs().round().max(1.0);
-    // Whole, positive, and exact.
+    // An integer, positive and exact.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     (steps <= MOST_STEPS).then_some(steps as u64)
 }

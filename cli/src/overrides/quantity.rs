@@ -23,7 +23,7 @@ enum Place {
     /// be a field per site.
     Parameter(Vec<usize>, Vec<(usize, f64)>),
     Initial(Vec<usize>, Vec<(usize, f64)>),
-    /// An entry of a table of the case, which is read again with the value in its text.
+    /// An entry of a table of the case, which is read again with the value inserted into its text.
     Text,
     /// Entries of velocities that the case gives.
     Velocity(Vec<usize>, Vec<(usize, f64)>),
@@ -43,8 +43,7 @@ impl Quantity {
         })
     }
 
-    /// The quantity of a case that is read from a text, or an entry of a table in it, such as the angle of a
-    /// rotation.
+    /// A quantity of a case that is read from a text, or an entry of a table in it, such as the angle of a rotation.
     ///
     /// # Errors
     /// As [`Quantity::read`].
@@ -110,7 +109,7 @@ impl Quantity {
         }
     }
 
-    /// Puts a value into a case, or into the velocities with which it starts.
+    /// Sets a value in a case, or in its initial velocities.
     pub fn put(&self, value: f64, case: &mut Case, motion: &mut Motion) {
         let entries = |list: &mut Vec<Vec<f64>>, fields: &[usize], entries: &[(usize, f64)]| {
             for (field, (entry, sign)) in fields
@@ -208,8 +207,8 @@ fn label(name: &str, card: &Card) -> Option<String> {
     Some(own.index.text.clone())
 }
 
-/// The fields with a name, and the first of them. A chain has the names of a case file: a name without the
-/// number of a site means all sites or both ends, and `_N` means the last end.
+/// The fields with a name, and the first of them. A chain uses the names of a case file: a name without a site number
+/// means all sites or both ends, and `_N` means the last end.
 fn found(name: &str, fields: &'static [Field], card: &Card) -> Option<(Vec<usize>, Field)> {
     let all = card.parameters.iter().chain(card.initial);
     let last = all.filter_map(|f| Some(at_site(f.ascii)?.1)).max();

@@ -1,5 +1,5 @@
-//! Inserts values of options into the text of a case, so that expressions in them follow.
-//! Takes the text and names with values; gives the new text.
+//! Inserts values of options into the text of a case, so that its expressions use them. Takes the text and names with
+//! values; gives the new text.
 
 mod entry;
 
@@ -92,7 +92,7 @@ mod tests {
             CASE.replace("k = 2", "k = \"c*3\"")
                 .replace("h = 0.1", "h = \"1/4\"")
         );
-        // Not a single number, not given, not an expression, another name.
+        // Not a single number, a missing key, not an expression, another name.
         for (name, value) in [
             ("g", "1"),
             ("m", "1"),

@@ -88,7 +88,8 @@ pub(super) fn bodies(run: &Finished<'_>, stated: Option<&Stated<'_>>, ties: &Tie
     out
 }
 
-/// The names of advected quantities, such as one body seen from another. They are not drawn as bodies.
+/// The names of advected quantities, such as the attitude of one body relative to another. They are not drawn as
+/// bodies.
 pub(super) fn carried<'a>(stated: Option<&'a Stated<'_>>) -> HashSet<&'a str> {
     let statements = stated.map_or(&[][..], |s| &s.model.statements);
     let names = statements.iter().filter_map(|s| match s {
@@ -146,7 +147,7 @@ impl Body {
         all
     }
 
-    /// The nine entries of its attitude, row by row; a body in the plane turns about the third axis.
+    /// The nine entries of its attitude, row by row; a body in the plane rotates about the third axis.
     pub(super) fn axes(&self, row: &[f64]) -> Vec<f64> {
         let m = row.get(self.turn.clone()).unwrap_or_default();
         let entry = |i: usize| m.get(i).copied().unwrap_or(0.0);

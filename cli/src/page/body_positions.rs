@@ -1,11 +1,11 @@
 //! Finds the position of a body whose attitude is a separate configuration. Takes the text of a model; gives
 //! for each attitude the position vector of the same body.
 //!
-//! A model writes a point of a body as a sum, `x + A*a`: the position of the body, plus an arm that rotates
-//! with it. A sum with opposite signs, `X - A*p`, compares two points; the second point belongs to a body about
-//! the origin. If no sum decides, names with the same number or mark belong together, such as `x1` and `A1`.
-//! Otherwise the order of declaration decides, if there are as many positions as attitudes. It decides nothing
-//! if some body is about the origin, since a position may then belong to a mere point.
+//! A model writes a point of a body as a sum, `x + A*a`: the position of the body, plus an arm that rotates with it.
+//! A sum with opposite signs, `X - A*p`, compares two points; the second point belongs to a body about the origin. If
+//! no sum decides, names with the same number or mark belong together, such as `x1` and `A1`. Otherwise the order of
+//! declaration decides, if there are as many positions as attitudes. Names decide nothing if some body is about the
+//! origin, since a position may then belong to a point mass.
 
 use super::value::Stated;
 use clebsch_core::syntax::ast::{Expression, Kind, Statement};
@@ -106,7 +106,7 @@ impl Ties {
     }
 }
 
-/// The number or the mark behind the letters of a name: `1` of `x1`, `A` of `x_A`.
+/// The number or the mark after the letters of a name: `1` of `x1`, `A` of `x_A`.
 fn mark(name: &str) -> &str {
     if let Some((_, mark)) = name.split_once('_') {
         return mark;
@@ -127,7 +127,7 @@ pub(super) fn place_of<'e>(e: &'e Expression, places: &[&str]) -> Option<&'e str
 }
 
 impl Evidence {
-    /// If a side of an equation contains one position, the side is a point of its body, whatever the signs.
+    /// If a side of an equation contains one position, the side is a point of its body, for any signs.
     fn side(&mut self, stated: &Stated<'_>, e: &Expression, (attitudes, places): Names<'_>) {
         let terms = stated.terms(e);
         let mut own = terms.iter().filter_map(|(_, t)| place_of(t, places));

@@ -1,5 +1,5 @@
-//! Points that a page draws: a chain, single points, particles, or the profile of numbers along a chain.
-//! Takes the fields of a card; gives their positions in a sample, including points given at an end.
+//! Points that a page draws: a chain, single points, particles, or the profile of numbers along a chain. Takes the
+//! fields of a card; gives their positions in a sample, including points with prescribed positions.
 
 use super::particle_colours::Tints;
 use super::value::Stated;
@@ -88,8 +88,7 @@ fn of_sites_of<'a>(
 }
 
 impl Chain<'_> {
-    /// Whether it is a profile of numbers. Particles in one dimension are drawn at the height of their depth
-    /// instead.
+    /// Whether it is a profile of numbers. Particles in one dimension are drawn at the height of their depth instead.
     pub(super) fn is_profile(&self) -> bool {
         self.dim == 1 && self.line
     }
@@ -99,7 +98,7 @@ impl Chain<'_> {
         self.dim
     }
 
-    /// Whether it lies in the plane.
+    /// Whether it is in the plane.
     pub(super) fn is_flat(&self) -> bool {
         self.dim < 3
     }
@@ -115,7 +114,7 @@ impl Chain<'_> {
         tints + self.dim * self.points.len()
     }
 
-    /// The points given at ends; empty for a profile.
+    /// The points with prescribed positions; empty for a profile.
     pub(super) fn held(&self) -> Vec<[f64; 3]> {
         let own = self.points.iter().filter(|_| !self.is_profile());
         let held = own.filter_map(|p| match p {

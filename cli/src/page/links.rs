@@ -12,7 +12,7 @@ use clebsch_core::syntax::ast::{Expression, Kind, Statement};
 /// The largest number of lines on a page.
 const MOST: usize = 200;
 
-/// Part of the size of a picture within which a point stays.
+/// The fraction of the size of a picture within which a point counts as fixed.
 const STAYS: f64 = 1e-6;
 
 /// Relative tolerance within which a length counts as fixed.
@@ -20,20 +20,20 @@ const HELD: f64 = 1e-4;
 
 /// A line through points that are joined.
 pub(super) struct Link {
-    /// Numbers of all points in every frame, three of each.
+    /// The coordinates of all points in every frame, three for each point.
     pub(super) frames: Vec<Vec<f64>>,
-    /// A point that stays, if it has one.
+    /// A fixed point, if there is one.
     pub(super) support: Option<[f64; 3]>,
 }
 
 /// A term with its sign.
 type Term = (bool, Expression);
 
-/// A difference of points by its terms, which a constraint keeps at a length or at zero.
+/// A difference of points, as lists of terms, whose length a constraint fixes or which it sets to zero.
 struct Difference {
     /// Terms of the first point.
     first: Vec<Term>,
-    /// Terms of the second point, with its own signs.
+    /// Terms of the second point, with their signs.
     second: Vec<Term>,
     /// The positions of the two bodies.
     places: [Option<Term>; 2],
@@ -47,7 +47,7 @@ pub(super) struct PageFrames<'a> {
     pub(super) ties: &'a Ties,
 }
 
-/// The links of a model. If there are too many, only the first ones.
+/// The links of a model. If there are too many, only the first of them.
 pub(super) fn links(stated: &Stated<'_>, shown: PageFrames<'_>) -> Vec<Link> {
     let mut out = Vec::new();
     for statement in &stated.model.statements {
@@ -66,8 +66,8 @@ pub(super) fn links(stated: &Stated<'_>, shown: PageFrames<'_>) -> Vec<Link> {
     out
 }
 
-/// The sites at which a constraint applies, or a single `None` if it belongs to no site. Constraints on a chain
-/// are omitted, since the chain is drawn already.
+/// The sites at which a constraint applies, or a single `None` if it belongs to no site. Constraints on a chain are
+/// omitted, since the chain is drawn already.
 fn sites_of(stated: &Stated<'_>, sides: [&Expression; 2]) -> Vec<Option<isize>> {
     let named = |name: &str| {
         let of_it = |e: &&Expression| stated.names(e, &|n| n == name);
@@ -156,8 +156,8 @@ fn signed(terms: Vec<Term>, turned: bool) -> Vec<Term> {
     terms.into_iter().map(turn).collect()
 }
 
-/// Splits a sum of terms into a difference of two points. `None` if it contains no position, or several of the
-/// same sign.
+/// Splits a sum of terms into a difference of two points. `None` if it contains no position, or several positions
+/// with the same sign.
 fn parted(stated: &Stated<'_>, all: Vec<Term>, shown: PageFrames<'_>) -> Option<Difference> {
     let own = |all: &[Term]| -> Vec<Term> {
         let places = all
@@ -173,7 +173,7 @@ fn parted(stated: &Stated<'_>, all: Vec<Term>, shown: PageFrames<'_>) -> Option<
     let all = signed(all, first.0);
     let name = place_of(&first.1, shown.places)?;
     let other = second.as_ref().and_then(|t| place_of(&t.1, shown.places));
-    // Another site of the same field has its own arms.
+    // A different site of the same field has its own arms.
     let same = other == Some(name);
     let of_first = |(minus, e): &Term| match place_of(e, shown.places) {
         Some(_) => !minus,
@@ -230,8 +230,8 @@ fn lengths(
     }
 }
 
-/// A length given by components, `x[1]^2 + x[2]^2`: the distance of one position from the origin or from a
-/// parameter, whichever stays constant while the position moves.
+/// A length given by components, `x[1]^2 + x[2]^2`: the distance of one position from the origin or from a parameter,
+/// whichever distance stays constant along the motion.
 fn by_components(
     stated: &Stated<'_>,
     sides: [&Expression; 2],

@@ -48,7 +48,7 @@ pub(crate) fn page(run: &Finished<'_>, samples: &Samples, pictures: &[(&str, Str
              <input id=\"time\" type=\"range\" min=\"0\" value=\"0\"><span id=\"clock\"></span></div>\n\
              ",
         );
-        let said = format!("{} Drag to turn, scroll to enlarge.", scene.said);
+        let said = format!("{} Drag to rotate, scroll to zoom.", scene.said);
         let _ = writeln!(out, "<p class=\"about\">{}</p>", escaped(said.trim()));
     }
     invariants(run, &mut out);
@@ -73,7 +73,7 @@ pub(crate) fn page(run: &Finished<'_>, samples: &Samples, pictures: &[(&str, Str
     out
 }
 
-/// The table of the run's end.
+/// The table at the end of a run.
 fn invariants(run: &Finished<'_>, out: &mut String) {
     if run.outcomes.is_empty() {
         return;

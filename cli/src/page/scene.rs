@@ -22,7 +22,7 @@ use serde_json::{Value, json};
 use std::collections::HashSet;
 use std::ops::Range;
 
-/// The largest number of frames of a page, besides the last one.
+/// The largest number of frames of a page, without the last frame.
 pub(super) const FRAMES: usize = 600;
 
 /// The largest number of values in all frames together: about two megabytes.

@@ -34,7 +34,7 @@ pub(super) struct Stated<'a> {
     parameters: HashMap<&'static str, (&'static Field, usize)>,
 }
 
-/// Where an expression is read.
+/// The values at which an expression is evaluated.
 #[derive(Clone, Copy)]
 pub(super) struct At<'a> {
     /// All that is observed.
@@ -72,12 +72,12 @@ impl<'a> Stated<'a> {
         })
     }
 
-    /// The expression that `let` gives this name.
+    /// The expression that a `let` statement names.
     pub(super) fn abbreviated(&self, name: &str) -> Option<&Expression> {
         self.lets.get(name)
     }
 
-    /// Whether an expression has anything that is observed.
+    /// Whether an expression contains an observable.
     pub(super) fn moves(&self, e: &Expression) -> bool {
         self.names(e, &|name| {
             let key = ascii(name);
@@ -162,7 +162,7 @@ impl<'a> Stated<'a> {
         })
     }
 
-    /// The value of an expression at the node of the sample: `next` in time is left out.
+    /// The value of an expression at the node of the sample: `next` in time is ignored.
     pub(super) fn value(&self, e: &Expression, at: At<'_>) -> Option<Value> {
         self.within(e, at, DEEP)
     }
@@ -276,19 +276,19 @@ impl<'a> Stated<'a> {
         }))
     }
 
-    /// The positions of these points, including points given at an end.
+    /// The positions of these points, including points with prescribed positions.
     pub(super) fn places<'b>(&'b self, points: &'b AtSites<'b>) -> Places<'b> {
         Places::themselves((self.card, self.plan), points)
     }
 
-    /// The points of a chain in order. They include points given at an end, and for a ring its first node again
-    /// at the end.
+    /// The points of a chain in order. They include points with prescribed positions, and for a ring its first node,
+    /// repeated at the end.
     pub(super) fn along(&self, points: &AtSites<'_>) -> Vec<Point> {
         let sites = || points.members.iter().map(|(site, _)| *site);
         let (first, last) = (sites().min().unwrap_or(0), sites().max().unwrap_or(0));
         let places = self.places(points);
-        // Points given at an end are before the first and after the last site. On a ring the first node follows
-        // the last.
+        // Points with prescribed positions are before the first and after the last site. On a ring the first node
+        // follows the last.
         let first = isize::try_from(first).unwrap_or(0);
         let last = isize::try_from(last).unwrap_or(0);
         let beyond = match points.at {

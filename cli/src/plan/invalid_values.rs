@@ -11,7 +11,7 @@ use clebsch_core::expr::symbol::ascii;
 use std::collections::BTreeMap;
 use toml::de::{DeTable, DeValue};
 
-/// The largest number of letters of a printed value.
+/// The largest number of characters of a printed value.
 const LETTERS: usize = 60;
 
 /// The file of a case, and the lines of its keys.
@@ -86,7 +86,7 @@ fn words(formula: &str) -> impl Iterator<Item = String> {
     })
 }
 
-/// The letter of the sites and the number of the site, if the field is a value at a site.
+/// The label and the number of the site, if the field is a value at a site.
 fn site_of(stated: Option<&Stated>, field: &Field) -> Option<(String, usize)> {
     let lattice = &stated?.lattice;
     let (quantity, site) = at_site(field.ascii)?;
@@ -136,7 +136,7 @@ fn plainly(field: &Field, numbers: &[f64]) -> String {
     }
 }
 
-/// As much as is read in a sentence.
+/// A value shortened for a sentence.
 fn short(value: &str) -> String {
     match value.chars().count() {
         ..=LETTERS => value.to_owned(),

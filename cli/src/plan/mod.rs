@@ -39,7 +39,7 @@ pub struct Plan {
     pub order: Option<u32>,
     /// Every how many nodes the trajectory is written.
     pub every: u64,
-    /// The options that determine the results, as given; `null` if not given.
+    /// The options that determine the results, as given; `null` for missing options.
     pub arguments: Value,
     /// The requested solver.
     pub solver: Option<Method>,
@@ -49,9 +49,9 @@ pub struct Plan {
     pub halve: bool,
     /// Whether pictures are drawn for a column of a paper.
     pub paper: bool,
-    /// Whether samples are written as text however many they are.
+    /// Whether samples are written as text regardless of their number.
     pub csv: bool,
-    /// How many sites a model with labels has, and how its line ends.
+    /// The number of sites of a model with labels, and its end conditions.
     pub choice: Option<ChainConfig>,
     /// Whether another step size keeps the end time of the case, rather than the number of steps.
     pub keeps_time: bool,
@@ -59,7 +59,7 @@ pub struct Plan {
     set: Vec<String>,
     /// For a case read from a file: its name, and the line of each key.
     origin: Option<Origin>,
-    /// The velocities of the start, and the configurations at rest.
+    /// The initial velocities, and the configurations at rest.
     pub(crate) motion: Motion,
 }
 
@@ -184,7 +184,7 @@ impl Plan {
         self
     }
 
-    /// The case without options, with every `every`-th node kept.
+    /// The case without options, with every `every`-th node recorded.
     #[must_use]
     pub fn of(case: &Case, every: u64) -> Self {
         Self {
@@ -272,7 +272,7 @@ impl Plan {
         })
     }
 
-    /// If a model file runs with sample values, the advice on how to give other values.
+    /// If a model file runs with placeholder values, the advice on how to give other values.
     fn sample(&self) -> Option<String> {
         let model = self.arguments.get("model")?.as_str()?;
         let is_sample = self.origin.is_none() && self.case.name == "sample";
@@ -285,8 +285,8 @@ impl Plan {
         })
     }
 
-    /// Where the wrong value was given: `top.toml:7: parameters.J`. A value computed from parameters is
-    /// reported by these parameters.
+    /// The location of the wrong value: `top.toml:7: parameters.J`. A value computed from parameters is reported by
+    /// these parameters.
     fn place(&self, card: &Card, wrong: &ParameterError) -> String {
         if wrong.field == "h" && self.arguments.get("h").is_some_and(Value::is_number) {
             return "--h".to_owned();
@@ -300,7 +300,7 @@ impl Plan {
             let field = fields.iter().find(named)?;
             Some(format!("{table}.{}", field.ascii))
         };
-        // A case may give the value at an end among the initial values.
+        // A case may give a value prescribed at an end among the initial values.
         let lines = self.origin.as_ref().map(|(_, lines)| lines);
         let among_initial = |key: &String| lines.is_some_and(|l| l.contains_key(key));
         let held = of("initial", card.parameters).filter(among_initial);
@@ -327,7 +327,7 @@ impl Plan {
     }
 }
 
-/// Puts the momenta of velocities into a case.
+/// Computes the momenta of a case from its velocities.
 fn start(
     motion: &mut Motion,
     card: &Card,
@@ -338,8 +338,8 @@ fn start(
     put.map_err(|wrong| Failure::Usage(format!("initial.{}: {}", wrong.key, wrong.why)))
 }
 
-/// Reads the case of a file with the first card whose fields it fits. If no card fits, the error for the first
-/// card is returned. If `may_have_sites` is true, the labels of the model are read from its text.
+/// Reads the case of a file with the first card whose fields match it. If no card fits, the error for the first card
+/// is returned. If `may_have_sites` is true, the labels of the model are read from its text.
 fn read(case: &CaseText, cards: &[Card], may_have_sites: bool) -> Result<Located, Failure> {
     let CaseText { file, text } = case;
     let mut first = None;

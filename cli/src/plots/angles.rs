@@ -19,15 +19,16 @@ const FEW: usize = 3;
 /// Sine of the nutation below which rounding shows in precession and spin.
 const UPRIGHT: f64 = 1e-6;
 
-/// Sine of the nutation below which a body is near the vertical: there precession and spin turn far for small motions.
+/// Sine of the nutation below which a body is near the vertical: there, small motions change precession and spin by
+/// large angles.
 const NEAR: f64 = 0.05;
 
-/// If a body is near the vertical more often than this, or in more than this part of the samples, precession
-/// and spin do not describe its motion.
+/// If a body is near the vertical more often than this, or in more than this fraction of the samples, precession and
+/// spin do not describe its motion.
 const PASSAGES: usize = 2;
 const STAY: f64 = 0.1;
 
-/// Half turns in both directions are equally near, up to this part of a turn.
+/// Half turns in both directions count as equally near up to this fraction of a turn.
 const HALF: f64 = 1e-3;
 
 /// Euler angles of each rotation, Λ = R₃(φ) R₁(θ) R₃(ψ) about space and body axes: precession and spin followed continuously, and nutation.
@@ -67,7 +68,7 @@ pub(crate) fn angles(run: &Finished<'_>, samples: &Samples) -> Plot {
 enum Meaning {
     /// None: the body passes the downward vertical repeatedly, where no sum of the angles is defined.
     Nothing,
-    /// Nutation and the sum: it passes the upward vertical again and again, or stays near.
+    /// Nutation and the sum: the body passes the upward vertical repeatedly, or stays near it.
     Sum,
     /// All three.
     All,
@@ -247,7 +248,7 @@ fn continued(rows: &Rows) -> Option<Rows> {
 /// θ, φ, ψ and φ + ψ; NaN if an angle is undefined.
 fn determined(r: &Matrix3<f64>) -> [f64; 4] {
     let [phi, theta, psi] = euler(r);
-    // (1 + cos θ) times sine and cosine of the sum: accurate at small θ, where φ and ψ are not.
+    // (1 + cos θ) times sine and cosine of the sum: accurate at small θ, unlike φ and ψ.
     let sum = (r[(1, 0)] - r[(0, 1)]).atan2(r[(0, 0)] + r[(1, 1)]);
     match theta.sin() < UPRIGHT {
         false => [theta, phi, psi, sum],
@@ -259,7 +260,7 @@ fn determined(r: &Matrix3<f64>) -> [f64; 4] {
 /// φ, θ, ψ. θ is computed from its sine and cosine, since the cosine loses half of the digits near 0 and π.
 fn euler(r: &Matrix3<f64>) -> [f64; 3] {
     let sine = r[(0, 2)].hypot(r[(1, 2)]);
-    // Upright, only the sum of both turns about the axis is known: the first has it.
+    // In the upright position only the sum of both angles is known: it becomes the first angle.
     if sine < 1e-14 {
         return [r[(1, 0)].atan2(r[(0, 0)]), sine.atan2(r[(2, 2)]), 0.0];
     }
@@ -270,8 +271,8 @@ fn euler(r: &Matrix3<f64>) -> [f64; 3] {
     ]
 }
 
-/// The angle nearest to the one before. In a plane through the vertical precession and spin jump by half a turn; of both
-/// sides, which are as near, the one nearer to zero is taken, lest they add up.
+/// The angle nearest to the one before. In a plane through the vertical, precession and spin jump by half a turn.
+/// Both directions are equally near; the direction towards zero is chosen, so that jumps do not accumulate.
 fn followed(before: Option<f64>, angle: f64) -> f64 {
     let full = std::f64::consts::TAU;
     let Some(before) = before.filter(|before| before.is_finite() && angle.is_finite()) else {
@@ -344,7 +345,7 @@ mod tests {
         assert_eq!(all(&|t| turn(Vector3::z(), t)), Meaning::Sum);
         assert_eq!(all(&|t| turn(Vector3::x(), t.sin())), Meaning::Sum);
         assert_eq!(all(&|t| turn(Vector3::x(), 2.0 * t)), Meaning::Nothing);
-        // Between samples that are far from it.
+        // The samples on both sides of a passage are far from the vertical.
         assert_eq!(
             all(&|t| turn(Vector3::x(), (13.0 * t).sin() * 0.3)),
             Meaning::Sum

@@ -29,7 +29,7 @@ pub(super) struct QuantityColumns {
     pub(super) name: String,
     /// Its symbol in print: its name, or the symbol for momenta.
     pub(super) letter: String,
-    /// The letter of its sites.
+    /// The label of its sites.
     pub(super) index: String,
     /// Its observables, each with its site. `None` if the quantity has only one copy.
     pub(super) members: Vec<(Option<usize>, Placed)>,
@@ -69,8 +69,8 @@ pub(super) fn grouped(run: &Finished<'_>, all: Vec<Placed>) -> Vec<QuantityColum
     kin
 }
 
-/// Selects as many copies of each quantity as fit into `room` together, evenly spaced from its first to its
-/// last site. If some are omitted, a sentence lists the copies that are shown.
+/// Selects as many copies of each quantity as fit into `room` together, evenly spaced from its first to its last
+/// site. If some are omitted, a sentence lists the copies that are shown.
 fn chosen(kin: Vec<QuantityColumns>, room: usize) -> (Vec<QuantityColumns>, Option<String>) {
     let taken = |each: usize| kin.iter().map(|k| k.members.len().min(each)).sum::<usize>();
     let all = taken(usize::MAX);
@@ -78,7 +78,7 @@ fn chosen(kin: Vec<QuantityColumns>, room: usize) -> (Vec<QuantityColumns>, Opti
         return (kin, None);
     }
     let most = (1..=room).rev().find(|each| taken(*each) <= room);
-    // Whole rows of each.
+    // Only complete rows.
     let each = match most.unwrap_or(1) {
         some @ 3.. => some / 3 * 3,
         few => few,
@@ -125,7 +125,7 @@ pub(super) fn rotations(run: &Finished<'_>) -> Vec<Placed> {
         .collect()
 }
 
-/// The rows of the samples shown, these columns of each.
+/// The rows of the samples in the window, restricted to these columns.
 pub(super) fn rows<'a>(
     shown: Window<'a>,
     columns: &Range<usize>,
@@ -153,8 +153,7 @@ pub(crate) fn attitude(run: &Finished<'_>, samples: &Samples) -> Plot {
         .filter(|q| q.moves)
         .flat_map(|q| q.members.iter().map(|(_, columns)| columns))
         .collect();
-    // Positions of bodies, which are followed by a momentum, are not directions either; an orbit has its own
-    // picture.
+    // Positions of bodies, which precede their momenta, are not directions either; an orbit has its own picture.
     let all = run.card.observables;
     let positions = all.windows(2).filter(|pair| {
         pair.last()
@@ -223,7 +222,7 @@ fn of_axis(
     }
 }
 
-/// The sphere of a vector or a body momentum that is not zero throughout. Its caption has the name, and a word
+/// The sphere of a vector or a body momentum that is not zero throughout. Its caption contains the name, and a word
 /// that distinguishes vectors with the same name.
 fn of_vectors(
     run: &Finished<'_>,

@@ -1,5 +1,5 @@
-//! An axis: its range, its ticks and their labels.
-//! Takes a range of numbers or of decades; gives what the chart needs, ticks at round numbers.
+//! An axis: its range, its ticks and their labels. Takes a range of numbers or of decades; gives the limits of the
+//! chart and ticks at round numbers.
 
 use super::curve::Curve;
 use super::power_of_ten;
@@ -7,7 +7,7 @@ use crate::words::number::plain;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use std::ops::Range;
 
-/// Drifts below are drawn here: a tenth of the unit roundoff, so that rounding stays visible above.
+/// Smaller drifts are drawn at this value: a tenth of the unit roundoff, so that rounding stays visible above it.
 pub(crate) const FLOOR: f64 = 1e-17;
 
 /// A linear axis, or one of decimal logarithms.
@@ -48,7 +48,7 @@ impl Axis {
             magnitude
         };
         let unit = 10_f64.powf(exponent);
-        // Digits that tell neighbouring ticks apart, and no more.
+        // The number of digits that distinguishes neighbouring ticks.
         let digits = (exponent - step.log10().floor()).clamp(0.0, 17.0) as usize;
         let mut ticks = Vec::new();
         let mut index = (low / step).ceil();
@@ -140,7 +140,7 @@ impl Axis {
         let margin = if high - low > ROUNDING * size {
             0.06 * (high - low)
         } else if largest > ROUNDING * size {
-            // So wide that rounding is invisible.
+            // Wide enough that rounding is invisible.
             (0.2 * largest).max(200.0 * (high - low))
         } else if size > 0.0 {
             0.2 * size
@@ -210,7 +210,7 @@ impl Axis {
             exponent += stride;
         }
         Self {
-            // Room below, so that a curve on the floor is not hidden by the axis.
+            // Space below, so that the axis does not hide a curve on the floor.
             low: low - 0.02 * (high - low),
             high,
             ticks,
@@ -329,8 +329,8 @@ mod tests {
         };
         let axis = Axis::around(&[curve]);
         assert!(axis.low < 0.9 && axis.high > 1.1);
-        // Compared with other parts of the quantity: noise about zero, and a small number with the noise of a
-        // large one.
+        // Relative to other parts of the quantity: noise about zero, and a small number with the noise of a large
+        // one.
         for (first, second) in [(1e-17, -3e-17), (1e-8, 1e-8 + 1e-14), (2e-12, 3e-12)] {
             let curve = Curve {
                 label: String::new(),

@@ -3,8 +3,8 @@
 
 use plotters::style::RGBColor;
 
-/// Okabe and Ito's palette without its yellow, which is too faint on white, in an order that keeps
-/// neighbours apart. Source: Okabe and Ito, Color Universal Design (2008).
+/// Okabe and Ito's palette without its yellow, which is too faint on white, in an order that separates neighbours.
+/// Source: Okabe and Ito, Color Universal Design (2008).
 const PALETTE: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -24,7 +24,7 @@ pub struct Curve {
     pub note: Option<String>,
     /// Time and value; for a logarithmic axis the decimal logarithm.
     pub points: Vec<(f64, f64)>,
-    /// How it is drawn.
+    /// Its colour and dashes.
     pub stroke: Stroke,
 }
 
@@ -33,7 +33,7 @@ pub struct Curve {
 pub struct Stroke {
     /// Its colour.
     pub color: RGBColor,
-    /// Lengths of dash and gap in pixels; `None` for a full line.
+    /// Lengths of dash and gap in pixels; `None` for a solid line.
     pub dash: Option<(u32, u32)>,
     /// The marks of the points, if a curve joins measurements.
     pub marks: Marks,
@@ -52,7 +52,8 @@ pub enum Marks {
 }
 
 impl Stroke {
-    /// The stroke of curve `index`: colours first, then the same colours with longer and longer dashes.
+    /// The stroke of curve `index`: first solid lines in all colours, then the same colours with longer and longer
+    /// dashes.
     pub fn number(index: usize) -> Self {
         let color = PALETTE.get(index % PALETTE.len()).copied();
         Self {

@@ -21,13 +21,13 @@ const GRID: RGBColor = RGBColor(232, 232, 232);
 const HEAD: u32 = 52;
 const FOOT: u32 = 50;
 const EDGE: u32 = 4;
-/// Where legends below a chart begin.
+/// The offset of legends below a chart.
 const LEFT: u32 = 24;
 /// Width of a column of a paper.
 const COLUMN: u32 = 430;
-/// The part of this width for a colour scale next to a chart.
+/// The fraction of the width that a colour scale next to a chart takes.
 const SCALE: u32 = 88;
-/// The largest number of letters of a caption there.
+/// The largest number of characters of a caption there.
 const CAPTION: usize = 60;
 
 /// Panels that share the axis of time.
@@ -64,7 +64,7 @@ pub struct Panel {
     pub height: u32,
 }
 
-/// Pixels that a text of a legend takes in the widest of the usual fonts, up to a number of letters.
+/// The width in pixels of a legend text in the widest common font, up to a number of characters.
 fn width_of(text: &str, most: usize) -> u32 {
     let tenths = text.chars().take(most).map(|letter| match letter {
         'm' | 'w' | 'M' | 'W' => 120,
@@ -98,7 +98,7 @@ impl Figure {
             let root = backend.into_drawing_area();
             self.draw(&root).map_err(|error| error.to_string())?;
         }
-        // The view box keeps the fine coordinates; the size on the page is the plain one.
+        // The view box keeps the fine coordinates; the size on the page is the size in pixels.
         let fine = format!("width=\"{}\" height=\"{}\"", width * FINE, height * FINE);
         let plain = match self.paper {
             true => super::sphere::printed_size(f64::from(width), f64::from(height)),
@@ -106,7 +106,7 @@ impl Figure {
         };
         let svg = svg.replacen(&fine, &plain, 1);
         Ok(match self.panels.iter().any(|panel| panel.map.is_some()) {
-            // Cells that meet leave no line between them.
+            // Adjacent cells are drawn without a line between them.
             true => svg.replacen("<svg ", "<svg shape-rendering=\"crispEdges\" ", 1),
             false => svg,
         })
@@ -125,7 +125,7 @@ impl Figure {
             .map(Panel::legend_width)
             .max()
             .unwrap_or(0);
-        // Charts of one figure share their time axis, so all leave room if one has a colour scale.
+        // Charts of one figure share their time axis, so all charts leave space if one has a colour scale.
         let scale = match self.panels.iter().any(Panel::has_scale) {
             true => SCALE,
             false => 0,
@@ -241,7 +241,7 @@ impl Panel {
         }
     }
 
-    /// The entries of a legend below the chart: which line, how far from the left.
+    /// The entries of a legend below the chart: the line of each, and its offset from the left.
     fn lines(&self) -> Vec<(u32, u32, String, Stroke)> {
         let (mut line, mut at) = (0, LEFT);
         let mut all = Vec::new();
@@ -277,7 +277,8 @@ impl Panel {
         Ok(())
     }
 
-    /// Room for the longest text of the legend, at 7.3 pixels a letter: as wide as the widest of the usual fonts.
+    /// Space for the longest text of the legend, at 7.3 pixels for each character: the width in the widest common
+    /// font.
     fn legend_width(&self) -> u32 {
         if self.has_scale() {
             return 100;
@@ -364,7 +365,7 @@ pub(super) fn text(
     Ok(())
 }
 
-/// The backend divides font sizes by 1.24; undone here, so that sizes are pixels.
+/// The backend divides font sizes by 1.24; this factor restores sizes in pixels.
 fn style(size: u32, color: RGBColor) -> TextStyle<'static> {
     let size = f64::from(size * FINE) * 1.24;
     TextStyle {
@@ -395,7 +396,7 @@ pub(super) const fn fine(pixels: u32) -> u32 {
 mod tests {
     use super::width_of;
 
-    /// Advances of letters at 12 pixels in DejaVu Sans, or in Verdana if that is wider.
+    /// Advances of characters at 12 pixels in DejaVu Sans, or in Verdana if that is wider.
     #[test]
     fn legends_have_room_for_their_texts() {
         for (text, wide) in [

@@ -30,7 +30,7 @@ const SCALE: [(u8, u8, u8); 5] = [
     (253, 231, 37),
 ];
 
-/// The colour of a part of the range, 0 to 1.
+/// The colour of a fraction of the range, from 0 to 1.
 pub(super) fn color(part: f64) -> RGBColor {
     let at = part.clamp(0.0, 1.0) * (SCALE.len() - 1) as f64;
     let below = (at.floor() as usize).min(SCALE.len() - 2);

@@ -76,8 +76,8 @@ pub(crate) fn fields(run: &Finished<'_>, samples: &Samples) -> Plot {
     })
 }
 
-/// Drift of every invariant on a logarithmic axis, with the bounds of the case; below it the change of each that is bounded
-/// only, with its sign, over the power of the step with which it falls.
+/// Drift of every invariant on a logarithmic axis, with the bounds of the case. Below it, for each invariant that is
+/// only bounded, its signed change, divided by the power of the step with which it decreases.
 pub(crate) fn invariants(run: &Finished<'_>, record: &Record) -> Plot {
     if run.outcomes.is_empty() {
         return Ok(None);
@@ -163,9 +163,9 @@ pub(crate) fn invariants(run: &Finished<'_>, record: &Record) -> Plot {
     figure(run, shown, "drift of the invariants", panels)
 }
 
-/// A panel for each invariant whose error is only bounded, such as the energy. It shows the change since time
-/// 0, divided by the step size to the power of the order. This quotient is about the same for every step size.
-/// At most [`CHANGES`] panels.
+/// A panel for each invariant whose error is only bounded, such as the energy. It shows the change since time 0,
+/// divided by the step size to the power of the order. This quotient is about the same for all step sizes. At most
+/// [`CHANGES`] panels.
 fn changes(run: &Finished<'_>, record: &Record) -> Vec<Panel> {
     let order = run.plan.order.unwrap_or(run.card.order);
     let unit = run.plan.case.h.abs().powi(order.cast_signed());
@@ -254,8 +254,8 @@ fn titles(run: &Finished<'_>, shown: Window<'_>, what: &str) -> (String, String)
     (title, subtitle)
 }
 
-/// A figure with one panel for each observable that `wanted` accepts. The second argument of `wanted` is true
-/// for a field, which is followed by a momentum of its own shape.
+/// A figure with one panel for each observable that `wanted` accepts. The second argument of `wanted` is true for a
+/// field, which is followed by a momentum of the same shape.
 fn observables(
     run: &Finished<'_>,
     samples: &Samples,
@@ -396,8 +396,8 @@ fn is_skew<I: Iterator<Item = f64>>(field: &Field, column: &impl Fn(usize) -> I)
         })
 }
 
-/// Hidden curves: each with the later curve that covers it, by their numbers. At every sample their distance is
-/// less than the width of a line.
+/// Hidden curves: each with the later curve that covers it, by index. At every sample their distance is less than the
+/// width of a line.
 fn coincident<I: Iterator<Item = f64>>(
     drawn: &[usize],
     column: &impl Fn(usize) -> I,

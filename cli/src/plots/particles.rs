@@ -21,7 +21,7 @@ use plotters::prelude::{
 const SIDE: f64 = 360.0;
 const PRINTED: f64 = 118.0;
 const LEFT: i32 = 44;
-/// Where panels begin, below the title if there is one.
+/// The offset of the panels, below the title if there is one.
 const TOP: i32 = 76;
 const BARE: i32 = 26;
 const GAP: i32 = 56;
@@ -163,7 +163,7 @@ fn snapshot(
         _ => None,
     });
     let (radius, room) = match space.lengths.as_slice() {
-        // As large as the room that each has.
+        // As large as the area of each particle permits.
         [width, height] => {
             let longest = width.max(*height);
             let whole = width * height * (side / longest).powi(2);
@@ -358,7 +358,7 @@ fn panel(
     for (corners, value) in shot.cells.iter().filter(|(_, v)| v.is_finite()) {
         let color = color((value - low) / (high - low));
         for part in frame.within(corners) {
-            // Neighbours meet without a seam.
+            // Neighbours are adjacent without a seam.
             root.draw(&Polygon::new(part.clone(), color.filled()))?;
             root.draw(&PathElement::new(part, color.stroke_width(fine(1))))?;
         }

@@ -1,18 +1,18 @@
-//! Fewer points without hiding anything: extremes of each stretch, or the envelope of a drift.
-//! Takes samples; gives points in the order of time.
+//! Reduces the number of points without hiding anything: extremes of each interval, or the envelope of a drift. Takes
+//! samples; gives points in the order of time.
 
 use clebsch::integrate::Drift;
 use clebsch::record::Record;
 use clebsch::scalar::larger;
 
-/// Stretches of a curve. A plot is about 650 pixels wide and drawn four times finer; two points a
-/// stretch then leave no visible gap, and files stay small.
+/// Stretches of a curve. A plot is about 650 pixels wide and drawn four times finer; two points per interval then
+/// leave no visible gap, and files stay small.
 const STRETCHES: usize = 1000;
 
 /// Points of an envelope: a smooth line rather than a band.
 const ENVELOPE: usize = 150;
 
-/// The least and the greatest value of each stretch, in the order in which they occur. NaNs are omitted.
+/// The smallest and the largest value of each interval, in the order in which they occur. NaNs are omitted.
 pub(crate) fn extremes(times: &[f64], values: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
     let points = times.iter().copied().zip(values);
     let points: Vec<(f64, f64)> = points.filter(|point| !point.1.is_nan()).collect();

@@ -133,8 +133,7 @@ pub(super) fn mapped(
     }
 }
 
-/// The sentence about values that are all equal, up to rounding in quantities of this size; `None` if they
-/// differ.
+/// The sentence for values that are all equal, up to rounding in quantities of this size; `None` if they differ.
 fn same<'a>(values: impl Iterator<Item = &'a f64>, size: f64) -> Option<String> {
     let mut values = values.copied().filter(|v| v.is_finite()).peekable();
     if values.peek().is_none() {
@@ -179,7 +178,7 @@ mod tests {
             said(&[1e-17, -3e-17], 1.0).as_deref(),
             Some("zero throughout, up to rounding: 3e−17 at most")
         );
-        // Small compared with nothing else: the values are significant.
+        // No larger quantity is present: the values are significant.
         assert_eq!(said(&[1e-17, -3e-17], 3e-17), None);
         assert_eq!(said(&[1.0, 2.0, f64::NAN], 1.0), None);
     }

@@ -25,13 +25,13 @@ const GAP: f64 = 14.0;
 const LEFT: f64 = 32.0;
 /// Margin to the right of the last panel.
 const RIGHT: f64 = 16.0;
-/// Where panels begin, below the title if there is one.
+/// The offset of the panels, below the title if there is one.
 const TOP: f64 = 58.0;
 const BARE: f64 = 8.0;
-/// Above each panel for its time, below all for the scale.
+/// Space above each panel for its time, and below all panels for the scale.
 const ABOVE: f64 = 26.0;
 const BELOW: f64 = 52.0;
-/// If the third extent exceeds this part of the largest, it has its own plane.
+/// If the third extent exceeds this fraction of the largest extent, it gets its own plane.
 const DEEP: f64 = 0.1;
 const INK: RGBColor = RGBColor(30, 30, 30);
 const FAINT: RGBColor = RGBColor(150, 150, 150);
@@ -73,7 +73,7 @@ struct Shot {
     points: Vec<Vec<f64>>,
 }
 
-/// Eight samples from the first to the last, including points given at an end.
+/// Eight samples from the first to the last, including points with prescribed positions.
 fn shots(run: &Finished<'_>, record: &Record, field: &AtSites<'_>) -> Vec<Shot> {
     let sites = field.members.iter().map(|(site, _)| *site);
     let (first, last) = (sites.clone().min().unwrap_or(0), sites.max().unwrap_or(0));
@@ -84,7 +84,7 @@ fn shots(run: &Finished<'_>, record: &Record, field: &AtSites<'_>) -> Vec<Shot> 
     if wanted.last() != Some(&last) {
         wanted.push(last);
     }
-    // A value given at an end has no column. On a ring, the first node is repeated at the end.
+    // A prescribed value does not have a column. On a ring, the first node is repeated at the end.
     if first > 0 {
         wanted.insert(0, first - 1);
     }
@@ -238,7 +238,8 @@ impl Block {
         [width, (width * ratio).round()]
     }
 
-    /// Pixels for a unit of each direction. A shape has one scale both ways; a graph fills its panel.
+    /// Pixels for a unit along each direction. A shape has the same scale along both directions; a graph fills its
+    /// panel.
     fn unit(&self, side: [f64; 2]) -> [f64; 2] {
         let unit = [side[0] / self.wide(0), side[1] / self.wide(1)];
         match self.seen {

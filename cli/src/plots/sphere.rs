@@ -1,5 +1,5 @@
-//! Spheres with curves on them, seen from one side. The far side is drawn faint.
-//! Takes curves in space and functions on a sphere; gives SVG text.
+//! Spheres with curves on them, seen from one side. The far side is drawn faint. Takes curves in space and functions
+//! on a sphere; gives SVG text.
 
 use clebsch::nalgebra::Vector3;
 use std::fmt::Write;
@@ -122,7 +122,7 @@ pub(super) fn sheet(
     let cell: f64 = width / most as f64;
     let tall = cell + 34.0;
     let lines = spheres.len().div_ceil(columns);
-    // Letters of 12 pixels are about 6.6 pixels wide.
+    // Characters of 12 pixels are about 6.6 pixels wide.
     let below = match sentence {
         "" => Vec::new(),
         words => folded(words, ((width - 32.0) / 6.6) as usize),
@@ -166,7 +166,7 @@ fn write_text(svg: &mut String, words: &str, [x, y]: [f64; 2], size: f64, ink: &
     );
 }
 
-/// A caption in lines of at most `letters` letters.
+/// A caption in lines of at most `letters` characters.
 fn folded(caption: &str, letters: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in caption.split(' ') {
@@ -186,7 +186,7 @@ fn folded(caption: &str, letters: usize) -> Vec<String> {
 
 impl Sphere {
     fn draw(&self, svg: &mut String, [x, y]: [f64; 2], cell: f64) {
-        // Letters of 12 pixels are about 6.6 pixels wide.
+        // Characters of 12 pixels are about 6.6 pixels wide.
         let letters = (cell / 6.6) as usize;
         for (index, line) in folded(&self.caption, letters).iter().take(2).enumerate() {
             let at = y - cell / 2.0 - 16.0 + 14.0 * index as f64;
@@ -251,7 +251,7 @@ impl Sphere {
             }
         }
         for (name, [tx, ty]) in names {
-            // On a white ground, so that curves do not run through it.
+            // On a white background, so that curves do not cross it.
             let _ = writeln!(
                 svg,
                 "<circle cx=\"{tx:.1}\" cy=\"{:.1}\" r=\"6.5\" fill=\"#FFFFFF\" fill-opacity=\"0.8\"/>",

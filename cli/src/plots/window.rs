@@ -11,8 +11,8 @@ const SWINGS: usize = 60;
 /// Samples needed per swing for it to look like one.
 const SAMPLES_PER_SWING: usize = 12;
 
-/// A change of direction counts when the curve has moved by this part of the panel's height since
-/// the last one; smaller ones are ripples.
+/// A turning point counts if the curve has moved by this fraction of the panel's height since the last one; smaller
+/// changes are ripples.
 const RIPPLE: f64 = 0.05;
 
 /// The samples to draw: the rows of `record` with index below `count`.
@@ -75,7 +75,7 @@ pub(crate) fn window<'a>(samples: &'a Samples, panels: &[Range<usize>]) -> Windo
     }
 }
 
-/// For each column of a panel, the rows at which it turns round.
+/// For each column of a panel, the rows of its turning points.
 fn turns(table: &Table, panel: &Range<usize>) -> Vec<Vec<usize>> {
     let columns = || panel.clone().map(|index| table.column(index));
     let bounds = columns().flatten().filter(|value| value.is_finite());
@@ -93,7 +93,7 @@ fn turns_of(column: impl Iterator<Item = f64>, ripple: f64) -> Vec<usize> {
     let Some((_, first)) = column.next() else {
         return turns;
     };
-    // Extremes since the last turn, and the direction since then (0: none yet).
+    // Extremes since the last turning point, and the direction since then (0: none yet).
     let (mut low, mut high, mut direction) = ((0, first), (0, first), 0);
     for (row, value) in column {
         if value > high.1 {

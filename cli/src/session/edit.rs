@@ -11,7 +11,7 @@ pub struct Edit {
     pub table: String,
     /// The key.
     pub key: String,
-    /// The value, written as TOML on one line; `None` to remove the key.
+    /// The value as TOML on one line; `None` to remove the key.
     pub value: Option<String>,
 }
 
@@ -25,7 +25,7 @@ fn place(top: &DeTable<'_>, table: &str, key: &str) -> Option<(Range<usize>, Ran
     Some((key.span(), value.span()))
 }
 
-/// The start of the line after the head of a table; `None` if the text lacks that head.
+/// The start of the line after the header of a table; `None` if the text lacks this header.
 fn behind_head(text: &str, table: &str) -> Option<usize> {
     let mut at = 0;
     for line in text.split_inclusive('\n') {
@@ -41,7 +41,7 @@ fn behind_head(text: &str, table: &str) -> Option<usize> {
     None
 }
 
-/// A key as TOML has it: in quotes unless all its letters may appear in a bare key.
+/// A key in TOML: in quotes unless all its characters may occur in a bare key.
 #[must_use]
 pub fn quoted_key(key: &str) -> String {
     let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
@@ -57,8 +57,8 @@ pub fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
 
-/// The text with these values, which must have different keys. A text that is not TOML stays unchanged, since
-/// its reader reports the mistake.
+/// The text with these values, which must have different keys. A text that is not TOML stays unchanged, since its
+/// reader reports the mistake.
 #[must_use]
 pub fn edited(text: &str, edits: &[Edit]) -> String {
     let Ok(document) = DeTable::parse(text) else {
@@ -86,7 +86,7 @@ pub fn edited(text: &str, edits: &[Edit]) -> String {
         match (table, behind_head(text, table)) {
             ("", _) => changes.push((0..0, lines)),
             (_, Some(at)) => {
-                // The head may be the last line, without an end.
+                // The header may be the last line, without a line end.
                 let is_ended = text.get(..at).is_some_and(|before| before.ends_with('\n'));
                 changes.push((
                     at..at,

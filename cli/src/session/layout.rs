@@ -11,7 +11,7 @@ pub enum Columns {
     Nodes,
     /// The times of the samples.
     Times,
-    /// Blocks of `size` columns, the first at `start`, each `step` behind the one before.
+    /// Blocks of `size` columns: the first starts at `start`, each next block `step` columns later.
     Blocks {
         /// The first column.
         start: usize,
@@ -24,7 +24,7 @@ pub enum Columns {
     },
     /// Columns without such an order.
     Listed(Vec<usize>),
-    /// Numbers that belong to no sample: the sites of an array.
+    /// Numbers that do not belong to a sample: the sites of an array.
     Sites(Vec<u64>),
 }
 
@@ -35,7 +35,7 @@ pub struct Layout {
     pub name: String,
     /// Its shape behind the index of the sample.
     pub shape: Vec<usize>,
-    /// Where its numbers are.
+    /// The columns of its numbers.
     pub columns: Columns,
 }
 
@@ -66,7 +66,7 @@ pub fn layout(card: &Card) -> Vec<Layout> {
     each.collect()
 }
 
-/// Ranges as evenly spaced blocks, if they are.
+/// Ranges as evenly spaced blocks, if possible.
 fn regular(ranges: &[std::ops::Range<usize>]) -> Columns {
     let own = |column: usize| column.saturating_sub(BEFORE);
     let listed = || {

@@ -1,6 +1,5 @@
-//! Cases that another program runs instead of a command, such as the Python package. Plan, steps, names of
-//! arrays and verdicts agree with `clebsch run`. Samples stay in memory, and the caller decides how long to
-//! wait.
+//! Cases that another program runs instead of a command, such as the Python package. Plan, steps, names of arrays and
+//! verdicts agree with `clebsch run`. Samples stay in memory, and the caller decides how long each call runs.
 
 mod edit;
 mod layout;

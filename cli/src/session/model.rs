@@ -60,7 +60,7 @@ impl Model {
     pub fn named(gallery: &Gallery, name: &str) -> Result<Self, Failure> {
         match named(gallery, name, "expected a model")? {
             NamedModel::Text(text) if text.is_path => Self::read(text),
-            // Shipped texts derive, and each run derives them for its case.
+            // Shipped texts are derived here, and each run derives them again for its case.
             NamedModel::Text(text) => Ok(Self {
                 has_sites: has_sites(&text.text),
                 text,
@@ -127,7 +127,7 @@ impl Model {
         self.has_sites
     }
 
-    /// The names of its cases, the default one first, each with its description.
+    /// The names of its cases, the default case first, each with its description.
     #[must_use]
     pub fn cases(&self) -> Vec<(String, String)> {
         match &self.compiled {

@@ -12,7 +12,8 @@ use clebsch_check::StepSelection;
 pub struct Request {
     /// The end time, instead of a number of steps.
     pub until: Option<f64>,
-    /// Every how many nodes are sampled; by default at most ten thousand nodes. 0 samples the start and the end.
+    /// The number of nodes between samples; by default at most ten thousand nodes are sampled. 0 samples the start
+    /// and the end.
     pub every: Option<u64>,
     /// The order of a step.
     pub order: Option<u32>,
@@ -41,7 +42,7 @@ impl Default for Request {
 }
 
 impl Request {
-    /// Puts the options into a plan.
+    /// Applies the options to a plan.
     ///
     /// # Errors
     /// Usage: an unknown solver, or more steps than can be counted.

@@ -1,5 +1,5 @@
-//! A case on its way, with its samples in memory. Takes a plan; makes as many steps as there is time for, and gives rows and drifts at
-//! any node. How the steps are divided changes no result.
+//! A running case, with its samples in memory. Takes a plan; takes steps for a given time, and gives rows and drifts
+//! at any node. How the steps are divided changes no result.
 
 use super::model::Planned;
 use crate::plan::Plan;
@@ -28,7 +28,7 @@ pub struct Rows {
     pub times: Vec<f64>,
     /// The rows, one after another.
     pub numbers: Vec<f64>,
-    /// The first time that memory did not suffice: later samples are not kept.
+    /// The first time at which memory did not suffice: later samples are dropped.
     full: Option<TryReserveError>,
 }
 
@@ -73,13 +73,13 @@ pub struct StepLimits {
     pub step: Option<f64>,
     /// The frequency of the fastest small motion about the start.
     pub frequency: Option<f64>,
-    /// The limit in words, if it is to be reported.
+    /// The limit as a sentence, if it is reported.
     pub told: Option<String>,
     /// A warning on the step size of the case.
     pub warning: Option<String>,
 }
 
-/// A case on its way.
+/// A running case.
 pub struct Running {
     card: Card,
     plan: Plan,
@@ -90,7 +90,7 @@ pub struct Running {
 }
 
 impl Running {
-    /// Starts a plan; its samples are kept if `sampled`.
+    /// Starts a plan; its samples are stored if `sampled` is true.
     ///
     /// # Errors
     /// Usage: the model rejects the data. Failed: the first step fails, or memory does not suffice.
@@ -139,10 +139,10 @@ impl Running {
         &self.plan
     }
 
-    /// Makes steps for about so long; whether the run is over.
+    /// Takes steps for about this time; returns whether the run has ended.
     ///
     /// # Errors
-    /// The step that failed, or the number that is not finite after it. The run ends at the node before.
+    /// The step that failed, or the number that is not finite after it. The run ends at the previous node.
     pub fn advance(&mut self, time: Duration) -> Result<bool, RunError> {
         let begun = Instant::now();
         let mut most: u64 = 1;
@@ -169,7 +169,7 @@ impl Running {
         }
     }
 
-    /// Ends the run at the node at hand, which becomes the last sample.
+    /// Ends the run at the current node, which becomes the last sample.
     pub fn end_here(&mut self) {
         self.watch.sample_here(&self.trajectory, &mut self.rows);
     }
@@ -227,7 +227,7 @@ impl Running {
         std::mem::take(&mut self.rows)
     }
 
-    /// Makes at most `steps` steps without sampling, for about this `time`. Gives the number of steps made.
+    /// Takes at most `steps` steps without sampling, for about this `time`. Returns the number of steps taken.
     ///
     /// # Errors
     /// The number of steps before the one that failed, and the reason.
@@ -237,7 +237,7 @@ impl Running {
         while made < steps {
             self.trajectory.step().map_err(|error| (made, error))?;
             made += 1;
-            // The clock is read now and then: a step of a body takes less than reading it.
+            // The clock is read only sometimes: a step of a body takes less time than a reading.
             if (made < 16 || made % 64 == 0) && begun.elapsed() >= time {
                 break;
             }
@@ -278,7 +278,7 @@ impl Running {
         Some(bytes)
     }
 
-    /// Puts the bytes of a checkpoint back.
+    /// Restores the bytes of a checkpoint.
     ///
     /// # Errors
     /// Why they are not of this case, in words.
@@ -299,7 +299,7 @@ impl Running {
         Identity::of(&self.card, &self.plan)
     }
 
-    /// The stability limit of the step size of a plan, searched for at most so long.
+    /// The stability limit of the step size of a plan, searched for at most this time.
     #[must_use]
     pub fn stability_limit(card: &Card, plan: &Plan, patience: Duration) -> StepLimits {
         let limit = StepLimit::of(card, plan, patience);

@@ -27,7 +27,7 @@ pub(crate) fn text(path: &Path, what: &str) -> Result<String, Failure> {
 pub(crate) fn stream(input: impl Read, name: &str) -> Result<String, Failure> {
     let mut text = String::new();
     let read = input.take(MOST + 1).read_to_string(&mut text);
-    // The first megabytes of a device may not be UTF-8, or end within a letter.
+    // The first megabytes of a device may not be UTF-8, or may end within a character.
     let read = read.map_err(|error| cannot(name, &error))?;
     match u64::try_from(read) {
         Ok(read) if read <= MOST => Ok(text),

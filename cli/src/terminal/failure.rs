@@ -1,5 +1,4 @@
-//! Why a command stops, and with which exit code.
-//! Takes the message of whoever noticed; gives the code that the shell sees.
+//! Why a command stops, and with which exit code. Takes a message; gives the exit code of the process.
 
 use std::fmt;
 use std::io;
@@ -14,7 +13,7 @@ pub const USAGE: u8 = 2;
 /// The run is complete and its results are written, but an invariant exceeded its bound, or a step contradicts
 /// the action as stated.
 pub const BOUND_LEFT: u8 = 3;
-/// Less than the codes of commands that a signal ended, by its number: 130 for SIGINT, 143 for SIGTERM.
+/// Smaller than the exit codes for signals, 130 for SIGINT and 143 for SIGTERM.
 pub const BY_SIGNAL: u8 = 128;
 
 /// The reason why a command was not completed.

@@ -17,6 +17,6 @@ pub struct Streams<'a> {
     pub err: &'a mut dyn Write,
     /// Whether to draw progress on the process's standard error.
     pub progress: bool,
-    /// The largest number of letters in a line of help or of a table; `None` if it is unlimited, as in a file.
+    /// The largest number of characters in a line of help or of a table; `None` if it is unlimited, as in a file.
     pub width: Option<usize>,
 }

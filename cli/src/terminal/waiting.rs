@@ -1,5 +1,5 @@
-//! Shows on a terminal what a run waits for before its first step, if that takes longer than a second.
-//! Takes the text.
+//! Shows on a terminal what a run is computing before its first step, if this takes longer than a second. Takes the
+//! text.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
@@ -9,7 +9,7 @@ use std::time::Duration;
 /// The time before anything is shown.
 const QUIET: Duration = Duration::from_secs(1);
 
-/// Something that is waited for until it is dropped.
+/// An operation that the user waits for, until it is dropped.
 #[derive(Debug)]
 pub(crate) struct Waiting {
     end: Option<Sender<()>>,
@@ -46,7 +46,7 @@ pub(crate) fn progress_bar(steps: u64, what: &str) -> ProgressBar {
     let template = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {what}, {{eta}} left");
     match ProgressStyle::with_template(&template) {
         Ok(style) => bar.with_style(style),
-        // The template is fixed; should it ever be wrong, the plain bar does.
+        // The template is constant; if it were invalid, the plain bar would be used.
         Err(_) => bar,
     }
 }

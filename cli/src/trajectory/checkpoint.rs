@@ -1,11 +1,10 @@
-//! A run in progress, on disk: everything needed to resume it with a bitwise identical result.
-//! Takes the words of a trajectory and of its observations; gives a file that is either complete or absent.
-//! Reading rejects a file
-//! that is damaged, of another version or of another run, with the reason.
+//! A run in progress, on disk: everything needed to resume it with a bitwise identical result. Takes the words of a
+//! trajectory and of its observations; gives a file that is either complete or absent. Reading rejects a file that is
+//! damaged or belongs to another version or another run, with the reason.
 //!
-//! The file contains: a line with name and version; the identity of the run, as lines `key = value`, after
-//! their length; the words, after their number; rows and checksum of the samples; a checksum of everything
-//! before. Numbers have eight bytes, little-endian.
+//! The file contains: a line with name and version; the identity of the run, as lines `key = value`, after their
+//! length; the words, after their number; rows and checksum of the samples; a checksum of everything before. Numbers
+//! have eight bytes, little-endian.
 
 use crate::case_file::quantity_of;
 use crate::plan::Plan;
@@ -18,13 +17,13 @@ use std::path::Path;
 /// The name of the file.
 pub(crate) const NAME: &str = "checkpoint";
 
-/// The name while it is written.
+/// The name during writing.
 pub(crate) const UNFINISHED: &str = "checkpoint.new";
 
 /// How every file begins, before its version.
 const MAGIC: &str = "clebsch checkpoint ";
 
-/// The version that is written, and the only one that is read.
+/// The version that is written, and the only version that is read.
 const VERSION: &str = "4";
 
 /// Bytes written at once.
@@ -85,7 +84,7 @@ impl Identity {
             .collect()
     }
 
-    /// The difference to another run, if any.
+    /// The difference from another run, if there is one.
     fn unlike(&self, found: &str) -> Option<String> {
         let own = self.text();
         if own == found {
@@ -101,7 +100,7 @@ impl Identity {
     }
 }
 
-/// The values of a table as they are compared: field by field. A quantity at many sites forms one entry.
+/// The values of a table in a form for comparison: field by field. A quantity at many sites forms one entry.
 fn compared_values(table: &str, fields: &[Field], values: &[Vec<f64>]) -> Vec<(String, String)> {
     let mut sites: BTreeMap<&str, usize> = BTreeMap::new();
     for quantity in fields.iter().filter_map(|f| quantity_of(f.ascii)) {
@@ -122,7 +121,7 @@ fn compared_values(table: &str, fields: &[Field], values: &[Vec<f64>]) -> Vec<(S
     all
 }
 
-/// Numbers as they are compared. A long list is represented by its length and a checksum.
+/// Numbers in a form for comparison. A long list is represented by its length and a checksum.
 fn listed(values: &[f64]) -> String {
     if values.len() <= TOLD {
         return format!("{values:?}");
@@ -185,7 +184,7 @@ impl Checkpoint {
         Ok(())
     }
 
-    /// Reads the file in `folder`, of the run `identity`.
+    /// Reads the file in `folder` for the run `identity`.
     ///
     /// # Errors
     /// The reason why the run cannot be resumed, in words.

@@ -10,23 +10,23 @@ use indicatif::ProgressBar;
 /// The largest number of values in a record: 2 GiB, which also keeps an npz within the classic zip format.
 pub const LARGEST: u64 = 1 << 28;
 
-/// The part of a run that is kept for its files.
+/// The part of a run that is stored for its files.
 #[derive(Clone, Debug, Default)]
 pub struct Samples {
     /// The samples to write.
     pub record: Record,
-    /// Every node of the beginning, for plots of quick oscillations; `None` when the record has them.
+    /// Every node of the first part of the run, for plots of fast oscillations; `None` if the record contains them.
     pub opening: Option<Record>,
 }
 
-/// Observes a run: keeps the samples if they are wanted, and draws the progress bar if there is one.
+/// Observes a run: stores the samples if they are requested, and draws the progress bar if there is one.
 pub struct Recorder {
     record: Option<Record>,
     bar: Option<ProgressBar>,
 }
 
 impl Recorder {
-    /// Keeps samples when `keep`; draws a bar with the time left on standard error when `bar`.
+    /// Stores samples if `keep` is true; draws a bar with the time left on standard error if `bar` is true.
     #[must_use]
     pub fn new(card: &Card, steps: u64, keep: bool, bar: bool) -> Self {
         Self {

@@ -1,6 +1,6 @@
-//! The verdict by the action as stated. `clebsch-check` judges chosen steps of a trajectory; it shares only the
-//! text of the model with derivation and emission. Takes a card, a plan and a trajectory; gives the same
-//! trajectory, observed.
+//! The verdict by the action as stated. `clebsch-check` judges chosen steps of a trajectory; it shares only the text
+//! of the model with derivation and emission. Takes a card, a plan and a trajectory; gives the same trajectory with
+//! an observer.
 
 use crate::case_file::statement;
 use crate::plan::Plan;
@@ -94,7 +94,7 @@ impl Trajectory for JudgedTrajectory {
             judged =
                 Some(all.and_then(|all| Ok(all.and(judge.part(number, share, before, after)?))));
         })?;
-        // A subdivided step has no parts to judge.
+        // The parts of a subdivided step cannot be judged.
         if let Some(judged) = judged {
             self.verdict.take(number, judged);
         }

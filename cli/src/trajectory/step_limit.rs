@@ -11,8 +11,8 @@ use clebsch::integrate::{Effort, LongestStep, Unknown};
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 
-/// The largest number of initial values for which the limit is searched for: each of about sixty openings reads
-/// all of them.
+/// The largest number of initial values for which the limit is searched: each of about sixty starts reads all of
+/// them.
 const SOUGHT: usize = 20_000;
 
 /// The largest number with constraints. Their steps are iterative, and the search takes twice as many.
@@ -28,7 +28,7 @@ pub(crate) fn patience(matches: &ArgMatches) -> Duration {
     Duration::try_from_secs_f64(seconds.unwrap_or(1.0)).unwrap_or(Duration::MAX)
 }
 
-/// The stability limit as far as it is known before a run.
+/// The stability limit, as far as it is known before a run.
 #[derive(Clone, Debug)]
 pub(crate) enum StepLimit {
     /// The limit is known. It is reported if the model has sites, if the step size is more than half of it, or

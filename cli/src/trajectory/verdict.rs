@@ -10,10 +10,10 @@ use clebsch::integrate::Drift;
 use clebsch::scalar::larger;
 use serde_json::{Value, json};
 
-/// How an invariant fared.
+/// The outcome of an invariant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Within its bound at every node that was looked at.
+    /// Within its bound at every checked node.
     Kept,
     /// Beyond its bound (or not a number) at some node.
     Left,
@@ -22,7 +22,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// The word printed and written to files.
+    /// The word that is printed and written to files.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -48,11 +48,10 @@ pub struct Outcome {
     pub last: f64,
     /// Bound on the drift, if there is one.
     pub bound: Option<f64>,
-    /// Whether the bound was kept.
+    /// Whether the drift is within the bound.
     pub verdict: Verdict,
-    /// The parameters that are zero in this case and make every term of the formula zero at every node. An
-    /// example is the momentum about a vertical given as a zero vector. The invariant then tests nothing. Empty
-    /// otherwise.
+    /// The parameters that are zero in this case and make every term of the formula zero at every node. An example is
+    /// the momentum about a vertical given as a zero vector. The invariant then tests nothing. Empty otherwise.
     pub zero_by: Vec<&'static str>,
 }
 
@@ -229,7 +228,8 @@ pub fn lost(outcomes: &[Outcome], h: f64) -> Vec<String> {
     each.collect()
 }
 
-/// Sentences on invariants that are zero for every motion of this case, one for each list of zero parameters.
+/// Sentences about invariants that are zero for every motion of this case, one sentence for each list of zero
+/// parameters.
 #[must_use]
 pub fn zeros(outcomes: &[Outcome]) -> Vec<String> {
     let mut all: Vec<(&[&str], Vec<&str>)> = Vec::new();
@@ -251,7 +251,7 @@ pub fn zeros(outcomes: &[Outcome]) -> Vec<String> {
     all.into_iter().map(sentence).collect()
 }
 
-/// The table of all outcomes, and a line on those that are measured absolutely. Drifts are relative to the
+/// The table of all outcomes, and a line about outcomes that are measured absolutely. Drifts are relative to the
 /// natural scale if it is not zero.
 #[must_use]
 pub fn table(outcomes: &[Outcome], width: Option<usize>) -> String {
@@ -262,7 +262,7 @@ pub fn table(outcomes: &[Outcome], width: Option<usize>) -> String {
         "final drift",
         "bound",
         "verdict",
-        // Last, since on a narrow terminal it continues below, and the verdict stays next to the numbers.
+        // The last column: on a narrow terminal it is wrapped below, and the verdict stays next to the numbers.
         "formula",
     ];
     let mut rows = vec![head.map(str::to_owned).to_vec()];

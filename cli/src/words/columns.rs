@@ -1,6 +1,6 @@
-//! Text in aligned columns, for tables on a terminal.
-//! Takes rows of cells, the first of which is the head; gives lines, each ended by a newline, no wider than the
-//! terminal. Texts are wrapped, and columns that are still too wide continue below.
+//! Text in aligned columns, for tables on a terminal. Takes rows of cells, the first of which is the header; gives
+//! lines, each ended by a newline, no wider than the terminal. Texts are wrapped, and columns that are still too wide
+//! continue below.
 
 use crate::words::width::wrapped;
 
@@ -10,8 +10,8 @@ const GAP: usize = 2;
 /// The smallest width of a column of texts, unless a table of two columns requires less.
 const LEAST: usize = 14;
 
-/// Aligns `rows`. The columns listed in `right` are numbers, flushed right and never wrapped. Widths count
-/// letters. Columns that do not fit next to the others follow in a table below, which repeats the first column.
+/// Aligns `rows`. The columns listed in `right` are numbers, flushed right and never wrapped. Widths are in
+/// characters. Columns that do not fit next to the others follow in a table below, which repeats the first column.
 #[must_use]
 pub fn aligned(rows: &[Vec<String>], right: &[usize], width: Option<usize>) -> String {
     let count = rows.iter().map(Vec::len).max().unwrap_or(0);
@@ -48,13 +48,13 @@ pub fn aligned(rows: &[Vec<String>], right: &[usize], width: Option<usize>) -> S
     tables.collect::<Vec<_>>().join("\n")
 }
 
-/// The number of letters of the longest cell.
+/// The number of characters in the longest cell.
 fn natural(rows: &[Vec<String>], column: usize) -> usize {
     let cells = rows.iter().filter_map(|row| row.get(column));
     cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
 }
 
-/// The width down to which a column shrinks only after all others.
+/// The width below which a column shrinks only after all other columns have shrunk.
 fn least(rows: &[Vec<String>], right: &[usize], column: usize) -> usize {
     let natural = natural(rows, column);
     match right.contains(&column) {
@@ -63,7 +63,7 @@ fn least(rows: &[Vec<String>], right: &[usize], column: usize) -> usize {
     }
 }
 
-/// The number of letters of the longest piece that wrapping does not cut.
+/// The number of characters in the longest piece that wrapping does not break.
 fn longest_piece(rows: &[Vec<String>], column: usize) -> usize {
     let cells = rows.iter().filter_map(|row| row.get(column));
     let pieces = cells.flat_map(|cell| cell.split_inclusive([' ', '_']));
@@ -73,13 +73,13 @@ fn longest_piece(rows: &[Vec<String>], column: usize) -> usize {
         .unwrap_or(0)
 }
 
-/// Widths of the columns of a table that fits: the widest column of texts gives way first.
+/// Widths of the columns of a table that fits: the widest text columns shrink first.
 fn fitted(rows: &[Vec<String>], right: &[usize], block: &[usize], width: usize) -> Vec<usize> {
     let mut widths: Vec<usize> = block.iter().map(|column| natural(rows, *column)).collect();
     let gaps = GAP * block.len().saturating_sub(1);
     while widths.iter().sum::<usize>() + gaps > width {
         let texts = block.iter().zip(&mut widths);
-        // First keep whole words and names; cut them only if nothing else can shrink.
+        // First keep whole words and names; break them only if nothing else can shrink.
         let widest = texts
             .filter(|(column, _)| !right.contains(column))
             .map(|(column, width)| (*width > least(rows, right, *column), width))
@@ -181,7 +181,7 @@ mod tests {
             for line in text.lines() {
                 assert!(line.chars().count() <= width, "{width}: {line}");
             }
-            // Nothing is left out.
+            // Nothing is omitted.
             for letter in everything.chars() {
                 let count = |text: &str| text.chars().filter(|other| *other == letter).count();
                 assert!(count(&text) >= count(&everything), "{width}: {letter}");

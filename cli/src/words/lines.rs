@@ -1,6 +1,6 @@
-//! Lines that are wider than the terminal: formulas, models and examples, which are not prose.
-//! Takes text in lines; gives lines of at most a given number of letters. A line is broken before the signs of
-//! a sum if it has any, at the least depth of brackets, and its continuation is indented.
+//! Lines that are wider than the terminal: formulas, models and examples, which are not prose. Takes text in lines;
+//! gives lines of at most a given number of characters. A line is broken before the signs of a sum if it has any, at
+//! the least depth of brackets, and its continuation is indented.
 
 /// The additional indentation of a continuation line.
 const INDENT: usize = 4;
@@ -8,7 +8,7 @@ const INDENT: usize = 4;
 /// The cost of breaking one bracket deeper, as empty space in percent of a line.
 const DEPTH_COST: usize = 60;
 
-/// The cost of breaking between words instead of before a sign, as empty space in percent of a line.
+/// The cost of a break between words instead of before a sign, as empty space in percent of a line.
 const SIGN_GAIN: usize = 50;
 
 /// The first line of a text that is not empty.
@@ -17,7 +17,7 @@ pub(crate) fn first_line(doc: &str) -> String {
     lines.find(|line| !line.is_empty()).unwrap_or("").to_owned()
 }
 
-/// The text with every line at most `width` letters long; no line is joined to another.
+/// The text with every line at most `width` characters long; lines are never joined.
 pub(crate) fn fitted(text: &str, width: usize) -> String {
     let mut out = String::with_capacity(text.len());
     for line in text.lines() {
@@ -56,8 +56,8 @@ fn push(letters: &[char], out: &mut String) {
     out.push('\n');
 }
 
-/// Where to break: at a space behind `start`, or in the middle of a word that is longer than a line; and
-/// how deep in brackets that is, `depth` at the start.
+/// The best break: at a space after `start`, or in the middle of a word that is longer than a line; and the depth of
+/// brackets there, if it is `depth` at the start.
 fn cut(letters: &[char], start: usize, width: usize, depth: usize) -> (usize, usize) {
     let mut deep = depth;
     let mut best: Option<(usize, usize, usize)> = None;
@@ -66,7 +66,7 @@ fn cut(letters: &[char], start: usize, width: usize, depth: usize) -> (usize, us
             '(' | '[' | '{' | '⟨' => deep += 1,
             ')' | ']' | '}' | '⟩' => deep = deep.saturating_sub(1),
             ' ' if at > start => {
-                // They begin a line, and never end one.
+                // Such signs start a line, and never end one.
                 let next = letters.get(at + 1..).unwrap_or_default();
                 let sign = begins_line(next.iter().take_while(|l| **l != ' '));
                 let last = letters.get(..at).unwrap_or_default();
@@ -105,9 +105,9 @@ mod tests {
             fitted("f(a + b + c + d + e)", 12),
             "f(a + b + c\n    + d + e)".to_owned() + "\n"
         );
-        // So do relations.
+        // Relations do so too.
         assert_eq!(fitted("abcd = ef", 8), "abcd\n    = ef\n");
-        // A sign that belongs to its number stays with it.
+        // The sign of a number stays with the number.
         assert_eq!(fitted("x = -a - -b", 8), "x = -a\n    - -b\n");
     }
 

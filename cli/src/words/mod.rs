@@ -1,4 +1,5 @@
-//! Text: numbers, tables and lines for a reader, names that were meant, and values as TOML. Knows no model and no file.
+//! Text: numbers, tables and lines for a reader, suggestions for mistyped names, and values as TOML. It does not
+//! depend on models or files.
 
 pub(crate) mod columns;
 pub(crate) mod lines;

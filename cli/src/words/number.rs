@@ -1,11 +1,11 @@
-//! Numbers as they are typed, `0.5`, `1e-3`, `2*pi/3`, and as they are printed. Takes a text and gives its
-//! value; the text may be an expression as in a case file. Takes a number and gives a text that is as short as
-//! a reader needs.
+//! Numbers as users type them, `0.5`, `1e-3`, `2*pi/3`, and as clebsch prints them. Takes a text and gives its value;
+//! the text may be an expression as in a case file. Takes a number and gives a text that is as short as a reader
+//! needs.
 
 use crate::words::plain::shown;
 use clebsch_core::lattice::value::SiteData;
 
-/// The value of a number, or of an expression in numbers, `pi`, functions, and names that `of` knows.
+/// The value of a number, or of an expression in numbers, `pi`, functions, and names that `of` defines.
 ///
 /// # Errors
 /// The reason why the text has no finite value.
@@ -25,10 +25,10 @@ pub(crate) fn value(text: &str, of: &dyn Fn(&str) -> Option<f64>) -> Result<f64,
     }
 }
 
-/// Above this not every whole number is an f64.
+/// Above this, not every integer is an f64.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
-/// A whole number in digits, or as `2e4` and `1.5e3` if an f64 represents it exactly.
+/// An integer in digits, or as `2e4` and `1.5e3` if an f64 represents it exactly.
 pub(crate) fn whole(text: &str) -> Option<u64> {
     if let Ok(count) = text.parse::<u64>() {
         return Some(count);

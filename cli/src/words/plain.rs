@@ -6,7 +6,7 @@ use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Whether a terminal would execute the letter rather than show it: control characters (C0, DEL, C1) and
+/// Whether a terminal would execute the character rather than show it: control characters (C0, DEL, C1) and
 /// characters that change the direction of writing.
 fn acts(letter: char) -> bool {
     letter.is_control()
@@ -14,7 +14,7 @@ fn acts(letter: char) -> bool {
         || matches!(letter, '\u{2028}' | '\u{2029}')
 }
 
-/// So many steps, in words.
+/// A number of steps as text.
 pub(crate) fn steps(count: u64) -> String {
     match count {
         1 => "1 step".to_owned(),
@@ -30,7 +30,7 @@ pub(crate) fn shown(name: impl MessageName) -> PrintableName {
     PrintableName(name.text())
 }
 
-/// A name that messages print: a text, or a file, whose name need not be valid text.
+/// A name in a message: a text, or a file, whose name need not be valid text.
 pub(crate) trait MessageName {
     /// The name, with a replacement character for every invalid part.
     fn text(&self) -> String;

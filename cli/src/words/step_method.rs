@@ -1,4 +1,4 @@
-//! How steps are made, in words.
+//! How steps are taken, as a sentence.
 
 /// How a model runs: its stepper was `compiled` with the command, or is read from its text.
 pub(crate) fn step_method(compiled: bool) -> &'static str {

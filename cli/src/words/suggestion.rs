@@ -1,11 +1,11 @@
 //! "Did you mean": the known name nearest to a mistyped one.
 //! Takes the typed name and the known names; gives the sentence to append to a message.
 
-/// Jaro-Winkler similarity above which a name is worth suggesting. One slip in a name of five letters
-/// or more scores above 0.8; unrelated names of this project's vocabulary score below 0.65.
+/// Jaro-Winkler similarity above which a name is worth suggesting. One mistake in a name of five letters or more
+/// scores above 0.8; unrelated names of this project's vocabulary score below 0.65.
 const LIKE: f64 = 0.75;
 
-/// More names than anybody reads; every model of the gallery, and the keys of a case, are fewer.
+/// Longer lists are not printed; the models of the gallery and the keys of a case are fewer.
 const MOST: usize = 40;
 
 /// The known name most similar to the typed name, if one is similar. Case is ignored. If several are equally

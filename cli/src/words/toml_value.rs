@@ -1,7 +1,7 @@
-//! Values of options as a case file would have them: `[1, 2, pi/2]`, `{axis = [0, 0, 1], angle = pi/4}`.
-//! Takes the typed text, from which a shell may have removed the quotes; gives TOML.
+//! Values of options in the form of a case file: `[1, 2, pi/2]`, `{axis = [0, 0, 1], angle = pi/4}`. Takes the typed
+//! text, from which a shell may have removed the quotes; gives TOML.
 
-/// The TOML of a value: expressions without quotes get quotes. Mistakes in the value are left to the reader of
+/// The TOML of a value: expressions without quotes get quotes. Mistakes in the value are reported by the reader of
 /// the case.
 pub(crate) fn quoted(text: &str) -> String {
     let mut out = String::new();

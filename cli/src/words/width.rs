@@ -1,13 +1,13 @@
-//! The width of the terminal, and text that fits it.
-//! Takes the process's terminal; gives a number of letters, and paragraphs with lines of at most this length.
+//! The width of the terminal, and text that fits it. Takes the process's terminal; gives a number of characters, and
+//! paragraphs with lines of at most this length.
 
 use std::io::{self, IsTerminal};
 
 /// A narrower terminal counts as this wide: a line of numbers needs some room.
 const LEAST: usize = 20;
 
-/// The number of letters in a line of the terminal, or `None` if standard output is not a terminal. The
-/// variable COLUMNS, as shells set it, takes precedence.
+/// The number of characters in a line of the terminal, or `None` if standard output is not a terminal. The variable
+/// COLUMNS, as shells set it, takes precedence.
 pub(crate) fn of_the_terminal() -> Option<usize> {
     let columns = std::env::var("COLUMNS").ok();
     let stated = columns.and_then(|columns| columns.trim().parse::<usize>().ok());
@@ -23,7 +23,7 @@ pub(crate) fn of_the_terminal() -> Option<usize> {
         .map(|width| width.max(LEAST))
 }
 
-/// The words of `text` in lines of at most `width` letters, without line ends. A longer word is cut, after an
+/// The words of `text` in lines of at most `width` characters, without line ends. A longer word is broken, after an
 /// underscore if it contains one. At least one line, possibly empty.
 pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
     let width = width.max(1);
@@ -40,7 +40,7 @@ pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
             used += 1;
         }
         while letters.len() > width {
-            // A long name is cut after an underscore, if it contains one.
+            // A long name is broken after an underscore, if it contains one.
             let score = letters
                 .iter()
                 .take(width)

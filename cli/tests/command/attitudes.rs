@@ -1,4 +1,5 @@
-//! Every form of a rotation is accepted wherever a case has a rotation: initial values, parameters, values at sites and at ends.
+//! Every form of a rotation is accepted wherever a case contains a rotation: initial values, parameters, values at
+//! sites and at ends.
 
 use crate::common::{Folder, table};
 use crate::text_runs::{Ran, run};

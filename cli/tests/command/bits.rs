@@ -1,9 +1,10 @@
-//! The bits of every shipped model and case at nodes 1, 10 and a last one, against a list. A step that is built in another
-//! way gives the same numbers to the last bit. If a change must alter bits, it alters the list in a commit of its own.
+//! The bits of every shipped model and case at nodes 1, 10 and a last one, against a list. A step that is built
+//! differently gives bitwise identical numbers. If a change must alter bits, it alters the list in a commit of its
+//! own.
 //!
-//! `CLEBSCH_WRITE_BITS=1 cargo test --profile quick -p clebsch-cli --test command -- bits` writes the list. Chains end at node 100,
-//! since 100 steps show a changed step as well. Fluids end at node 10, and other cases at node 1000. The C library computes the
-//! sine and other functions, so the list belongs to one platform.
+//! `CLEBSCH_WRITE_BITS=1 cargo test --profile quick -p clebsch-cli --test command -- bits` writes the list. Chains
+//! end at node 100, since 100 steps also show a changed step. Fluids end at node 10, and other cases at node 1000.
+//! The C library computes the sine and other functions, so the list belongs to one platform.
 #![cfg(all(target_arch = "x86_64", target_os = "linux", target_env = "gnu"))]
 
 use super::common::{clebsch, runs};
@@ -54,7 +55,7 @@ fn rows(family: &str) -> String {
             let steps = last(family, name);
             let path = folder.path(&case.replace(':', "-"));
             let watch = "--every 1 --csv --quiet --check none --stability-limit 0";
-            // A run whose step fails keeps its results so far.
+            // A run whose step fails keeps the results so far.
             clebsch(&format!(
                 "run {case} --steps {steps} {watch} --force --out {path}"
             ));
@@ -104,7 +105,7 @@ fn bits_of_chains() {
     agree("chain");
 }
 
-/// Long: ten steps of some thousand particles, each with its grid or its mesh.
+/// Long: ten steps of several thousand particles, each with its grid or its mesh.
 #[test]
 fn bits_of_fluids() {
     agree("fluid");

@@ -27,7 +27,7 @@ fn blocks(page: &str) -> Vec<(String, String)> {
     blocks
 }
 
-/// Runs a command of the book in `folder`, which ends with `code`; gives all it printed.
+/// Runs a command of the book in `folder`, checks that it exits with `code`, and returns everything it printed.
 fn run(line: &str, code: u8, folder: &Folder) -> String {
     let words = line.split_whitespace().skip(1);
     let words: Vec<String> = words
@@ -152,8 +152,8 @@ fn included_pages() {
     }
 }
 
-/// The tutorial, as a reader follows it: each model is saved with the case below it, derives and runs; the lines in between and
-/// after are printed.
+/// Follows the tutorial like a reader: saves each model with the case below it, derives and runs it, and checks the
+/// printed lines.
 #[test]
 fn tutorial() {
     let path = format!("{}/../docs/tutorial.md", env!("CARGO_MANIFEST_DIR"));
@@ -189,7 +189,7 @@ fn tutorial() {
     assert!(names.next().is_none(), "the tutorial has lost a model");
 }
 
-/// The programs of the book are the examples, which run as tests of their own.
+/// The programs of the book are the examples, which run as separate tests.
 #[test]
 fn programs_are_the_examples() {
     let page = std::fs::read_to_string(format!("{}/programs.md", source())).expect("a chapter");

@@ -1,5 +1,5 @@
-//! Case files: what `clebsch case` prints reads back bit by bit, and every mistake is named with its
-//! file, line and key.
+//! Case files: `clebsch case` prints text that parses to the same bits, and every mistake is reported with its file,
+//! line and key.
 
 use crate::common::{Folder, on, rotor, table};
 use crate::rotor::{CARD, case};
@@ -7,7 +7,7 @@ use clebsch_cli::case_file;
 use clebsch_cli::failure::Failure;
 use clebsch_cli::gallery::Gallery;
 
-/// Line of the printed case on which `key` stands.
+/// Line of the printed case that contains `key`.
 fn line_of(text: &str, key: &str) -> usize {
     1 + text
         .lines()
@@ -49,7 +49,7 @@ fn a_file_runs_like_the_case_it_was_printed_from() {
 
 #[test]
 fn a_rotation_may_be_a_quaternion_and_a_number_an_integer() {
-    // A quarter turn about the first axis by 2 acos 0.8, as the matrix of the case has it.
+    // A rotation about the first axis by 2 acos 0.8, as the matrix in the case.
     let text = with("Lambda", "[0.894427190999916, 0.447213595499958, 0, 0]")
         .replace("kappa = 1.0", "kappa = 1");
     let read = case_file::read("x.toml", &text, &CARD).expect("it reads");
@@ -77,7 +77,7 @@ fn name_doc_and_bounds_may_be_left_out() {
 
 #[test]
 fn every_mistake_is_named_with_file_and_line() {
-    // Key replaced, its new value, what the message says after the place.
+    // Key replaced, its new value, what the message says after the position.
     for [key, value, message] in table(
         r#"
         model  | "other"                        | model: this case is for `other`, not for `harmonic-rotor`
@@ -219,7 +219,7 @@ fn replaced(text: &str, key: &str, line: &str) -> String {
     out.join("\n")
 }
 
-/// The values of a shipped model's case with one key replaced by a line of its own.
+/// The values of a shipped model's case with one key replaced by another line.
 fn shipped_with(model: &str, key: &str, line: &str) -> Result<Vec<Vec<f64>>, String> {
     let gallery = Gallery::shipped();
     let text = replaced(&on(&gallery, &["case", model]).out, key, line);
@@ -284,7 +284,7 @@ fn wrong_inertias_are_named() {
         let found = shipped_with("free-body", "J", line).expect_err(line);
         assert!(found.contains(what), "{line}: {found}");
     }
-    // Inertia where the model asks for inertia is what it says.
+    // If the model asks for an inertia, a given inertia is not converted.
     let found = shipped_with("cayley-klein", "I", "I = { I = [1, 1, 1] }");
     assert!(found.is_err());
 }

@@ -1,5 +1,5 @@
-//! Named cases next to model files: they are found by their names, printed and suggested. All shipped cases run, and two
-//! of them agree with other implementations and closed forms.
+//! Named cases next to model files: clebsch finds them by name, prints and suggests them. All shipped cases run, and
+//! two of them agree with other implementations and closed forms.
 
 use crate::common::{Folder, clebsch, runs};
 use std::fs;
@@ -46,7 +46,7 @@ fn shipped() -> Vec<(String, Vec<String>)> {
     all
 }
 
-/// Long, since every shipped model with named cases is derived, and each case run.
+/// Long, since every shipped model with named cases is derived, and each case is run.
 #[test]
 fn every_shipped_case_runs_by_its_name() {
     let all = shipped();
@@ -104,8 +104,8 @@ fn trajectory(name: &str, case: &str, steps: &str, wanted: &str) -> Vec<Vec<f64>
     samples.only(|name| name.starts_with(wanted))
 }
 
-/// Singular values of the placement at nodes 10 and 50, as another implementation of the same scheme has them; by the
-/// sum of their squares and by their product, the determinant.
+/// Singular values of the placement at nodes 10 and 50, from another implementation of the same scheme; compared by
+/// the sum of their squares and by their product, the determinant.
 #[test]
 fn the_data_of_the_figures_give_the_stretches_of_the_reference_run() {
     let rows = trajectory("elastic/mooney-rivlin", "thesis-figures", "1000", "Q_");
@@ -150,7 +150,7 @@ fn solitons_are_displaced_by_their_encounter() {
     let (fast, slow) = (1.5_f64, 0.5_f64);
     let root = ((fast - slow) / 2.0).sinh() / ((fast + slow) / 2.0).sinh();
     let shift = -2.0 * root.ln();
-    // The top of a soliton near a place, between sites by the parabola through three logarithms.
+    // The maximum of a soliton near a position, interpolated between sites by the parabola through three logarithms.
     let top = |row: &[f64], near: f64| {
         let near = near.round() as isize;
         let at = |site: isize| row[site.rem_euclid(128) as usize];
@@ -169,7 +169,8 @@ fn solitons_are_displaced_by_their_encounter() {
         // The slow one starts behind the fast one's influence.
         let start = top(before, from);
         let found = top(after, from + run) - start - run;
-        // The step of 0.05 makes them faster by parts in 1000, over 120 sites; places are known to a hundredth of a site.
+        // The step size of 0.05 increases the speed by parts in 1000, over 120 sites; positions are known to a
+        // hundredth of a site.
         assert!((found - moved).abs() < 0.1, "{kappa}: {found} {moved}");
     }
 }
@@ -181,8 +182,8 @@ fn wandered(rows: &[Vec<f64>], at: impl Fn(usize) -> f64) -> f64 {
     off.fold(0.0, |most: f64, x| if x > most { x } else { most })
 }
 
-/// The slowest mode of a beam on two supports swings with the frequency of Timoshenko's theory, and a cantilever in the shape
-/// of beam theory stays in it: up to the square of the length of a section, which is 1/40.
+/// The slowest mode of a beam on two supports oscillates with the frequency of Timoshenko's theory, and a cantilever
+/// in the shape of beam theory stays in it: up to the square of the length of a section, which is 1/40.
 #[test]
 fn beams_swing_and_rest_as_beam_theory_has_it() {
     let rod = "lattices/geometrically-exact-rod";

@@ -2,7 +2,7 @@
 
 use crate::common::Folder;
 
-/// A number advected by another rule than the motion is checked against that rule. All of these steps satisfy
+/// A number that is advected by a rule other than the motion is checked against that rule. All of these steps satisfy
 /// their rule.
 #[test]
 fn numbers_carried_by_any_rule_are_judged_by_it() {

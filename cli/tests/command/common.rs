@@ -1,4 +1,4 @@
-//! Runs of the command in this process, and what they printed; folders and tables of the tests.
+//! Runs of the command in this process, and their output; folders and tables of the tests.
 #![allow(missing_docs)]
 
 use crate::rotor;
@@ -60,7 +60,7 @@ impl Words for Vec<&str> {
     }
 }
 
-/// One part of what is printed, or several.
+/// One or several parts of the output.
 pub trait Parts {
     fn parts(&self) -> Vec<&str>;
 }
@@ -105,7 +105,7 @@ pub struct Done {
 }
 
 impl Done {
-    /// It ended with this code.
+    /// The command exited with this code.
     #[track_caller]
     pub fn ended(&self, code: u8) -> &Self {
         assert_eq!(self.code, code, "{self:#?}");
@@ -123,13 +123,13 @@ impl Done {
         self.exits(0)
     }
 
-    /// It rejects the request, and the message contains these words.
+    /// The command rejects the request, and the message contains these words.
     #[track_caller]
     pub fn refuses(&self, words: impl Parts) -> &Self {
         self.ended(2).says(words)
     }
 
-    /// It failed, and the message contains these words.
+    /// The command failed, and the message contains these words.
     #[track_caller]
     pub fn fails(&self, words: impl Parts) -> &Self {
         self.ended(1).says(words)
@@ -261,8 +261,8 @@ pub fn process_in<W: Words + ?Sized>(folder: &str, words: &W) -> Done {
     }
 }
 
-/// The rows of a table of texts: a line for each, its cells parted by `|`. Lines that begin with `//` are remarks, `\n` in a
-/// cell is a new line.
+/// The rows of a table of texts: one line per row, with cells separated by `|`. Lines that begin with `//` are
+/// remarks, `\n` in a cell is a new line.
 pub fn table<const N: usize>(text: &str) -> Vec<[&'static str; N]> {
     let lines = text.lines().map(str::trim);
     let lines = lines.filter(|line| !line.is_empty() && !line.starts_with("//"));

@@ -1,5 +1,5 @@
-//! `clebsch compare`: what is printed, what is written, how wrong requests and models without other
-//! methods are answered. Takes the shipped gallery and the rotor of these tests.
+//! `clebsch compare`: its output, its files, and its answers to wrong requests and to models without other methods.
+//! Takes the shipped gallery and the rotor of these tests.
 
 use crate::common::{Folder, clebsch, rotor, runs, table};
 use clebsch_cli::gallery::Gallery;
@@ -51,7 +51,7 @@ fn generated_steppers_tend_to_the_hand_written_equations() {
                     .map(|field| field["worst"].as_f64().expect("a number"))
                     .fold(0.0, clebsch::scalar::larger)
             });
-            // The velocity tends to the rotation in the left factor, not to the identity: no limit.
+            // The velocity tends to the rotation in the left factor, not to the identity: there is no limit.
             if (model, case.name.as_str()) == ("body-n", "turned") {
                 continue;
             }
@@ -85,9 +85,9 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
     differences.fold(0.0, clebsch::scalar::larger)
 }
 
-/// Long, since every case of the gallery is compared with all its methods.
-/// The hand-written stepper implements the generated scheme, so both have the same errors up to the rounding of
-/// 200 steps. Errors of the scheme exceed 1e-6, and other schemes of second order have other errors.
+/// Long, since every case of the gallery is compared with all its methods. The hand-written stepper implements the
+/// generated scheme, so both have the same errors up to the rounding of 200 steps. Errors of the scheme exceed 1e-6,
+/// and other schemes of second order have different errors.
 #[test]
 fn steppers_by_hand_have_the_errors_of_the_generated_ones() {
     let compared = |model: &str, case: &str| {
@@ -137,7 +137,7 @@ fn the_free_body_is_compared_with_everything() {
         let other = worst(name, "error", "body_momentum");
         assert!((other - error).abs() < 1e-12, "{name}");
     }
-    // The scheme keeps the energy to rounding; splitting does not, Runge-Kutta of loose tolerance neither.
+    // The scheme keeps the energy to rounding; splitting and Runge-Kutta with a loose tolerance do not.
     assert!(worst("generated", "drift", "energy") < 1e-14);
     assert!(worst("splitting", "drift", "energy") > 1e-6);
     assert!(worst("dormand-prince-54", "drift", "energy") > 1e-12);

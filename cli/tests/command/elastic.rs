@@ -16,7 +16,7 @@ const SHIPPED: [(&str, &str); 9] = [
     ("spherical-pendulum", "200"),
 ];
 
-/// Long, since each of nine models is derived in four formats and run.
+/// Long, since each of nine models is derived in four formats and is run.
 #[test]
 fn every_model_is_derived_and_runs_its_case() {
     for (name, steps) in SHIPPED {
@@ -34,8 +34,8 @@ fn every_model_is_derived_and_runs_its_case() {
 }
 
 /// The end of the shipped rod in equilibrium agrees with an independent program for fifty segments, up to the
-/// rounding of fifty products. That program solves the equation of the rod by Newton's method and rotates each
-/// frame by the one before.
+/// rounding of fifty products. That program solves the equation of the rod by Newton's method and rotates each frame
+/// relative to the previous one.
 #[test]
 fn a_rod_at_rest_ends_where_the_reference_does() {
     let folder = Folder::new("rod-at-rest");
@@ -162,7 +162,8 @@ fn trajectory(name: &str, more: &str, wanted: &[&str]) -> Vec<Vec<f64>> {
     (0..samples.rows.len()).map(row).collect()
 }
 
-/// Stretches and angular momentum of the run of figures 3.1 to 3.3 by another implementation: nodes 1, 2, 10 and 50.
+/// Stretches and angular momentum of the run of figures 3.1 to 3.3 from another implementation: nodes 1, 2, 10
+/// and 50.
 #[test]
 fn the_pseudo_rigid_body_of_the_thesis_is_that_of_the_reference_run() {
     let rows = trajectory(
@@ -274,7 +275,7 @@ fn multipliers_and_constraints_are_seen() {
     }
 }
 
-/// Momenta of sample cases point along constraints whatever the configuration: they are zero.
+/// Momenta of sample cases satisfy the constraints for any configuration: they are zero.
 #[test]
 fn a_sample_of_a_held_model_is_at_rest_and_says_so() {
     let folder = Folder::new("held-sample");
@@ -297,7 +298,8 @@ fn a_sample_of_a_held_model_is_at_rest_and_says_so() {
     folder.runs("run @rod.clebsch --case @rod.toml --steps 3");
 }
 
-/// A matrix field whose balance has a number on one side and a matrix on the other: free, p = Q̇ I0 is constant.
+/// A matrix field whose balance has a number on one side and a matrix on the other: without forces, p = Q̇ I0 is
+/// constant.
 #[test]
 fn a_matrix_field_with_second_moments_runs_from_its_file() {
     let folder = Folder::new("matrix-field");

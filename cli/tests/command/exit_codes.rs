@@ -1,4 +1,4 @@
-//! Exit codes and messages of the commands, and what goes to which stream.
+//! Exit codes and messages of the commands, and the stream of each message.
 
 use crate::common::{Folder, process_in, rotor, table};
 
@@ -61,7 +61,7 @@ fn json_is_one_object_and_nothing_else() {
 fn every_wrong_request_is_named() {
     let folder = Folder::new("wrong_requests");
     std::fs::create_dir(folder.path("a.toml")).expect("a folder");
-    // `$` begins a run of the rotor; `&` joins parts of the message.
+    // `$` denotes a run of the rotor; `&` joins parts of the message.
     for [words, code, parts] in table(
         "
                             | 2 | Usage: clebsch

@@ -1,5 +1,5 @@
-//! `clebsch figures`: what is written, and how wrong requests are answered. Takes the shipped gallery,
-//! and one without the models of the figures.
+//! `clebsch figures`: its files, and its answers to wrong requests. Takes the shipped gallery, and one without the
+//! models of the figures.
 
 use crate::common::{Folder, clebsch, rotor};
 
@@ -19,7 +19,7 @@ fn every_figure_is_drawn_once() {
             svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"),
             "{file}"
         );
-        // Curves, not only axes; and no number that is none.
+        // The figures contain curves, not only axes, and no invalid numbers.
         assert!(
             svg.len() > 5_000 && !svg.contains("NaN") && !svg.contains("inf"),
             "{file}"

@@ -18,7 +18,8 @@ const MODEL: &str = "model Channel {
 
 const VELOCITY: &str = r#"["-(c0^2/f)*slope(S, 2)", "(c0^2/f)*slope(S, 1)"]"#;
 
-/// Particles on a lattice that is out of order, which a step takes to no wall; numbers by expressions of one another.
+/// Particles on a perturbed lattice that do not reach a wall in a step; numbers are given by expressions in one
+/// another.
 fn case(start: &str) -> String {
     format!(
         "model = \"Channel\"\nh = 0.05\nsteps = 1\n[labels]\na = 64\nn = [6, 5]\n\
@@ -29,9 +30,9 @@ fn case(start: &str) -> String {
     )
 }
 
-/// The deviation of the first step from the direction of the velocity, relative to the deviation by the Coriolis force alone. The
-/// force and the Coriolis force cancel at the start where, and only where, it is nothing: the velocity u of the step solves `u - (f
-/// h/2) R u = v + (h/2) a`, and `v` itself does for `a = -f R v`.
+/// The deviation of the first step from the direction of the velocity, relative to the deviation by the Coriolis
+/// force alone. It vanishes if and only if the force balances the Coriolis force at the start: the velocity u of the
+/// step solves `u - (f h/2) R u = v + (h/2) a`, and `v` solves this equation for `a = -f R v`.
 fn imbalance(model: &str, start: &str, name: &str) -> f64 {
     let ran = Ran::of(model, &case(start), name);
     let (h, f) = (0.05, ran.parameter("f"));
@@ -58,14 +59,14 @@ fn velocities_by_slopes_are_in_balance_with_the_force_of_the_model() {
     let other = MODEL
         .replace("deposit(X, m)", "deposit_quintic(X, m)")
         .replace("smooth(H", "smooth_isotropic(H");
-    // Places of size 2 are rounded to 2e-16, over turns of 1e-4 at least; the isotropic smoother is an iteration, whose rest is another
-    // one in its transpose.
+    // Positions of size 2 are rounded to 2e-16, relative to rotations of at least 1e-4. The isotropic smoother is an
+    // iteration, whose remainder differs from the remainder of its transpose.
     for (name, model, rounding) in [("cubic", MODEL, 1e-11), ("quintic", &other, 1e-10)] {
         let off = imbalance(model, &format!("velocity_X = {VELOCITY}"), name);
         println!("{name}: {off:e}");
         assert!(off < rounding, "{name}: {off:e}");
     }
-    // Another slope, another mesh.
+    // A different slope and a different mesh.
     for wrong in [
         r#"["-(c0^2/f)*slope(S, 1)", "(c0^2/f)*slope(S, 1)"]"#,
         r#"["-(c0^2/f)*slope(H, 2)", "(c0^2/f)*slope(H, 1)"]"#,
@@ -88,7 +89,7 @@ fn along_a_line_a_momentum_that_the_first_kick_takes_away_moves_nothing() {
     let ran = Ran::of(model, case, "line");
     for a in 0..40 {
         let [from, to] = [0, 1].map(|node| ran.at(&format!("X_{a}"), node));
-        // A rounding of the place, of 1.5 at most.
+        // The rounding of a position of at most 1.5.
         assert!((to - from).abs() < 1e-15, "{a}: {from} {to}");
         assert!(ran.at(&format!("momentum_X_{a}"), 0).abs() > 1e-9, "{a}");
     }
@@ -125,7 +126,7 @@ fn a_mesh_by_its_name_is_its_value_at_the_particle() {
     for a in 0..36 {
         let p = ran.at(&format!("momentum_X_{a}_1"), 0);
         let expected = ran.parameter(&format!("m_{a}")) * ran.at(&format!("phi_{a}"), 0);
-        // Both are solved for from the same places, and multiplied once.
+        // Both are computed from the same positions, and multiplied once.
         assert!((p / expected - 1.0).abs() < 1e-15, "{a}: {p} {expected}");
     }
 }
@@ -256,7 +257,7 @@ fn what_has_no_value_is_told_with_what_to_write() {
         &velocity("S").replace("\"0.1*c0\"", "-1.0"),
         &["`S` has no value at these positions: "],
     );
-    // Another set of sites.
+    // A different set of sites.
     let two = MODEL
         .replace("grid n;", "label b in 0..M; grid n; param k: Real at b;")
         .replace("    mesh H", "    field Y: Vec<2> at b;\n    mesh H")

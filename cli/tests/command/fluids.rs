@@ -40,7 +40,7 @@ fn every_fluid_is_derived_and_runs_its_case() {
         ];
         let done = runs(&[&run[..], &[&own]].concat());
         let same = clebsch(&[&run[..], &["sample"]].concat());
-        // The file says where its momenta come from.
+        // The file names the source of its momenta.
         let of_file = |line: &&str| !line.starts_with("initial momentum_");
         let out: Vec<&str> = done.out.lines().filter(of_file).collect();
         let same_out: Vec<&str> = same.out.lines().collect();
@@ -104,7 +104,8 @@ fn velocities_and_momenta_say_the_same() {
     assert_eq!(energy(&by_velocity), energy(&by_momentum));
 }
 
-/// A depth is positive, an expression a number; of masses given as numbers the kinetic energy is warned of.
+/// A depth must be positive and an expression a number; if masses are given as numbers, clebsch warns about the
+/// kinetic energy.
 #[test]
 fn masses_and_velocities_that_are_none_are_told() {
     let folder = Folder::new("fluids-masses");
@@ -252,7 +253,7 @@ fn masses_are_depths_times_the_areas_of_cells() {
                 .expect("a mass")
         })
         .collect();
-    // Twice the area of the domain, in 400 parts that differ on a lattice with jitter.
+    // Twice the area of the domain, in 400 parts that differ because of the jitter of the lattice.
     assert!((masses.iter().sum::<f64>() - 2.0).abs() < 1e-13);
     assert!(masses.iter().any(|m| (m - 0.005).abs() > 1e-4));
     let wrong = folder.write("wrong.toml", with("{ depth = \"2\", share = \"boxes\" }"));

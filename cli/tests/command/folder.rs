@@ -1,4 +1,4 @@
-//! Folders of the tests, and what runs wrote into them.
+//! Folders of the tests, and the files that runs write into them.
 #![allow(missing_docs)]
 
 use crate::common::{Done, clebsch, rotor};
@@ -16,7 +16,7 @@ pub fn text_of(file: &str) -> String {
     fs::read_to_string(models(file)).unwrap_or_else(|e| panic!("{file}: {e}"))
 }
 
-/// A folder of its own for each test, empty at the start and removed at the end.
+/// A separate folder for each test, empty at the start and removed at the end.
 pub struct Folder(pub PathBuf);
 
 impl Folder {
@@ -57,7 +57,7 @@ impl Folder {
         Samples::of(&self.read(name))
     }
 
-    /// Runs `clebsch` on the models that it ships with; words that begin with `@` are names in this folder.
+    /// Runs `clebsch` on its shipped models; words that start with `@` are names in this folder.
     #[track_caller]
     pub fn clebsch(&self, words: &str) -> Done {
         clebsch(&self.placed(words))
@@ -131,7 +131,7 @@ impl Samples {
         }
     }
 
-    /// The place of a column.
+    /// The index of a column.
     #[track_caller]
     pub fn place(&self, name: &str) -> usize {
         let place = self.names.iter().position(|own| own == name);

@@ -30,8 +30,8 @@ fn floats(shape: &str, numbers: &[f64]) -> Vec<u8> {
     npy("<f8", false, shape, &data)
 }
 
-/// The bytes of `numpy.savez` 2.4: local headers leave the sizes to a field of 64 bits behind the name, and only the directory
-/// has them in its own.
+/// The bytes of `numpy.savez` 2.4: local headers leave the sizes to a 64-bit field after the name; only the directory
+/// contains them directly.
 fn savez(arrays: &[(&str, Vec<u8>)]) -> Vec<u8> {
     let (mut out, mut directory) = (Vec::new(), Vec::new());
     for (name, data) in arrays {
@@ -68,7 +68,7 @@ fn savez(arrays: &[(&str, Vec<u8>)]) -> Vec<u8> {
     out
 }
 
-/// The rows of a run, names and numbers but for node and time, and invariants, which hold the range since the start.
+/// The rows of a run as names and numbers, without node, time and the invariants, which depend on the whole run.
 fn rows(folder: &Folder, out: &str) -> Vec<Vec<(String, f64)>> {
     let csv = std::fs::read_to_string(folder.path(&format!("{out}/trajectory.csv")));
     let csv = csv.expect("is written");
@@ -85,7 +85,7 @@ fn rows(folder: &Folder, out: &str) -> Vec<Vec<(String, f64)>> {
     csv.lines().skip(1).map(row).collect()
 }
 
-/// By how much rows differ, relatively to the largest number of the first.
+/// The difference of rows, relative to the largest number of the first row.
 fn difference(one: &[(String, f64)], other: &[(String, f64)]) -> f64 {
     assert_eq!(one.len(), other.len());
     let scale = one.iter().fold(0.0_f64, |most, (_, x)| most.max(x.abs()));
@@ -96,8 +96,8 @@ fn difference(one: &[(String, f64)], other: &[(String, f64)]) -> f64 {
     clebsch::scalar::largest(differences)
 }
 
-/// Runs a case for 60 steps, and the same from its middle, whose state is sample 1 of the first, by these lines of `[initial]`;
-/// tells by how much the second starts and ends elsewhere.
+/// Runs a case for 60 steps, and runs it again from its middle, with the state from sample 1 of the first run by
+/// these lines of `[initial]`. Returns the differences of the second run at its start and its end.
 fn restarted(name: &str, model: &str, case: &str, initial: &str) -> [f64; 2] {
     let folder = Folder::new(&format!("from-npz-{name}"));
     let run = |out: &str, case: &str, steps: &str| {
@@ -123,7 +123,8 @@ fn restarted(name: &str, model: &str, case: &str, initial: &str) -> [f64; 2] {
     [0, 1].map(|k| difference(&whole[k + 1], &second[k]))
 }
 
-/// The second run starts at the very numbers; the places of the first have some digits more (`clebsch::sum`), which are not written.
+/// The second run starts with exactly the written numbers; the positions of the first run have a few more digits
+/// (`clebsch::sum`), which are not written.
 #[test]
 fn the_end_of_a_run_is_the_start_of_another() {
     let ring = "q = NPZ\nmomentum_q = NPZ";
@@ -137,9 +138,9 @@ fn the_end_of_a_run_is_the_start_of_another() {
     }
 }
 
-/// Long, since two models are derived body by body and as chains, and each is run twice.
-/// Attitudes are read as matrices or quaternions. A run has no values at sites given by an end, and a second
-/// array lists its sites.
+/// Long, since two models are derived body by body and as chains, and each model is run twice. Attitudes are read as
+/// matrices or quaternions. A run omits sites whose value an end condition prescribes; a second array lists the other
+/// sites.
 #[test]
 fn rods_go_on_from_what_a_run_has_written() {
     for (sites, name) in [(8, "rod"), (40, "long-rod")] {
@@ -217,7 +218,7 @@ fn bodies_and_particles_go_on_too() {
     assert!(start < 4.0 * f64::EPSILON && end < 1e-14, "{start} {end}");
     let fluid = text_of("fluids/shallow-water-2d.toml").replace("a = 400", "a = 64");
     let model = models("fluids/shallow-water-2d.clebsch");
-    // Shares of the depth are the same for all.
+    // The particles have equal parts of the depth.
     let [start, end] = restarted("fluid", &model, &fluid, "X = NPZ\nmomentum_X = NPZ");
     assert!(start == 0.0 && end < 1e-14, "{start} {end}");
 }
@@ -455,7 +456,7 @@ fn a_parameter_of_an_end_asks_which_ends_there_are() {
     ) {
         let done = run(extra, "").exits(2);
         done.says([":8: parameters.", owner, example, ends]);
-        // If ends are chosen, the case may keep parameters of other ends.
+        // If ends are chosen, the case may contain parameters of other ends.
         run(extra, "[ends]\ni = \"free\"\n").succeeds();
     }
     let (default, free) = (run("", ""), run("", "[ends]\ni = \"free\"\n"));

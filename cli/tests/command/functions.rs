@@ -1,4 +1,4 @@
-//! Functions that a case gives: the run is identical to a run of the model with the expression typed in its
+//! Functions that a case defines: the run is identical to a run of the model with the expression typed in their
 //! place. An error in a function is reported with file and line.
 
 use crate::common::{Folder, runs, table};

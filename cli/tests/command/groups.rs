@@ -2,7 +2,7 @@
 
 use crate::common::{Folder, runs};
 
-/// A motion of the plane seen from space runs, and the action as stated holds along it.
+/// A motion of the plane, stated in space, runs and satisfies the action as stated.
 #[test]
 fn a_motion_of_the_plane_seen_from_space_is_judged() {
     let folder = Folder::new("plane-from-space");

@@ -62,7 +62,7 @@ fn point_vortices_run_without_a_warning() {
         x = [0.5, 0.0]\ny = [-0.5, 0.0]\nmomentum_x = [0.0, 0.25]\nmomentum_y = [0.0, -0.25]\n";
     run(&folder, VORTICES, case).ended(0).never_says("warning");
     let samples = folder.samples("out/trajectory.csv");
-    // Equal vortices at the distance d turn about their middle at the rate Γ/(π d²).
+    // Equal vortices at the distance d rotate about their centre at the rate Γ/(π d²).
     let angle = 10.0 / std::f64::consts::PI;
     let turned = [0.5 * angle.cos(), 0.5 * angle.sin()];
     for (name, wanted) in ["x_1", "x_2"].into_iter().zip(turned) {
@@ -101,7 +101,7 @@ fn words_of_other_languages_in_a_case_are_answered() {
     }
 }
 
-/// The message of a model begins with what is wrong, on its first line.
+/// The message of a model states the mistake on its first line.
 #[test]
 fn rates_and_degrees_in_a_model_are_answered() {
     let rate = "write a rate of change as a difference over the step: `(next(x) - x)/h`";

@@ -72,7 +72,7 @@ fn an_inertia_at_a_site_is_told_by_the_parameters_that_make_it() {
     }
 }
 
-/// Long, since each of eleven models is derived in four formats and run from three cases.
+/// Long, since each of eleven models is derived in four formats and is run from three cases.
 #[test]
 fn every_model_is_derived_and_runs_its_case() {
     for name in SHIPPED {
@@ -87,7 +87,7 @@ fn every_model_is_derived_and_runs_its_case() {
             "run models/lattices/{name}.clebsch --case models/lattices/{name}.toml --steps 200 --verbose"
         ));
         done.prints("lattice              N = ");
-        // The printed case can be read, and so can the printed case of every other end.
+        // The printed case can be read, and so can the printed case for every other end condition.
         let folder = Folder::new(&format!("lattices-{name}"));
         let sample = runs(&format!("case models/lattices/{name}.clebsch"));
         let own = folder.write("own.toml", &sample.out);
@@ -247,7 +247,7 @@ fn lists_hold_what_is_given_at_an_end_too() {
     };
     let by_list = run("u = [0.0, 0.1, 0.2, 0.3]\nmomentum_u = [0.0, 0.1, 0.2, 0.0]");
     by_list.ended(0).says_nothing();
-    // A site with a given value has no momentum.
+    // A site with a prescribed value does not have a momentum.
     let moving = run("u = [0.0, 0.1, 0.2, 0.3]\nmomentum_u = [0.1, 0.2]");
     assert_eq!(by_list.out, moving.out);
     run("u = \"i/10\"\nmomentum_u = [0.0, 0.1, 0.2, 0.0]").succeeds();

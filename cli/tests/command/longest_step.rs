@@ -1,4 +1,5 @@
-//! The stability limit of small motions about the start: it is printed before a run and is sharp, and larger steps cause a warning.
+//! The stability limit of small motions about the start: it is printed before a run, is sharp, and larger steps cause
+//! a warning.
 
 use crate::common::{Done, Folder, clebsch, models, text_of};
 
@@ -38,9 +39,9 @@ fn a_straight_rod_has_the_limit_of_its_coupled_modes() {
     let largest = 0.5 * (a + b) + (0.25 * (b - a) * (b - a) + coupled).sqrt();
     let limit = 2.0 / largest.sqrt();
     let found = printed(&model, &case);
-    // A line of 40 segments has waves of nearly the shortest length: a part in a thousand.
+    // A chain of 40 segments has waves of nearly the shortest length: the error is one part in a thousand.
     assert!((found / limit - 1.0).abs() < 0.01, "{found} {limit}");
-    // Both limits by themselves are longer.
+    // Each limit by itself is larger.
     assert!(limit < 0.99 * 2.0 / a.sqrt() && limit < 0.99 * 2.0 / b.sqrt());
     // Below the limit the rod is stable; above it, the motion diverges within a few steps.
     let run = |part: f64| {
@@ -170,10 +171,10 @@ fn rows_of_springs_have_one_limit_in_all_groups() {
     }
 }
 
-/// A chain of bodies that begins far from equilibrium, its bonds turned by up to forty radians: forces turn with the frames of the
-/// bodies there, and the stiffness is the symmetric part of their derivative. The numbers are square roots of the largest and of
-/// minus the least eigenvalue of the second derivative of the energy, against the inertia tensors, by numpy: of 40 sites the latter
-/// is 1.096802.
+/// A chain of bodies that starts far from equilibrium, with its bonds rotated by up to forty radians. Forces rotate
+/// with the frames of the bodies there, and the stiffness is the symmetric part of their derivative. The numbers are
+/// square roots of the largest eigenvalue and of minus the least eigenvalue of the second derivative of the energy,
+/// relative to the inertia tensors, by numpy. For 40 sites, the second number is 1.096802.
 #[test]
 fn a_bent_start_has_the_limit_of_the_symmetric_part() {
     let folder = Folder::new("bent-start");
@@ -202,8 +203,8 @@ fn a_bent_start_has_the_limit_of_the_symmetric_part() {
     }
 }
 
-/// No limit is reported for other kinds of steps: a charge in a magnetic field, a potential in the middle of
-/// the step, a kink. Large steps do not make them unstable.
+/// No limit is reported for other kinds of steps: a charge in a magnetic field, a potential at the midpoint of the
+/// step, a kink. Large steps do not make them unstable.
 #[test]
 fn of_steps_of_another_kind_nothing_is_said() {
     let folder = Folder::new("other-steps");
@@ -240,8 +241,9 @@ fn of_one_body_that_is_unstable_no_sign_is_doubted() {
         ))
     };
     let long = run("0.3").succeeds();
-    // With the force (0.00179, 0.00568, 0.01448) on the section: of its part along the tangent alone the root over the stiffness against
-    // bending, 0.002, is 2.6910; with half the other, which joins bending and twist, 2.7188 by numpy; 0.3 over that.
+    // With the force (0.00179, 0.00568, 0.01448) on the section: the tangential part alone, with the root of the
+    // bending stiffness 0.002, gives 2.6910; with half of the other part, which couples bending and twist, numpy
+    // gives 2.7188; 0.3 divided by this.
     long.says([
         "rate 2.719",
         "do not resolve the growth; use at most 0.1103",
@@ -260,7 +262,7 @@ fn of_a_step_that_is_far_too_long_the_limit_is_told() {
             "run models/lattices/geometrically-exact-rod.clebsch --case models/lattices/geometrically-exact-rod.toml --h {h} --steps 1 --json"
         ))
     };
-    // From eight times to a million times too long.
+    // From eight times to a million times too large.
     let said = "times the stability limit 0.0012";
     for h in ["0.01", "1", "1000"] {
         run(h).says(said);
@@ -318,9 +320,9 @@ fn chains_that_hang_have_the_limits_of_laguerre() {
     }
 }
 
-/// Chains of equal links let go from straight lines that lean: far from equilibrium, where forces are large beside what they change by. The
-/// numbers are square roots of the largest eigenvalue of the second derivative of the energy along the constraints, their
-/// reactions at rest included, by numpy.
+/// Chains of equal links released from inclined straight lines: far from equilibrium, the forces are large compared
+/// with their changes. The numbers are square roots of the largest eigenvalue of the second derivative of the energy
+/// along the constraints, including the constraint forces at rest, from numpy.
 #[test]
 fn chains_that_lean_have_the_limits_along_their_constraints() {
     let folder = Folder::new("leaning-chains");
@@ -350,7 +352,7 @@ fn chains_that_lean_have_the_limits_along_their_constraints() {
     }
 }
 
-/// A constraint on a sum leaves the other modes. In a ring of springs with uniform mass the fastest are the
+/// A constraint on a sum does not change the other modes. In a ring of springs with uniform mass the fastest are the
 /// shortest waves; the constraint excludes the uniform mode.
 #[test]
 fn under_a_sum_that_is_held_the_others_swing() {
@@ -417,10 +419,9 @@ fn where_nothing_is_known_of_a_held_line_the_reason_is_said() {
     );
 }
 
-/// Slow: searches for the limit of chains of links with every force.
-/// Links that hang in a rotating plane oscillate along their constraints, where the Coriolis force vanishes.
-/// Neither this force nor the origin of its potential changes the limit. At rest, the momenta are the ones of
-/// this potential.
+/// Slow: searches for the limit of chains of links with every force. Links that hang in a rotating plane oscillate
+/// along their constraints, where the Coriolis force vanishes. Neither this force nor the origin of its potential
+/// changes the limit. At rest, the momenta are the momenta of this potential.
 #[test]
 fn terms_linear_in_velocities_leave_the_limit_along_constraints() {
     let folder = Folder::new("coriolis");
@@ -458,8 +459,9 @@ fn terms_linear_in_velocities_leave_the_limit_along_constraints() {
     }
 }
 
-/// A charge in a magnetic field and a trap: at the limit of the trap alone neighbouring steps are opposite, and the field does
-/// nothing. The potential of the field may be written with any multiple `c` of a difference that adds up to a constant.
+/// A charge in a magnetic field and a trap: at the limit of the trap alone, successive steps are opposite, and the
+/// field has no effect. The potential of the field may be written with any multiple `c` of a difference that adds up
+/// to a constant.
 #[test]
 fn a_magnetic_field_leaves_the_limit_of_the_trap() {
     let folder = Folder::new("magnetic");

@@ -1,5 +1,5 @@
-//! The commands as a user types them: what they print, write and refuse. One binary, since linking is most of what a
-//! test costs.
+//! The commands as a user types them: what they print, write and reject. A single binary, since linking is most of
+//! the cost of a test.
 
 mod attitudes;
 mod bits;

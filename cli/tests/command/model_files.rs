@@ -202,7 +202,7 @@ fn a_comparison_of_a_file_says_what_it_measures_against() {
     ] {
         assert!(!text.contains("generated"), "{text}");
     }
-    // Every curve has its legend, once.
+    // Every curve has one legend.
     let svg = read("comparison.svg");
     let entries = svg.lines().filter(|line| line.trim() == "extrapolated");
     assert_eq!(entries.count(), 1, "{svg}");

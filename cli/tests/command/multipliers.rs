@@ -1,5 +1,5 @@
-//! Multipliers as they are recorded and as derivations print them: what the equations of a step and of the projection on
-//! arrival leave for them, solved by hand from recorded places and momenta.
+//! Multipliers in recorded runs and in printed derivations: the test solves the equations of a step and of the
+//! projection on arrival for them by hand, from recorded positions and momenta.
 
 use crate::common::{Folder, clebsch, runs};
 
@@ -14,7 +14,7 @@ fn two_nodes(folder: &Folder, model: &str, case: &str) -> impl Fn(&str, usize) -
     move |name, node| samples.at(name, node)
 }
 
-/// Roundings of momenta and places by the step, of multipliers of size one to ten.
+/// Rounding errors of momenta and positions divided by the step size, for multipliers of size one to ten.
 const ROUNDED: f64 = 1e-10;
 
 #[test]
@@ -47,7 +47,7 @@ fn the_multiplier_of_a_pendulum_is_that_of_the_printed_equations() {
             (told - (own - impulse / h)).abs() < ROUNDED * told.abs(),
             "{k}: {told} {own} {impulse}"
         );
-        // Neither part is the whole.
+        // Neither part equals the whole.
         assert!((told - own).abs() > 0.3 * told.abs(), "{k}: {told} {own}");
     }
 }
@@ -110,9 +110,9 @@ fn the_multiplier_of_a_sum_is_that_of_the_printed_equations() {
     }
 }
 
-/// Two bodies on a hinge in units in which masses are 1e-8. The motion is the same, and rates along the
-/// constraints vanish to the same rounding. In the past, the projection of momenta lost the masses next to the
-/// larger entries of the constraints.
+/// Two bodies on a hinge in units in which masses are 1e-8. The motion is the same, and rates along the constraints
+/// vanish to the same rounding error. In the past, the projection of momenta lost the masses next to the larger
+/// entries of the constraints.
 #[test]
 fn light_bodies_on_a_hinge_stay_on_it() {
     let folder = Folder::new("light-hinge");
@@ -167,13 +167,13 @@ fn a_held_rod_of_one_segment_has_an_energy() {
     let object = runs(&format!("run {model} --case {case} --json")).json();
     let energy = &object["results"]["invariants"][0];
     assert_eq!(energy["name"], "energy", "{energy}");
-    // It hangs at rest: the mass at the end, 1, times 9.81 over half a unit of length.
+    // It is at rest: the mass at the end, 1, times 9.81 over half a unit of length.
     let scale = energy["scale"].as_f64().expect("a number");
     assert!((scale - 4.905).abs() < 1e-14, "{energy}");
 }
 
-/// If the ends give all sites but one, the momentum belongs to this site. It moves, and a momentum off the
-/// constraint is rejected.
+/// If the ends prescribe all sites but one, the momentum belongs to the remaining site. It moves, and a momentum off
+/// the constraint is rejected.
 #[test]
 fn the_one_site_that_moves_has_its_momentum() {
     let folder = Folder::new("one-site");
@@ -210,8 +210,8 @@ fn the_one_site_that_moves_has_its_momentum() {
     refused(held, &case(2, joint, [0.1, 0.0]));
 }
 
-/// Action and constraint depend on `C = Q^T Q` alone, which no rotation of space changes: reactions leave the momentum of these
-/// rotations, whatever letters they are written in.
+/// Action and constraint depend only on `C = Q^T Q`, which rotations of space do not change: constraint forces
+/// conserve the momentum of these rotations, for any notation.
 #[test]
 fn reactions_written_by_advected_quantities_leave_what_they_do_not_change() {
     let folder = Folder::new("reactions-by-advected");

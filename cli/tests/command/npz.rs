@@ -1,5 +1,5 @@
-//! trajectory.npz against trajectory.csv: the zip is sound, the arrays hold the very same bits.
-//! The reader here follows the two format documents and shares nothing with the writer.
+//! trajectory.npz against trajectory.csv: the zip is valid, and the arrays contain the same bits. The reader in this
+//! file follows the two format documents and shares no code with the writer.
 
 use crate::common::{Folder, table};
 

@@ -1,6 +1,5 @@
-//! Starts with typed digits. If they satisfy their constraints to ten digits, they are moved onto them, with a
-//! note; the check of the action as stated then succeeds. Other starts are rejected, and the message has the
-//! distance.
+//! Starts with typed digits. If they satisfy their constraints to ten digits, they are moved onto them, with a note;
+//! the check of the action as stated then succeeds. Other starts are rejected, and the message contains the distance.
 
 use crate::common::Folder;
 use crate::text_runs::run;

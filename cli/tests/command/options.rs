@@ -48,7 +48,7 @@ fn quantities_are_set_by_name_and_component() {
     clebsch("run heavy-top --set J.11=-5").refuses("--set J.11: negative second moment");
 }
 
-/// The circular case of mass 1 gives a momentum; a velocity takes its place, whole.
+/// The circular case of mass 1 gives a momentum; a velocity replaces it as a whole.
 #[test]
 fn a_velocity_takes_the_place_of_a_momentum() {
     let folder = Folder::new("options-velocity");
@@ -71,7 +71,7 @@ fn a_velocity_takes_the_place_of_a_momentum() {
     }
 }
 
-/// A run with an option is the run of the case with that value typed in, expressions that hold it included.
+/// A run with an option equals the run of the case with this value typed in, including expressions that contain it.
 #[test]
 fn expressions_follow_what_options_set() {
     let folder = Folder::new("options-follow");
@@ -180,7 +180,7 @@ fn orders_are_measured_against_the_limit() {
     };
     let fourth = order("kepler --order 4 --h 0.2 --until 10");
     assert!((fourth - 4.0).abs() < 0.1, "{fourth}");
-    // The mass at the first end of a step alone.
+    // The mass is evaluated only at the start of the step.
     let text =
         "model Uneven { param m: Real; field x: Real; lagrangian = m*x^2*(next(x) - x)^2/(2*h); }";
     let file = folder.write("uneven.clebsch", text);
@@ -262,7 +262,7 @@ fn many_sites_are_compared_as_one_quantity() {
         .never_prints("q_0");
 }
 
-/// Two bodies that fall on each other meet between two nodes, which no step sees.
+/// Two bodies that fall towards each other meet between two nodes, which no step detects.
 #[test]
 fn an_energy_that_is_lost_is_told_with_its_node() {
     let folder = Folder::new("options-lost");
@@ -287,11 +287,11 @@ fn an_energy_that_is_lost_is_told_with_its_node() {
             .as_str()
             .is_some_and(|w| w.contains("reduce h"))
     );
-    // Bodies that pass at a distance keep theirs.
+    // Bodies that pass at a distance conserve their energy.
     folder.write("pass.toml", case("[1, 0, 0]", "[0, 0.5, 0]"));
     folder
         .clebsch("run @two-body.clebsch --case @pass.toml")
-        .never_says("is lost");
+        .never_says("is not conserved from");
 }
 
 /// A momentum that is not projected is of first order at its node, while the motion is of second order.

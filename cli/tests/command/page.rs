@@ -1,5 +1,5 @@
-//! The page of a run: one file that needs no other, with data that its view reads. That it draws is tested in a browser
-//! by `cli/tests/browser.sh`.
+//! The page of a run: one self-contained file, with data that its view reads. That it draws is tested in a browser by
+//! `cli/tests/browser.sh`.
 
 use crate::common::{Folder, rotor};
 
@@ -36,7 +36,7 @@ fn a_body_is_shown_by_its_axes() {
         page.contains("The view shows the run up to time "),
         "{page:.3000}"
     );
-    // Nothing is fetched: addresses are names of formats only.
+    // Nothing is fetched: the only addresses are names of formats.
     let fetched =
         page.matches("src=").count() + page.matches("href=").count() + page.matches("url(").count();
     assert_eq!(fetched, 0);
@@ -177,7 +177,7 @@ fn the_end_of_a_run_is_shown() {
         .and_then(serde_json::Value::as_f64)
         .expect("a time");
     let before = times[times.len() - 2].as_f64().expect("a time");
-    // The whole run or the stretch that is drawn: its last sample, nearer than a stride.
+    // The whole run or the interval that is drawn: its last sample, closer than one stride.
     assert!(shown > before, "{shown} {before}");
     assert!(
         rows.iter()

@@ -1,4 +1,4 @@
-//! Pictures of attitudes, and those for a paper.
+//! Pictures of attitudes, and pictures for a paper.
 
 use crate::common::{Folder, has, on};
 use clebsch_cli::gallery::Gallery;
@@ -101,7 +101,8 @@ fn entries_of_skew_matrices_are_drawn_once() {
     assert!(!svg.contains("μ₂₁") && !svg.contains("μ₁₁"));
 }
 
-/// The energy's change over the step to the order of the scheme, below the drifts, where the energy is not kept exactly.
+/// If the energy is only bounded, its change divided by the power of the step size with the order of the scheme is
+/// drawn below the drifts.
 #[test]
 fn changes_of_what_is_bounded_are_drawn_with_their_sign() {
     let folder = Folder::new("changes");
@@ -117,7 +118,7 @@ fn changes_of_what_is_bounded_are_drawn_with_their_sign() {
     assert!(!free.contains("change since time 0"));
 }
 
-/// Placements by elements of GL(n) are drawn as those by fields are, with the ratio of volumes; rotations are not.
+/// Elements of GL(n) are drawn like matrix fields, with the ratio of volumes; rotations are not.
 #[test]
 fn elements_of_the_linear_group_have_their_determinant() {
     let folder = Folder::new("volumes");
@@ -133,7 +134,8 @@ fn elements_of_the_linear_group_have_their_determinant() {
     assert!(body("fields.svg").is_empty());
 }
 
-/// Precession and spin are drawn where they tell the motion: not of a body that comes through the vertical again and again.
+/// Precession and spin are drawn only if they describe the motion, not for a body that passes through the vertical
+/// repeatedly.
 #[test]
 fn euler_angles_are_drawn_where_they_mean_something() {
     let folder = Folder::new("angles");
@@ -152,7 +154,7 @@ fn euler_angles_are_drawn_where_they_mean_something() {
     assert!(top.contains("φ precession") && top.contains("ψ spin"));
 }
 
-/// A field without a documentation comment has its name alone above its panel; one with it has both.
+/// A field without a documentation comment has only its name above its panel; a field with a comment has both.
 #[test]
 fn panels_of_fields_are_named_as_the_model_documents_them() {
     let folder = Folder::new("panels-of-fields");

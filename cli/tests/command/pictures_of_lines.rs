@@ -52,7 +52,7 @@ fn rods_have_maps_of_their_angles_and_some_of_their_spheres() {
             "site i",
         ],
     );
-    // Sections of a straight rod are upright, where precession and spin alone tell nothing.
+    // Sections of a straight rod are upright, where precession and spin alone are meaningless.
     assert!(!angles.contains("precession") && !angles.contains("spin"));
     assert!(!angles.contains("Λ_4") && height(&angles) < 1000.0);
     let attitude = wide("attitude");
@@ -89,7 +89,7 @@ fn rods_have_maps_of_their_angles_and_some_of_their_spheres() {
     assert!(paper("attitude").contains("6 of 10 spheres are shown"));
 }
 
-/// A chain in a plane is seen from its side, without any slant; one in space in two planes.
+/// A planar chain is shown from the side, without tilt; a chain in space is shown in two planes.
 #[test]
 fn a_chain_in_space_is_drawn_in_planes_of_its_components() {
     let folder = Folder::new("pictures-of-a-chain");

@@ -26,12 +26,12 @@ fn columns_are_drawn_against_time_and_each_other() {
     listed.prints(["  X.1 to X.3\n", "  invariant_energy\n", "  time\n"]);
     folder.runs("plot @run --x X.1 --y X_2 --out @orbit.svg");
     assert!(folder.read("orbit.svg").contains("X_2 against X.1"));
-    // Drawn anew over itself; never over another file.
+    // A picture is drawn again over itself, but never over another file.
     folder.runs("plot @run --y X --out @orbit.svg");
     folder.write("other.svg", "<svg>mine</svg>");
     folder.clebsch("plot @run --y X --out @other.svg").exits(2);
     assert_eq!(folder.read("other.svg"), "<svg>mine</svg>");
-    // Several orbits, each against its own column; all against one otherwise.
+    // Several orbits, each against its own column; otherwise all against one.
     folder.runs("plot @run --x X.1 --y X.2 --x X.2 --y X.3 --out @orbit.svg");
     let picture = folder.read("orbit.svg");
     assert!(picture.contains("X.2 against X.1") && picture.contains("X.3 against X.2"));
@@ -66,7 +66,7 @@ fn sites_are_counted_from_zero() {
     folder.runs("run toda-chain --steps 5 --quiet --out @run");
     folder.clebsch("plot @run").prints("  q_0 to q_31\n");
     folder.runs("plot @run --x momentum_q_31 --y q_0");
-    // If an end gives the first site, it is not a column, and the other sites keep their numbers.
+    // If an end prescribes the first site, this site is not a column, and the other sites keep their numbers.
     let held = folder.path("held");
     folder.runs("run hanging-chain:swing --steps 5 --quiet --out @held");
     folder.clebsch("plot @held").prints("  x_1.1 to x_");
@@ -139,7 +139,7 @@ fn what_is_constant_to_rounding_is_drawn_flat() {
         let heights = || line.iter().map(|point| point[1]);
         heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min)
     };
-    // The first is rounding about zero, the norm of the whole is not small.
+    // The first component is rounding about zero, but the norm of the whole is not small.
     for name in [
         "invariant_momentum_angular.1",
         "invariant_momentum_angular.2",

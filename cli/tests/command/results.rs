@@ -1,4 +1,4 @@
-//! The results of a run: complete, repeatable, readable files, or nothing.
+//! The results of a run: complete, repeatable, readable files, or none.
 
 use crate::common::{Folder, has, on, rotor};
 use clebsch_cli::gallery::Gallery;
@@ -146,7 +146,7 @@ fn a_refused_file_system_is_code_one() {
 fn plots_are_plain_svg() {
     let folder = Folder::new("plots");
     let out = folder.path("out");
-    // A million swings: the plots show the first ones and say so.
+    // A million oscillations: the plots show the first ones and say so.
     folder.rotor("run harmonic-rotor --steps 100000 --out @out");
     for (file, words) in [
         (

@@ -22,7 +22,7 @@ const RUNS: [&str; 6] = [
 /// Checkpoints as often as can be.
 const OFTEN: &str = "--resume --checkpoint 0.001";
 
-/// How many kills a run is given before it is left to end: `CLEBSCH_KILLS`, or few.
+/// The number of kills before a run may finish: `CLEBSCH_KILLS`, or few.
 fn kills() -> u32 {
     let asked = std::env::var("CLEBSCH_KILLS").ok();
     asked.and_then(|text| text.parse().ok()).unwrap_or(6)
@@ -32,7 +32,8 @@ fn run(words: &str, out: &str, more: &str) -> Done {
     process_in(".", &format!("run {words} --out {out} {more}"))
 }
 
-/// Signals meet a run one by one, each when it has come somewhat farther than at the one before; tells how many met it at work.
+/// Sends signals to a run one by one, each after more progress than the one before; returns how many signals reached
+/// it during its work.
 fn met(words: &str, signals: &[&str], kills: u32, [whole, out]: [&str; 2]) -> u32 {
     let samples = fs::metadata(format!("{whole}/trajectory.npz"))
         .expect("written")
@@ -74,7 +75,7 @@ fn same(one: &str, other: &str, what: &str) {
     }
 }
 
-/// Numbers that look random: the same in every run of the test, the moments at which processes are met never.
+/// Pseudorandom numbers: the same in every run of the test, although the moments of the signals differ.
 fn random(seed: &mut u64) -> f64 {
     *seed = seed
         .wrapping_mul(6_364_136_223_846_793_005)
@@ -106,7 +107,7 @@ fn killed_runs_end_bit_equal() {
     killed_and_resumed(&["-KILL"]);
 }
 
-/// Long, since six runs are met by six signals each, and gone on with.
+/// Long, since six runs receive six signals each and are resumed.
 #[test]
 fn interrupted_runs_end_bit_equal() {
     killed_and_resumed(&["-INT", "-TERM"]);
@@ -149,7 +150,7 @@ fn a_fluid_of_particles_that_is_killed_or_interrupted_ends_bit_equal() {
 /// A run of a heavy top that takes minutes.
 const LONG: &str = "heavy-top --steps 2000000000 --every 1000";
 
-/// It, once it has written something into this file of its hidden folder.
+/// The running process, once it has written to this file of its hidden folder.
 fn long(out: &str, file: &str, more: &str) -> Child {
     let mut child = begun(&format!("run {LONG} --out {out} {more}"));
     wait_for(&mut child, out, file, |bytes| !bytes.is_empty());
@@ -236,7 +237,7 @@ fn a_killed_run_is_not_begun_anew_by_mistake() {
 fn results_are_kept_when_nobody_reads_the_output() {
     let folder = Folder::new("closed-output");
     let out = folder.path("out");
-    // The end that would be read is closed before anything is written.
+    // The reading end is closed before anything is written.
     let (reader, writer) = std::io::pipe().expect("a pipe");
     drop(reader);
     let mut command = command(&format!("run heavy-top --steps 1000 --out {out}"));

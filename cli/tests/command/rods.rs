@@ -1,10 +1,11 @@
-//! Rods and chains with prescribed ends on the command line: theoretical thresholds, reference runs, quantities at both ends.
+//! Rods and chains with prescribed ends on the command line: theoretical thresholds, reference runs, quantities at
+//! both ends.
 
 use crate::common::{Folder, runs, text_of};
 
-/// Long, since a disturbance needs 3000 steps of 60 sections to grow.
-/// A ring stays flat up to sqrt(3) K1/K3 turns of twist (Michell 1889, Zajac 1962), 2.6 of the shipped one: with two a
-/// disturbance stays as small as it was, with three the ring leaves its plane.
+/// Long, since a disturbance needs 3000 steps of 60 sections to grow. A ring stays flat up to sqrt(3) K1/K3 turns of
+/// twist (Michell 1889, Zajac 1962), which is 2.6 for the shipped ring: with two turns a disturbance does not grow,
+/// with three the ring leaves its plane.
 #[test]
 fn a_twisted_ring_leaves_its_plane_beyond_the_threshold() {
     let folder = Folder::new("twisted-ring");
@@ -30,10 +31,9 @@ fn a_twisted_ring_leaves_its_plane_beyond_the_threshold() {
     assert!(bent > 0.1, "{bent}");
 }
 
-/// Long, since the energy is observed over 2000 steps of 50 sections.
-/// The rod of the thesis's figures 3.4 to 3.6 with consistent data. Its energy after one step agrees with the
-/// reference run to rounding and stays in its band. The linear momentum is zero to rounding; the angular
-/// momentum across the axis is not conserved.
+/// Long, since the energy is observed over 2000 steps of 50 sections. The rod of the thesis's figures 3.4 to 3.6 with
+/// consistent data. Its energy after one step agrees with the reference run to rounding and stays in its band. The
+/// linear momentum is zero to rounding; the angular momentum across the axis is not conserved.
 #[test]
 fn the_periodic_rod_of_the_thesis_is_that_of_the_reference_run() {
     let folder = Folder::new("periodic-rod");
@@ -73,8 +73,8 @@ fn the_periodic_rod_of_the_thesis_is_that_of_the_reference_run() {
     }
 }
 
-/// Long, since a rod of 20 segments is derived body by body.
-/// A rod clamped at both ends, by matrices and by quaternions, written out and in loops over sites.
+/// Long, since a rod of 20 segments is derived body by body. A rod clamped at both ends, by matrices and by
+/// quaternions, expanded and with loops over sites.
 #[test]
 fn both_ends_have_parameters_of_one_name() {
     let folder = Folder::new("both-ends");
@@ -101,7 +101,7 @@ fn both_ends_have_parameters_of_one_name() {
     }
 }
 
-/// Quaternions that an end holds are given as those that move.
+/// Quaternions that an end prescribes are given in the same form as moving ones.
 #[test]
 fn an_end_holds_a_quaternion() {
     let folder = Folder::new("held-quaternion");
@@ -133,7 +133,7 @@ fn an_end_holds_a_quaternion() {
             .expect("a number");
         energies.push((sites, scale));
     }
-    // Neighbours are a tenth apart, the held one among them: about four for each of the segments.
+    // Neighbours, including the prescribed one, are a tenth apart: about four for each segment.
     for (sites, scale) in energies {
         let of_segments = 4.0 * f64::from(sites) * 0.1_f64.cos();
         assert!(

@@ -1,6 +1,6 @@
 //! Steps whose equations have several roots: a step takes the principal root, or fails at the fold. Reference numbers
-//! come from a continuation in small parts of the momentum, in two million parts for the hoop, or by arclength; those
-//! for one field come from its momentum at 400,000 velocities.
+//! come from continuation in small increments of the momentum, two million increments for the hoop, or by arclength;
+//! the numbers for one field come from its momentum at 400,000 velocities.
 
 use crate::common::{Folder, rotor};
 
@@ -50,7 +50,7 @@ fn a_bead_on_a_free_hoop_turns_back_before_the_axis() {
     );
 }
 
-/// The mass grows a hundredfold in the middle of the path; there is another root beyond the fold.
+/// The mass grows a hundredfold in the middle of the path; another root exists beyond the fold.
 #[test]
 fn a_heavy_place_on_the_way_is_not_passed_over() {
     let model = "model Bump { param a, w: Real; field x: Real; let d = next(x) - x; let c = (x + next(x))/2;
@@ -66,7 +66,7 @@ fn a_heavy_place_on_the_way_is_not_passed_over() {
         &case("100.0", "0.1", "-1.56", "4.59"),
         "0.459250",
     );
-    // Here the place is as wide as 0.006 of the way of its argument.
+    // The narrow region has a width of 0.006 of the displacement of its argument.
     folds(
         "bump",
         model,
@@ -81,9 +81,9 @@ fn a_heavy_place_on_the_way_is_not_passed_over() {
     );
 }
 
-/// A bead is carried through the axis of its hoop several times; about the axis it would turn a hundred times as fast.
-/// The first correction ends before a bump, and the computed solution is behind it. The first root of `T = 1`, where
-/// `T = (1 + e) d + x e d²/(4 w²)`, `x = d/2 - c` and `e = -exp(-x²/(2 w²))/2`, lies before it.
+/// A bead passes through the axis of its hoop several times; around the axis it would rotate a hundred times as fast.
+/// The first correction ends before a bump, and the computed solution is beyond it. The first root of `T = 1`, where
+/// `T = (1 + e) d + x e d²/(4 w²)`, `x = d/2 - c` and `e = -exp(-x²/(2 w²))/2`, is before it.
 #[test]
 fn a_bump_beyond_the_first_correction_is_not_passed_over() {
     let folder = Folder::new("beyond");
@@ -129,7 +129,7 @@ fn a_bead_that_crosses_the_axis_many_times_is_refused() {
     }
 }
 
-/// The mass is large where the step begins, within a fortieth of the way or a fifth.
+/// The mass is large at the start of the step, within a fortieth or a fifth of the displacement.
 #[test]
 fn a_mass_that_falls_near_rest_is_not_left_behind() {
     let model = "model Pmass { param m, a, l: Real; field X: Vec<2>;
@@ -153,7 +153,7 @@ fn a_mass_that_falls_near_rest_is_not_left_behind() {
     }
 }
 
-/// The place concerns a field that moves a thousandth as far as another one.
+/// The narrow region concerns a field that moves a thousandth as far as another field.
 #[test]
 fn a_light_place_beside_a_long_way_is_not_passed_over() {
     let model = "model Beside { param M, a, w: Real; field x, X: Real; let d = next(x) - x; let f = next(X) - X;
@@ -163,7 +163,7 @@ fn a_light_place_beside_a_long_way_is_not_passed_over() {
     folds("beside", model, case, "0.126995");
 }
 
-/// At rest nothing but the rounding of the constraint is left to solve for.
+/// At rest, only the rounding of the constraint remains in the equations.
 #[test]
 fn a_pendulum_at_rest_stays() {
     let folder = Folder::new("pendulum-at-rest");

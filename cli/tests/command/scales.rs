@@ -1,12 +1,12 @@
 //! The natural scale of an invariant: the sum of the absolute values of its terms, the largest along the run.
-//! Rounding of the terms never exceeds a bound, whatever the terms were at the start.
+//! Rounding of the terms never exceeds a bound, for any initial terms.
 
 use crate::common::{Folder, on, runs};
 use clebsch_cli::gallery::Gallery;
 use serde_json::Value;
 
 clebsch::model! {
-    /// A rigid body, free to turn and to move.
+    /// A rigid body that can rotate and move freely.
     model FreeRigidBody {
         param J: Sym<3>;
         param m: Real;
@@ -34,8 +34,8 @@ fn number(value: &Value) -> f64 {
         .unwrap_or_else(|| panic!("{value} is no number"))
 }
 
-/// Bodies that go a thousand lengths away: of the angular momentum about the origin only a thousandth is left of its
-/// two terms, and it is known to their rounding.
+/// Bodies that move a thousand lengths away: the angular momentum about the origin is a thousandth of each of its two
+/// terms, and its rounding error is relative to them.
 #[test]
 fn an_angular_momentum_about_the_origin_has_the_scale_of_the_lever_arm_reached() {
     let name = "spatial_momentum_angular_Z";
@@ -55,7 +55,7 @@ fn an_angular_momentum_about_the_origin_has_the_scale_of_the_lever_arm_reached()
         let out = folder.path("out");
         let (code, json) = json(&Gallery::shipped(), &[&run[..], &["--out", &out]].concat());
         assert_eq!(code, 0, "{case}: {}", invariant(&json, name));
-        // The distance at the end times the linear momentum across the vertical, in whose direction it is.
+        // The distance at the end, which is vertical, times the horizontal linear momentum.
         let samples = folder.samples("out/trajectory.csv");
         let at = |name: &str| samples.end(name);
         let length = |of: [&str; 3]| of.map(at).iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -64,12 +64,12 @@ fn an_angular_momentum_about_the_origin_has_the_scale_of_the_lever_arm_reached()
         let scale = number(&invariant(&json, name)["scale"]);
         assert!(away > 1e3, "{case}: {away}");
         assert!(scale > away * linear, "{case}: {scale} < {away} * {linear}");
-        // The other term is of the size of the start, and the body is farthest at the end.
+        // The other term has the size of the start, and the body is farthest at the end.
         assert!(scale < away * linear + 2.0, "{case}: {scale}");
     }
 }
 
-/// Far from the origin only the angular part is known less well.
+/// Far from the origin, only the angular part is less accurate.
 #[test]
 fn angular_and_linear_momentum_have_scales_of_their_own() {
     let card = FreeRigidBody::CARD;
@@ -109,7 +109,7 @@ fn angular_and_linear_momentum_have_scales_of_their_own() {
     }
     motion.invariants(&mut values);
     for ((a, b), scale) in of(&values).iter().zip(of(&start)).zip(of(&scales)) {
-        // A few roundings of a carried number.
+        // A few roundings of an advected number.
         assert!((a - b).abs() <= 1e-14 * scale, "{values:?} {start:?}");
     }
 }
@@ -173,8 +173,8 @@ fn no_value_is_larger_than_its_scale() {
     assert!(compared > 1000, "{compared}");
 }
 
-/// A top that hangs in equilibrium in a general direction: its momentum is the rounding of the impulses of its weight, and
-/// is not used as its own scale.
+/// A top that hangs in equilibrium in a general direction: its momentum is only the rounding error of the impulses of
+/// its weight, and is not used as its own scale.
 #[test]
 fn a_top_at_equilibrium_is_within_its_bounds() {
     let mut gallery = Gallery::shipped();
@@ -197,8 +197,8 @@ fn a_top_at_equilibrium_is_within_its_bounds() {
     assert!(scale > 0.1 && scale < 0.2, "{vertical}");
 }
 
-/// Components of a total that are zero but for rounding are measured by the whole of it, along a line that is stepped by loops as along
-/// one of as many bodies: the length of what all sites have.
+/// Components of a total that vanish up to rounding are measured by the length of the whole total, with loops over
+/// sites as well as body by body.
 #[test]
 fn a_total_is_measured_as_a_whole_along_a_line_of_any_length() {
     let folder = Folder::new("scale-of-a-total");

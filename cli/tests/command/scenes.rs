@@ -46,7 +46,7 @@ fn numbers(v: &Value) -> Vec<f64> {
     list.map(|x| x.as_f64().expect("a number")).collect()
 }
 
-/// The places in every frame of the body, or of the point, with this name.
+/// The positions in every frame of the body, or of the point, with this name.
 fn places(scene: &Value, kind: &str, name: &str) -> Vec<Vec<f64>> {
     let all = scene[kind].as_array().expect("a list").iter();
     let mut own = all.filter(|b| b["name"] == name);
@@ -82,13 +82,13 @@ fn bodies(fields: &str, attitudes: &[&str], potential: &str) -> String {
 #[test]
 fn a_body_is_shown_at_its_place() {
     for (name, model, pairs) in [
-        // One place and one attitude.
+        // One position and one attitude.
         (
             "satellite",
             bodies("x", &["A"], "dot(x, A*J*A^T*x) + dot(x, x)"),
             vec![("A", "x")],
         ),
-        // By the sums in which they stand, whatever the order of the declarations.
+        // The sums that contain them decide, for any order of the declarations.
         (
             "arms",
             bodies(
@@ -187,13 +187,13 @@ fn what_a_constraint_joins_is_linked() {
         let ends = numbers(&links[1][f]);
         assert!(ends == [y[0], y[1], 0.0, x[0], x[1], 0.0], "{ends:?}");
     }
-    // The point that stays is ground.
+    // The fixed point is drawn as ground.
     assert_eq!(scene["supports"].to_string(), "[[0.0,0.0,0.0]]");
 }
 
 #[test]
 fn a_joint_is_linked_over_its_point() {
-    // Two bars, the first one hung up at P, and held by components.
+    // Two bars: the first is suspended at P, and both are constrained by components.
     let folder = Folder::new("scene-bars");
     let model =
         "model Bars { param m, K, g: Real; param P: Vec<2>; field x, y: Vec<2>; field a, b: Real;
@@ -229,7 +229,7 @@ fn a_plane_that_holds_a_point_is_no_link() {
     let folder = Folder::new("scene-on-a-plane");
     let model = "model Orbit { param m, k: Real; field x: Vec<3>; hold p: x[3] = 0;
          lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - h*k*dot(x, x)/2; }";
-    // Once around in a circle.
+    // One full circle.
     let case = "model = \"orbit\"\nname = \"circle\"\ndoc = \"\"\nh = 0.02\nsteps = 300\n[parameters]\nm = 1.0\nk = 1.0\n\
          [initial]\nx = [1.0, 0.0, 0.0]\nmomentum = [0.0, 1.0, 0.0]\n";
     let scene = data(&page(&folder, model, case));
@@ -269,7 +269,7 @@ fn particles_have_colours_with_a_scale() {
             low < high && values.iter().all(|v| (low..=high).contains(v)),
             "{name}"
         );
-        // The picture names what is coloured, above the scale and in its title.
+        // The picture names the coloured quantity, above the scale and in its title.
         let svg = folder.read("out/particles.svg");
         let (title, above) = match name {
             "grid" => ("S = smooth(H, alpha)", "\nS\n"),
@@ -348,7 +348,7 @@ fn the_view_has_names_ground_and_smooth_trails() {
             .any(|p| lines(p) == 5 && p.matches('M').count() == 5),
         "{svg}"
     );
-    // Where a point goes far between two frames the trail has points of its own.
+    // If a point moves far between two frames, its trail has additional points.
     assert!(
         paths
             .iter()
@@ -369,7 +369,7 @@ fn what_is_farther_is_paler() {
     let Some(svg) = drawn(&folder, "20") else {
         return;
     };
-    // Three axes, each in a shade of its own colour.
+    // Three axes, each in shades of its own colour.
     let inks: std::collections::HashSet<&str> = svg
         .split("stroke=\"")
         .skip(1)

@@ -1,5 +1,5 @@
-//! `--set` takes what a case file takes: rotations by any of their forms, inertias, matrices, and entries of a table. A case may
-//! leave the number of steps to an option.
+//! `--set` accepts the values of a case file: rotations in any form, inertias, matrices, and entries of a table. A
+//! case may leave the number of steps to an option.
 
 use crate::common::{Folder, clebsch, runs};
 use crate::text_runs::run;
@@ -12,7 +12,7 @@ const TOP: &str = "model Top {
     lagrangian = -tr(J*W)/h - h*k*dot(R*E3, E3);
 }";
 
-/// The inertia spans two lines, the number of steps is not given.
+/// The inertia spans two lines, and the number of steps is missing.
 const CASE: &str = "model = \"top\"\nh = 0.01\n[parameters]\nJ = { I = [2.0,\n  3.0, 4.0] }\nk = 1\n[initial]\n\
                     R = { axis = [0, 0, 1], angle = 0.5 }\nangular_velocity = [1, 0, 0.2]\n";
 

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
-/// The program, to be run with these words.
+/// The program with these arguments, ready to run.
 pub fn command(words: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_clebsch"));
     command.args(words.words());
@@ -30,7 +30,7 @@ pub fn succeeds(words: &str) -> bool {
     status.expect("runs").success()
 }
 
-/// Sends a signal, which meets nothing where the program has ended by itself; tells how it ended.
+/// Sends a signal, which has no effect if the program has already ended; returns how the program ended.
 pub fn ended_by(signal: &str, mut child: Child) -> Option<i32> {
     let id = child.id().to_string();
     let mut kill = Command::new("kill");
@@ -53,13 +53,13 @@ fn hidden(out: &str) -> Vec<PathBuf> {
     all.filter(is_own).collect()
 }
 
-/// The bytes that a run into `out` has written into a file so far.
+/// The number of bytes that a run into `out` has written into a file so far.
 pub fn written(out: &str, file: &str) -> Vec<u8> {
     let read = |folder: PathBuf| fs::read(folder.join(file)).ok();
     hidden(out).into_iter().find_map(read).unwrap_or_default()
 }
 
-/// Waits until a run into `out` has written as is wanted, or has ended.
+/// Waits until the file that a run into `out` writes satisfies a condition, or the run has ended.
 pub fn wait_for(child: &mut Child, out: &str, file: &str, wanted: impl Fn(&[u8]) -> bool) {
     wait_until(file, || {
         wanted(&written(out, file)) || child.try_wait().expect("is asked").is_some()

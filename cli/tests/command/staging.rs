@@ -1,5 +1,5 @@
-//! No order of events loses results: what someone else puts in the way during a run stays, and the
-//! results of the run stay, too.
+//! No order of events loses results: files that another process creates during a run stay, and so do the results of
+//! the run.
 
 use crate::common::{Done, Folder, on, rotor};
 use clebsch::StepError;
@@ -15,7 +15,7 @@ thread_local! {
     static MEANWHILE: RefCell<Option<Box<dyn FnOnce()>>> = const { RefCell::new(None) };
 }
 
-/// The rotor of the other tests, in whose tenth step something happens.
+/// The rotor of the other tests; a given event happens in its tenth step.
 struct Interrupted(Box<dyn Trajectory>);
 
 impl Trajectory for Interrupted {
@@ -78,7 +78,7 @@ fn run_while(event: impl FnOnce() + 'static, out: &str, more: &[&str]) -> Done {
     done
 }
 
-/// The number of steps of the run whose complete results lie in `folder`.
+/// The number of steps of the run whose complete results are in `folder`.
 fn steps_in(folder: &str) -> u64 {
     let text = fs::read_to_string(format!("{folder}/run.json")).expect("run.json");
     let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
@@ -105,7 +105,7 @@ fn kept_beside(done: &Done, kept: &str) {
     assert_eq!(steps_in(kept), 20);
 }
 
-/// Two things go wrong: the folder is taken, and a step fails after that.
+/// Two failures: another process takes the folder, and then a step fails.
 #[test]
 fn results_of_a_run_that_stopped_are_kept_beside_a_folder_made_meanwhile() {
     let folder = Folder::new("made_and_stopped");
@@ -174,7 +174,7 @@ fn an_empty_folder_a_file_and_a_link_made_meanwhile_stay() {
 #[test]
 fn of_two_runs_into_one_folder_both_keep_their_results() {
     let folder = Folder::new("two_runs");
-    // With and without --force: the other run's folder was not there at the start.
+    // With and without --force: the folder of the other run did not exist at the start.
     for more in [&[][..], &["--force"]] {
         let out = folder.path(&format!("out{}", more.len()));
         let other = out.clone();
@@ -193,12 +193,12 @@ fn of_two_runs_into_one_folder_both_keep_their_results() {
 #[test]
 fn force_replaces_only_what_stood_there_at_the_start() {
     let folder = Folder::new("force_meanwhile");
-    // Nothing happens: replaced.
+    // Without an event, the earlier results are replaced.
     let out = folder.path("quiet");
     earlier(&out);
     run_while(|| {}, &out, &["--force"]).succeeds();
     assert_eq!(steps_in(&out), 20);
-    // A foreign file is put into it.
+    // Another process puts a file into the folder.
     let out = folder.path("foreign");
     earlier(&out);
     let note = format!("{out}/note.txt");
@@ -230,7 +230,7 @@ fn force_replaces_only_what_stood_there_at_the_start() {
     let done = run_while(event, &out, &["--force"]);
     kept_beside(&done, &format!("{out}-2"));
     assert_eq!(steps_in(&out), 7);
-    // An empty folder takes its place, as does the name of a run that ends at this moment.
+    // An empty folder replaces it, as if another run had just reserved the name.
     let out = folder.path("emptied");
     earlier(&out);
     let other = out.clone();
@@ -240,7 +240,7 @@ fn force_replaces_only_what_stood_there_at_the_start() {
     };
     run_while(event, &out, &["--force"]).succeeds();
     assert_eq!(steps_in(&out), 20);
-    // It is gone: nothing is to be replaced.
+    // The folder is gone, so there is nothing to replace.
     let out = folder.path("gone");
     earlier(&out);
     let other = out.clone();
@@ -282,7 +282,7 @@ fn a_folder_of_the_name_of_a_file_of_a_run_is_not_replaced() {
 fn what_other_processes_left_hidden_stays() {
     let folder = Folder::new("hidden");
     let out = folder.path("out");
-    // The same process id comes round again, or counts in another machine of a shared disk.
+    // The same process id is used again, or belongs to another machine with a shared disk.
     let names: Vec<String> = ["partial", "replaced"]
         .iter()
         .flat_map(|role| {
@@ -368,7 +368,7 @@ fn what_a_killed_run_left_behind_is_removed_by_the_next() {
         fs::create_dir(sibling(name)).expect("made");
         fs::write(format!("{}/trajectory.csv", sibling(name)), "1,2").expect("written");
     }
-    // Folders that belong to no run, or to a run into another target, stay.
+    // Folders of other programs, or of runs into another target, stay.
     for name in [
         ".other.partial-1-0",
         ".run.partial-notes",
@@ -379,7 +379,7 @@ fn what_a_killed_run_left_behind_is_removed_by_the_next() {
         fs::create_dir(sibling(name)).expect("made");
     }
     fs::write(format!("{}/notes.txt", sibling(".run.partial-2-0")), "mine").expect("written");
-    // A run does not touch the folder of a run in progress, here its own.
+    // A run does not touch the folder of a run in progress, in this case its own folder.
     let inner = out.clone();
     let during = folder.path("");
     let done = run_while(
@@ -398,7 +398,7 @@ fn what_a_killed_run_left_behind_is_removed_by_the_next() {
             };
             assert!(hidden("1"));
             run_while(|| (), &inner, &[]).succeeds();
-            assert!(hidden("1"), "that of the run around it");
+            assert!(hidden("1"), "the folder of the outer run remains");
         },
         &out,
         &[],

@@ -1,6 +1,6 @@
-//! `derive --standalone`: complete documents. Every command in them belongs to LaTeX or to a package that they
-//! load. Environments, brackets and dollar signs pair, the bibliography contains every citation, and every
-//! reference has its label.
+//! `derive --standalone`: complete documents. Every command in them belongs to LaTeX or to a package that they load.
+//! Environments, brackets and dollar signs pair, the bibliography contains every citation, and every reference has
+//! its label.
 
 use crate::common::{Folder, clebsch, runs};
 use std::collections::BTreeSet;
@@ -35,7 +35,7 @@ fn arguments<'a>(text: &'a str, command: &str) -> Vec<&'a str> {
     braced.collect()
 }
 
-/// The words of commands, and signs behind a backslash taken out of the text.
+/// The words of commands, and signs after a backslash, extracted from the text.
 fn read(text: &str) -> (BTreeSet<String>, String) {
     let (mut commands, mut rest) = (BTreeSet::new(), String::new());
     let mut letters = text.chars().peekable();

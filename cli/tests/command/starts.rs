@@ -78,7 +78,7 @@ fn values_are_judged_before_anything_is_searched_for() {
     assert_eq!((done.code, inquiries), (2, 0), "{}", done.err);
 }
 
-/// The numbers of a run of so many steps.
+/// The results of a run with this number of steps.
 fn ran(model: &str, case: &str, steps: u32) -> Samples {
     let number = RUNS.fetch_add(1, Ordering::SeqCst);
     let folder = Folder::new(&format!("starts-{number}"));
@@ -96,7 +96,8 @@ fn starts(model: &str, case: &str, wanted: &[(&str, f64)]) {
     }
 }
 
-/// Two point masses on two rigid links: nothing resists a disturbance at rest, so that the search asks ever longer steps.
+/// Two point masses on two rigid links: no force resists a disturbance at rest, so the search tries ever longer
+/// steps.
 #[test]
 fn two_points_on_rigid_links_start() {
     let model = r#"/// two point masses on two rigid links
@@ -207,7 +208,7 @@ momentum_a3 = 0.10125803187619994"#;
     );
 }
 
-/// Two bodies on a spherical joint fall freely from rest: by half the square of the step.
+/// Two bodies with a spherical joint fall freely from rest: by half the square of the step.
 #[test]
 fn two_bodies_on_a_spherical_joint_start() {
     let model = r#"/// two bodies on a spherical joint, in space
@@ -335,9 +336,9 @@ body_momentum_B = [[0.0, -0.9186103130116213], [0.9186103130116213, 0.0]]"#;
     );
 }
 
-/// A potential in the middle of the step adds nothing to the momenta of neighbours in the limit of small steps.
-/// From 9 segments on, where loops over sites run, the energy was not a number. The action is quadratic, so
-/// that the energy is conserved exactly.
+/// A potential at the midpoint of the step adds nothing to the momenta of neighbours in the limit of small steps.
+/// From 9 segments on, where loops over sites run, the energy used to be NaN. The action is quadratic, so that the
+/// energy is conserved exactly.
 #[test]
 fn a_potential_in_the_middle_of_the_step_runs_for_every_number_of_sites() {
     let model = r#"/// A line of masses on springs, the potential in the middle of the step: runs with N = 8, fails with N >= 9.
@@ -383,7 +384,7 @@ momentum_x = 0.1"#
     }
 }
 
-/// A pulley without mass moves with its rope alone, so that its energy is 0/0; a little mass is enough.
+/// A pulley without mass moves with its rope only, so that its energy is 0/0; a small mass is enough.
 #[test]
 fn a_mass_of_zero_and_a_step_backwards_are_answered_with_what_to_do() {
     let folder = Folder::new("starts-massless");

@@ -54,7 +54,7 @@ judged! {
     particle_mesh: "fluids/particle-mesh-1d" "2" "not checked: functionals of all sites";
 }
 
-/// Which steps are judged, and what the object says of them.
+/// The steps that are judged, and their entries in the JSON object.
 #[test]
 fn the_steps_that_are_judged_are_those_asked_for() {
     let object = |check: &str| -> Value {
@@ -107,7 +107,7 @@ fn the_parts_of_a_composed_step_are_judged() {
     }
 }
 
-/// A body at rest has residuals that are exactly zero, of which nothing follows.
+/// A body at rest has residuals that are exactly zero, which prove nothing.
 #[test]
 fn a_body_at_rest_is_no_failure_of_the_check() {
     let folder = Folder::new("stated-at-rest");

@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-/// A torque so stiff that the rotor outruns its step after some steps.
+/// A torque so stiff that the step fails after some steps.
 fn failing(folder: &Folder) -> String {
     let text = rotor("case harmonic-rotor").out;
     folder.write(
@@ -28,7 +28,7 @@ fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text}"))
 }
 
-/// The node at which the message says that the run stopped.
+/// The node at which the run stopped, according to the message.
 fn node_of(message: &str) -> u64 {
     let from = message.split("step from node ").nth(1);
     let digits = from.and_then(|rest| rest.split(' ').next());
@@ -60,7 +60,7 @@ fn a_run_that_stops_leaves_what_it_computed_marked_as_stopped() {
         let ending = format!("clebsch: {why}\n");
         assert!(done.err.ends_with(&ending), "{}", done.err);
         assert_eq!(manifest["steps"], 2000);
-        // In the samples: to the last node reached, whether it was to be sampled or not.
+        // The samples extend to the last node reached, even if it was not to be sampled.
         let text = read(&out, "trajectory.csv");
         let nodes: Vec<u64> = text
             .lines()
@@ -95,7 +95,7 @@ fn it_says_so_without_files_and_as_json() {
     assert_eq!(object["out"], Value::Null);
     assert_eq!(object["error"], object["results"]["stopped"]["why"]);
     assert_eq!(object["results"]["stopped"]["node"], node_of(&done.err));
-    // A run that comes to its end says that it did not stop.
+    // A complete run does not report a stop.
     let done = rotor("run harmonic-rotor --json");
     assert_eq!(json(&done.out)["results"]["stopped"], Value::Null);
 }
@@ -152,7 +152,7 @@ fn a_refused_first_step_says_what_is_wrong_with_the_kinetic_energy() {
                 values[0] = 1e6;
             }
         }),
-        // No added mass, and none of its own.
+        // Neither an added mass nor a mass of its own.
         ("kirchhoff-body", "degenerate", |name, values| {
             if name == "M" || name == "D" {
                 values.fill(0.0);
@@ -191,7 +191,7 @@ fn a_refused_first_step_says_what_is_wrong_with_the_kinetic_energy() {
             let object = json(&done.out);
             let said = object["error"].as_str().expect("a message");
             assert!(said.contains(&words), "{model}: {said}");
-            // Other commands whose first action is a step.
+            // Other commands that start with a step.
             on(&gallery, &["compare", model, "--steps", "5"]).says(&words);
         }
     }
@@ -222,7 +222,7 @@ fn a_comparison_that_stops_leaves_what_it_computed() {
         let own = &object["methods"][0];
         assert_eq!(own["name"], "generated");
         assert_eq!(own["stopped"]["node"], node + 1);
-        // As many samples as were made, at nodes where the others have theirs.
+        // The samples up to the stop, at the same nodes as in the other runs.
         let text = read(&out, "comparison.csv");
         let times: Vec<f64> = text
             .lines()

@@ -1,4 +1,4 @@
-//! Sweeps: what is varied, and that neither parts nor kills change a byte of the table.
+//! Sweeps: which quantities vary, and that neither parts nor kills change a byte of the table.
 
 use crate::common::{Done, Folder, Samples, clebsch, runs, table};
 use std::fs;
@@ -90,7 +90,7 @@ fn along_a_line_the_names_are_those_of_the_case_file() {
         runs(&arguments);
         ["x_0_1", "x_1_1", "x_2_1", "x_2_2"].map(|name| *column(&out, name).last().expect("a row"))
     };
-    // One step moves by h p/m, at the end by h^2 F/(2 m) beside that.
+    // One step moves each site by h p/m; the last site moves by an additional h^2 F/(2 m).
     let near = |found: [f64; 4], wanted: [f64; 4]| {
         let apart: Vec<f64> = found
             .iter()

@@ -9,7 +9,7 @@ const COMMANDS: [&str; 12] = [
     "figures", "derive",
 ];
 
-/// Lines of at most so many letters.
+/// Lines of at most this many characters.
 fn fits(text: &str, width: usize, what: &str) {
     assert!(!text.is_empty(), "{what}");
     for line in text.lines() {
@@ -57,7 +57,7 @@ fn examples_of_the_help_are_understood() {
             let words: Vec<&str> = words
                 .take_while(|word| !["<", ">"].contains(word))
                 .collect();
-            // Not the work itself: that they are arguments, of models that there are.
+            // Checks only that these are valid arguments for existing models, not the computation itself.
             let matched = clebsch_cli::arguments::command(None)
                 .try_get_matches_from([&["clebsch"], &words[..]].concat());
             assert!(matched.is_ok(), "{line}: {}", matched.unwrap_err());
@@ -71,8 +71,8 @@ fn examples_of_the_help_are_understood() {
     }
 }
 
-/// Long, since every derivation is printed in four widths.
-/// Equations are broken before the signs of their sums, and nothing is lost by it.
+/// Long, since every derivation is printed in four widths. Equations are broken before the signs of their sums,
+/// without losing anything.
 #[test]
 fn derivations_fit() {
     let gallery = Gallery::shipped();
@@ -198,7 +198,7 @@ fn a_model_is_read_from_standard_input() {
     assert_eq!(code, 2);
     assert!(err.contains("standard input is empty"), "{err}");
 
-    // Formats go by the endings of their files, too.
+    // The extension of a file also selects the format.
     for (format, ending) in [
         ("latex", "tex"),
         ("markdown", "md"),
@@ -246,7 +246,7 @@ const MOTIONS: &str = "model Falling {
 }
 ";
 
-/// The position appears by itself, and with it the metric of the whole group.
+/// The position occurs by itself, and so does the metric of the whole group.
 const SPRING: &str = "model Spring {
     param J: Sym<3>;
     param m, s: Real;
@@ -259,8 +259,8 @@ const SPRING: &str = "model Spring {
 }
 ";
 
-/// Rigid motions and rotations of any dimension are written on the terminal without the inclusion ι,
-/// vectors of six in parts; pages of a paper have letters for them.
+/// Rigid motions and rotations of any dimension are printed on the terminal without the inclusion ι, and vectors of
+/// six components in parts; pages of a paper have letters for them.
 #[test]
 fn vectors_of_six_are_derived_in_parts() {
     for (name, input) in [
@@ -274,7 +274,7 @@ fn vectors_of_six_are_derived_in_parts() {
         let inclusions: Vec<&str> = done.out.lines().filter(|line| line.contains('ι')).collect();
         assert!(inclusions.is_empty(), "{name}: {inclusions:#?}");
         if name != "body-n" {
-            // The momentum of an edge has another letter where the model has an M.
+            // The momentum of an edge gets another letter if the model has an M.
             let edge = match done.out.contains("param M:") {
                 true => "Π",
                 false => "M",
@@ -292,7 +292,7 @@ fn vectors_of_six_are_derived_in_parts() {
             assert!(!page.contains("\\iota"), "{name}");
         }
     }
-    // The table of a run, too.
+    // The table of a run contains no inclusions either.
     let run = ["run", "kirchhoff-body", "--steps", "3"];
     let done = on(&Gallery::shipped(), &run);
     assert!(!done.out.contains('ι'), "{}", done.out);

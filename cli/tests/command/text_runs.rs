@@ -4,7 +4,7 @@
 use crate::common::{Done, Folder, Samples};
 use serde_json::Value;
 
-/// Runs a model on a case, both given as texts; with more words.
+/// Runs a model on a case, both given as texts, with additional arguments.
 pub fn run(folder: &Folder, model: &str, case: &str, more: &str) -> Done {
     folder.write("model.clebsch", model);
     folder.write("case.toml", case);

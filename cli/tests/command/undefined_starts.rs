@@ -1,5 +1,5 @@
-//! Starts at which the action is not a number: the message names the site of the bad value and what of the statement is not
-//! finite there, along chains that are written out and along those that run by loops.
+//! Starts at which the action is NaN: the message names the site of the bad value and the part of the statement that
+//! is not finite there, for expanded chains and for loops over sites.
 
 use crate::common::Folder;
 use crate::text_runs::run;

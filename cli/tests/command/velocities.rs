@@ -18,7 +18,8 @@ const KEPLER: &str = "model Kepler {
     lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) + h*k*m/sqrt(dot(x, x));
 }";
 
-/// A circle is closed up to terms of the order of the method, which an initial momentum off by a force times h/2 would not keep.
+/// A circle is closed up to terms of the order of the method; this fails if the initial momentum is wrong by a force
+/// times h/2.
 #[test]
 fn a_velocity_is_that_of_the_start_to_the_order_of_the_method() {
     let off = |count: u32| {
@@ -198,7 +199,7 @@ fn what_is_not_given_rests_and_has_the_momentum_of_coupled_velocities() {
     let done = run(&folder, model, &mixed, "").exits(2);
     let said = "initial.velocity_a: the momentum also depends on the velocity of `b`";
     done.says(said);
-    // Where nothing couples them, one may be given by its velocity and another one by its momentum.
+    // If they are not coupled, one body may have a velocity and another a momentum.
     let apart = model.replace("+ m2*l^2*cos(between)*da*db", "");
     run(&folder, &apart, &mixed, "").succeeds();
 }
@@ -312,7 +313,7 @@ fn every_configuration_of_a_fluid_has_a_velocity() {
             0.1,
         );
         assert_eq!(ran.at(&format!("momentum_s_{a}"), 0), 0.01);
-        // The particles rest, on a plane that turns.
+        // The particles are at rest in a rotating plane.
         near(both.at(&format!("momentum_X_{a}_1"), 0), -0.03 * y, 0.1);
         let heat = 0.01 * (2.0 + f64::from(a).cos());
         near(
@@ -386,7 +387,7 @@ fn a_velocity_that_no_momentum_knows_is_refused() {
         let example = "as in `m*(next(x) - x)^2/(2*h)`";
         done.says(&said).says(example);
     }
-    // The velocity of one is known by the momentum of the other.
+    // The momentum of the other body determines the velocity of the first.
     let crossed = "model Crossed {
         param m: Real;
         field x, y: Real;

@@ -1,5 +1,5 @@
-//! Files for ParaView: every array is there, decoded from base64, with as many numbers as its points or cells; they are
-//! the numbers of the trajectory; they go where other results go, and are removed with them.
+//! Files for ParaView: every array exists, decoded from base64, with as many numbers as its points or cells; the
+//! numbers equal the numbers of the trajectory. The files are written next to other results, and removed with them.
 
 use crate::common::{Done, Folder, clebsch, names_in, rotor};
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
     Some(from.split_once('"')?.0)
 }
 
-/// The words of an inline array, behind their length.
+/// The words of an inline array, after its length.
 fn words(text: &str) -> Vec<u64> {
     const LETTERS: &str = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let value = |c: char| LETTERS.find(c).expect("a letter of base64") as u32;
@@ -67,7 +67,7 @@ impl Read {
     }
 }
 
-/// Files of models are run by processes of their own.
+/// Model files run in separate processes.
 fn of(model: &str, arguments: &[&str]) -> Done {
     match model.ends_with(".clebsch") {
         true => clebsch(arguments),
@@ -129,7 +129,7 @@ fn a_rod_is_a_line_with_the_frames_of_its_segments() {
         assert_eq!(&corners[..4], [0, 1, 1, 2]);
         let places = read.numbers("Points", "Points");
         assert_eq!(places, read.numbers("PointData", "phi"));
-        // The first node is clamped where it was given, and its momentum is not known.
+        // The first node is clamped at the given position, and its momentum is unknown.
         assert_eq!(&places[..3], [0.0; 3]);
         assert!(read.numbers("PointData", "momentum_phi")[0].is_nan());
         let [d1, d3] = ["d1", "d3"].map(|d| read.numbers("CellData", d));
@@ -151,7 +151,7 @@ fn a_ring_is_closed() {
     assert_eq!((read.count("Points"), read.count("Lines")), (33, 32));
     let places = read.numbers("Points", "Points");
     let momenta = read.numbers("PointData", "momentum_q");
-    // The place of the first point once more, with its jump around the ring.
+    // The position of the first point again, with the offset around the ring.
     assert_eq!(places[3 * 32 + 1], places[1] - 2.0);
     assert_eq!(momenta[32], momenta[0]);
 }
@@ -193,7 +193,7 @@ fn a_fluid_on_a_torus_has_cells_that_fill_it() {
         first = last;
     }
     assert!((areas.iter().sum::<f64>() - 1.0).abs() < 1e-13);
-    // The case gives the velocity, from which its momenta are made.
+    // The case gives the velocity, from which the momenta are computed.
     let places = particles.numbers("Points", "Points");
     let velocity = particles.numbers("PointData", "velocity");
     let stated = |y: f64| 0.1 * (std::f64::consts::TAU * y).sin();
@@ -205,7 +205,7 @@ fn a_fluid_on_a_torus_has_cells_that_fill_it() {
     let of = |name: &str| cells.numbers("CellData", name);
     let (potential, zeta, depth) = (of("potential_vorticity"), of("vorticity"), of("depth"));
     let off = (0..400).map(|a| potential[a] * depth[a] - zeta[a] - 3.0);
-    // Differences over 6e-6 of places of size one, whose rounding is 1e-16.
+    // Differences over 6e-6 of positions of size one, whose rounding error is 1e-16.
     assert!(largest(off) < 1e-9);
     assert!(largest(depth.iter().zip(&areas).map(|(h, a)| h * a - 1.0 / 400.0)) < 1e-16);
 }
@@ -260,7 +260,7 @@ fn the_folder_is_replaced_with_the_other_results_and_never_with_what_is_not_of_a
     let out = folder.path("out");
     run("harmonic-rotor", None, &["--steps", "10"], &out);
     let first = fs::read(format!("{out}/vtk/bodies-05.vtp")).expect("a file");
-    // A repeated run gives the same bytes; fewer samples give fewer files; without the option there are none.
+    // A repeated run writes the same bytes; fewer samples give fewer files; without the option nothing is written.
     run("harmonic-rotor", None, &["--steps", "10", "--force"], &out);
     let again = fs::read(format!("{out}/vtk/bodies-05.vtp")).expect("a file");
     assert!(first == again);
@@ -326,7 +326,7 @@ fn what_is_not_seen_is_refused_before_it_runs() {
     rotor("run harmonic-rotor --vtk").ended(2);
 }
 
-/// An interrupted run leaves the files so far. A resumed run leaves the same files as an uninterrupted run.
+/// An interrupted run keeps the files so far. A resumed run writes the same files as an uninterrupted run.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_is_gone_on_with_to_the_same_files() {

@@ -46,7 +46,7 @@ fn no_model_exceeds_a_bound_from_rest_or_without_forces() {
             let name = entry.card.kebab;
             let done = on(&gallery, &["run", name, "--steps", STEPS]).succeeds();
             done.never_prints("NaN");
-            // A free body at rest has nothing that has a size.
+            // All scales of a free body at rest are zero.
             if name == "free-body" && rest {
                 let words = "absolute, because the scale is zero: ";
                 done.prints(words);
@@ -74,7 +74,7 @@ fn absolute_drifts_are_said_and_judged() {
     assert_eq!(json["results"]["invariants"][1]["absolute"], false);
 }
 
-/// Without weight the momentum across its direction is zero whatever the motion, and no test of it.
+/// Without weight, the momentum across its direction is zero for any motion, so it tests nothing.
 #[test]
 fn what_is_zero_by_a_parameter_is_told_and_not_praised() {
     let folder = Folder::new("zero-by-a-parameter");
@@ -122,7 +122,7 @@ fn what_is_zero_by_a_parameter_is_told_and_not_praised() {
 #[test]
 fn what_is_no_number_stops_the_run_at_its_node() {
     let folder = Folder::new("no_number");
-    // The square of this momentum is infinite, and the step so short that it is made.
+    // The square of this momentum is infinite, but the step is short enough to succeed.
     let text = rotor("case harmonic-rotor").out;
     let large = text
         .replace(", 1.5]", ", 1e200]")
@@ -145,8 +145,8 @@ fn what_is_no_number_stops_the_run_at_its_node() {
     assert_eq!(folder.names(), ["large.toml"]);
 }
 
-/// A rod that cannot be stretched, at rest and falling freely: it does not turn, and the equations of its frames have terms of
-/// rounding alone, of which no more can be asked than what solving for all velocities together leaves.
+/// An inextensible rod, at rest and falling freely: it does not rotate, and the equations of its frames contain only
+/// rounding errors, which solving for all velocities together cannot reduce further.
 #[test]
 fn a_held_rod_at_rest_falls() {
     let folder = Folder::new("held-rod-at-rest");
@@ -168,8 +168,8 @@ fn a_held_rod_at_rest_falls() {
         .succeeds();
 }
 
-/// A ring at rest in a plane: the forces of neighbours balance the reaction of a constraint on a sum. The scale
-/// of the rounded momenta comes from these forces, both for loops over sites and for single bodies.
+/// A ring at rest in a plane: the forces of neighbours balance the force of a constraint on a sum. The scale of the
+/// rounded momenta comes from these forces, both for loops over sites and for single bodies.
 #[test]
 fn totals_of_a_line_at_rest_are_measured_by_the_impulses_that_cancel() {
     let folder = Folder::new("line-at-rest");
@@ -201,7 +201,7 @@ fn totals_of_a_line_at_rest_are_measured_by_the_impulses_that_cancel() {
             name.contains("momentum_angular")
         });
         let scale = angular.expect("is conserved")["scale"].as_f64();
-        // Each of n bodies gets h k |r| = 0.03 |r| from either neighbour, at a distance 1 from the origin.
+        // Each of n bodies receives h k |r| = 0.03 |r| from either neighbour, at the distance 1 from the origin.
         let link = 2.0 * (std::f64::consts::PI / f64::from(n)).sin();
         let least = f64::from(n) * 0.03 * link;
         assert!(
@@ -251,7 +251,7 @@ fn bodies_that_constraints_hold_at_rest_exceed_no_bound() {
             .and_then(|cell| cell.parse::<f64>().ok())
             .expect("a scale")
     };
-    // m |x| |v| with |v| = 1e-7, about: not the part of m |x|²/h that is taken at rest.
+    // m |x| |v| with |v| about 1e-7, not the fraction of m |x|²/h that is used at rest.
     let slow = run([0.6, 0.0, 0.8], "[0, 1.3e-7, 0]");
     assert!((1e-8..1e-6).contains(&scale(&slow.out)), "{}", slow.out);
 }

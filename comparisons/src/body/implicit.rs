@@ -186,7 +186,7 @@ impl Newton {
                 inverse * dot(&rest, &xy),
             ];
             c = [c[0] - change[0], c[1] - change[1], c[2] - change[2]];
-            // The next change is about the square of this one: below a unit in the last place.
+            // The next change is about the square of this change: below a unit in the last place.
             if largest(&change) <= 1e-8 * largest(&c) {
                 return Ok(c);
             }

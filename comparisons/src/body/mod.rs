@@ -1,5 +1,5 @@
-//! Other methods for a rigid body: their common initial data and interface. They take a Poinsot matrix, attitude, body momentum and
-//! h, and give attitude and body momentum at each node, in the user's axes.
+//! Other methods for a rigid body: their common initial data and interface. They take a Poinsot matrix, attitude,
+//! body momentum and h, and return attitude and body momentum at each node, in the user's axes.
 
 pub mod exact;
 pub mod implicit;

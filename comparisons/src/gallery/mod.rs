@@ -79,7 +79,7 @@ fn reference(start: Start) -> Offer {
     }
 }
 
-/// A second run at rounding level. Its deviation measures the error of the reference, or its own.
+/// A second run at rounding level. Its deviation measures the error of the reference, or its own error.
 fn check(start: Start) -> Offer {
     Offer {
         name: "verner-98-finer",

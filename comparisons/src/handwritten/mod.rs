@@ -1,6 +1,6 @@
-//! Steppers written by hand from the published equations, in plain `f64`, as references for generated code. They take inertia,
-//! initial attitude and momentum, and give attitudes and momenta. They use nothing of the library under test, so that an agreement
-//! is independent evidence.
+//! Steppers written by hand from the published equations, in plain `f64`, as references for generated code. They take
+//! inertia, initial attitude and momentum, and give attitudes and momenta. They do not use the library under test, so
+//! that an agreement is independent evidence.
 
 pub mod attitude;
 pub mod body_in_field;

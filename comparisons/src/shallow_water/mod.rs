@@ -1,5 +1,5 @@
-//! Shallow water with other methods. A pseudospectral method is the reference for particle-mesh methods, because its error is far
-//! smaller while fields are smooth.
+//! Other methods for shallow water. A pseudospectral method is the reference for particle-mesh methods, because its
+//! error is far smaller while fields are smooth.
 
 mod fourier;
 mod spectral;

@@ -77,7 +77,7 @@ impl<T: Real> Code<T> {
         }
     }
 
-    /// The paths that it reads from places which it does not fill itself, each as long as it is written.
+    /// The paths that it reads from places which it does not fill itself, each with all its fields as written.
     pub fn reads<'a>(&'a self, filled: &BTreeSet<usize>, out: &mut Vec<&'a Code<T>>) {
         match self.root() {
             Some(root) if filled.contains(&root) => {}
@@ -90,7 +90,7 @@ impl<T: Real> Code<T> {
         }
     }
 
-    /// Whether a site may be taken for the last of a list: `site.min(list.len() - 1)`.
+    /// Whether the body may clamp a site to the last site of a list: `site.min(list.len() - 1)`.
     pub fn clamps(&self) -> bool {
         let own = matches!(self, Code::Call(_, _, _, name) if &**name == "min");
         own || self.parts().into_iter().any(Code::clamps)

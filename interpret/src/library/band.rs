@@ -205,7 +205,7 @@ impl<T: Real> Terms<'_, T> {
         let mut stopped = None;
         let solved = band.solve(n, [first, last], |sums| {
             if let Err(exit) = self.add(places, sums) {
-                // NaN ends the search.
+                // NaN ends the search without a solution.
                 sums.add(n, 0, &vec![T::from_f64(f64::NAN); n]);
                 stopped.get_or_insert(exit);
             }

@@ -22,7 +22,7 @@ fn invertible<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
     Some(Value::result(met.map(|()| Value::Unit)))
 }
 
-/// An argument at two places of a step.
+/// An argument at the start and at the end of a step.
 macro_rules! argument {
     ($method:ident) => {
         |a, _| match a {

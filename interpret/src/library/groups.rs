@@ -134,7 +134,7 @@ fn numbers<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
     Some(Value::List(rows.into_iter().map(Value::Real).collect()))
 }
 
-/// The rest of a position, for the static type.
+/// The displacement that is added to a position, with its static size.
 fn way<T: Real, const R: usize>(a: &Value<T>) -> Option<SMatrix<T, R, 1>> {
     Some(a.dense()?.fixed())
 }

@@ -347,7 +347,7 @@ fn root<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
                 }
             }
             None => {
-                // No number is any more.
+                // Fill the momenta with NaN, so that the search ends.
                 momenta.fill(T::from_f64(f64::NAN));
                 stopped.get_or_insert(both.err().unwrap_or_else(missing));
             }

@@ -94,7 +94,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             }
             _ => None,
         },
-        // Threads change no bit of any result.
+        // Results do not depend on the number of threads.
         ("share", 2) => |_, _| Some(Value::Unit),
         ("is_inside", 2) => |a, _| {
             let place = match a.get(1)? {

@@ -390,7 +390,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             let Value::Real(number) = a.get(1)? else {
                 return None;
             };
-            // As for a matrix of any shape: its entries times the inverse.
+            // The entries of a matrix of any shape, times the inverse.
             let inverse = divided(&SMatrix::<T, 1, 1>::new(T::one()), *number, label);
             Some(Value::result(inverse.map(|x| {
                 let inverse = x.matrix()[(0, 0)];
@@ -440,7 +440,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             (Value::Search(search), Value::Search(like)) => Some(Value::Search(search.alike(like))),
             _ => None,
         },
-        // Whether a step is only a trial. A value other than a search is returned as it is.
+        // Whether a step is only a trial. A value other than a search is returned unchanged.
         ("tries", 1) => |a, _| match a.first()? {
             Value::Search(search) => Some(Value::Bool(search.tries())),
             other => Some((*other).clone()),

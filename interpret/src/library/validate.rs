@@ -10,7 +10,7 @@ fn check_result<T: Real>(r: Result<(), ParameterError>) -> Option<Value<T>> {
     Some(Value::result(r.map(|()| Value::Unit)))
 }
 
-/// A check of a square matrix.
+/// Checks a square matrix.
 macro_rules! square {
     ($f:path) => {
         |a, _| {
@@ -23,7 +23,7 @@ macro_rules! square {
     };
 }
 
-/// A check of an argument of a function.
+/// Checks an argument of a function.
 macro_rules! argument {
     ($f:path) => {
         |a, _| match a {

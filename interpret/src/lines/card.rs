@@ -236,7 +236,7 @@ impl Carded {
     }
 }
 
-/// A parameter of the space of a fluid, `count` numbers.
+/// A parameter of the domain of a fluid, `count` numbers.
 fn of_space(name: &str, count: usize) -> (Field, Place) {
     let doc = match name {
         "domain" => "lengths of the box, then 1 for each direction with walls, 0 for each without",

@@ -120,8 +120,8 @@ impl LineTrajectory {
         })
     }
 
-    /// Marks a workspace as valid for no state. It contains data of the same substep of the previous step. A chain that
-    /// is saved and reloaded cannot recognise such data.
+    /// Marks a workspace as stale. It contains data of the same substep of the previous step. A chain that is saved
+    /// and reloaded cannot recognise such data.
     fn begun_anew(&self, work: &mut Value<f64>) {
         if let Value::Struct(work) = work
             && let Some(stamp) = work.field_mut(self.model.stamp)

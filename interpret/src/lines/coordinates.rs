@@ -35,7 +35,7 @@ fn sizes(c: &Coordinates) -> (usize, [usize; 2]) {
     }
 }
 
-/// The momentum that is given at the start.
+/// The initial momentum that the user gives.
 fn given_momentum(c: &Coordinates) -> String {
     let frame = c.side.of("body", "spatial");
     format!("{frame}_momentum_{}", c.name)
@@ -169,12 +169,12 @@ fn square(list: &[f64], rows: usize) -> Dense<f64> {
     Dense::from_fn(rows, rows, entry)
 }
 
-/// Rows of a matrix one after the other.
+/// The rows of a matrix, one after the other.
 fn by_rows(a: &Dense<f64>) -> Vec<f64> {
     a.transpose().data
 }
 
-/// The rotation and the place of a homogeneous matrix of space.
+/// The rotation and the position of a homogeneous matrix in three dimensions.
 fn of_space(one: &[f64]) -> Option<(Matrix3<f64>, Vector3<f64>)> {
     let [a, b, c, x, d, e, f, y, g, h, i, z, ..] = *one else {
         return None;
@@ -185,7 +185,7 @@ fn of_space(one: &[f64]) -> Option<(Matrix3<f64>, Vector3<f64>)> {
     ))
 }
 
-/// Like `of_space`, for the plane.
+/// Like `of_space`, in two dimensions.
 fn of_plane(one: &[f64]) -> Option<(Matrix2<f64>, Vector2<f64>)> {
     let [a, b, x, c, d, y, ..] = *one else {
         return None;

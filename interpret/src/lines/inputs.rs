@@ -109,7 +109,7 @@ fn read(ty: &syn::Type) -> Option<FieldForm> {
     })
 }
 
-/// A box of one or two directions, each of which ends in walls or closes on itself.
+/// A box of one or two directions, each of which ends in walls or is periodic.
 pub(crate) fn extent(lengths: &[f64], solid: &[bool]) -> Option<Extent> {
     let wall = |solid: &bool| match solid {
         true => Wall::Solid,

@@ -499,7 +499,8 @@ impl LineModel {
     }
 }
 
-/// The multiplier of a function that tells how far a state is off its constraint, and whether it tells how fast.
+/// The multiplier whose constraint a function evaluates, and whether the function evaluates the rate of the
+/// constraint.
 fn held<'a>(line: &'a core_line::Line, function: &str) -> Option<(&'a str, bool)> {
     line.holds.iter().find_map(|h| {
         let own = function.strip_suffix(h.name.as_str())?;

@@ -1,5 +1,4 @@
-//! The values of a chain at its node: energies, conserved totals, the sizes of their terms, and observables at sites.
-//! Takes the routines of the model; gives numbers.
+//! The state that measures term sizes, if impulses act at nodes. Takes the routines of the model; gives numbers.
 
 use super::{LineTrajectory, columns, coordinates, numbers};
 use crate::code::Routine;

@@ -21,7 +21,7 @@ fn cause(e: LineError) -> StepCause {
             at, cause, works, ..
         } => StepCause::AtSite {
             at,
-            // A run has one such error, with which it ends.
+            // A run has at most one such error and ends with it.
             cause: Box::leak(Box::new(cause)),
             works,
         },
@@ -62,7 +62,8 @@ impl Carded {
                 own.push((place.site.unwrap_or(0), list));
             }
         }
-        // An attitude that an end holds is the matrix of a quaternion; its first column is the quaternion.
+        // If an end prescribes an attitude, its parameter is the matrix of a quaternion; the first column is the
+        // quaternion.
         let is_quaternion = |all: &Sites<'_>| all.iter().any(|(_, list)| list.len() == 4);
         let held = |list: &Vec<f64>| -> Vec<f64> { list.iter().step_by(4).copied().collect() };
         let read: BTreeMap<&str, Vec<(usize, Vec<f64>)>> = given
@@ -84,7 +85,7 @@ impl Carded {
             if let Some(all) = given.get(own.as_str()) {
                 return self.numbers(name, all);
             }
-            // If both ends have the parameter, return the value of the end in the name.
+            // If both ends have the parameter, return the value of the end that the name contains.
             let (key, end) = own.rsplit_once('_')?;
             let [first, last] = given.get(key)?.as_slice() else {
                 return None;
@@ -100,7 +101,7 @@ impl Carded {
                 _ => None,
             }
         };
-        // The first part of a composed step is shorter than the whole.
+        // The first substep of a composed step is shorter than the whole step.
         let h = match way {
             Way::Composed(order) => order
                 .factors()
@@ -254,7 +255,7 @@ impl Carded {
     }
 }
 
-/// The values of sites.
+/// The values at sites, each with its number.
 type Sites<'a> = Vec<(usize, &'a Vec<f64>)>;
 
 /// A running trajectory.

@@ -46,7 +46,8 @@ impl LineTrajectory {
         self.step_in_parts(&mut |_, _| {})
     }
 
-    /// Takes a step. After each of the chain's own steps, calls `seen` with its share of the whole step and the chain.
+    /// Takes a step. After each substep, calls `seen` with the substep as a fraction of the whole step, and with the
+    /// chain.
     ///
     /// # Errors
     /// As [`LineTrajectory::step`].

@@ -30,7 +30,7 @@ impl Lower<'_, '_> {
         Some(Code::Call(native, arguments, sizes, name.into()))
     }
 
-    /// The sizes among generic arguments; the scalar is none of them.
+    /// The sizes among generic arguments, without the scalar.
     fn generics(&self, list: Option<&syn::AngleBracketedGenericArguments>) -> Vec<usize> {
         let Some(list) = list else {
             return Vec::new();
@@ -62,7 +62,7 @@ impl Lower<'_, '_> {
         }
     }
 
-    /// A closure, given as it is or by name.
+    /// A closure, given directly or by name.
     pub(super) fn argument(&mut self, e: &syn::Expr) -> Result<Code<f64>, Refused> {
         if let syn::Expr::Path(p) = e
             && let Some(name) = p.path.get_ident()
@@ -242,7 +242,7 @@ impl Lower<'_, '_> {
             && (calls_back || crate::library::native::<f64>(name, arguments.len()).is_none())
         {
             let made = Code::Special(special, arguments, name.into());
-            // An inertia of the model alone is made once.
+            // An inertia that depends only on the model is computed once.
             if name == "columns" && self.is_steady(&made, &mut Vec::new()) {
                 let at = self.fresh();
                 self.steady.push(at);
@@ -293,7 +293,7 @@ impl Lower<'_, '_> {
             .ok_or_else(|| refuse(m))
     }
 
-    /// The path of a function that the model is given, where an expression names one.
+    /// The path of a user's function, if an expression names one.
     fn given(&self, e: &syn::Expr) -> Option<String> {
         let syn::Expr::Path(p) = e else { return None };
         let name = p.path.get_ident()?.to_string();
@@ -303,8 +303,8 @@ impl Lower<'_, '_> {
         }
     }
 
-    /// A function of the model: its body, with arguments in place of the parameters. A function that is rarely called,
-    /// or calls itself, gets its own places instead.
+    /// A function of the model: its body, with arguments in place of the parameters. A function that is rarely
+    /// called, or is recursive, gets its own places instead.
     fn written_out<'e>(
         &mut self,
         owner: &str,
@@ -341,7 +341,7 @@ impl Lower<'_, '_> {
             };
             scope.insert(name, Binding::Place(place, kind));
         }
-        // Names of the caller are not seen.
+        // It cannot use the names of its caller.
         let outer = std::mem::replace(&mut self.scopes, vec![scope]);
         let body = self.body(function);
         self.scopes = outer;
@@ -374,7 +374,7 @@ impl Lower<'_, '_> {
         let body = inner.body(function)?;
         let places = inner.next;
         let body = Code::Function(Box::new(body));
-        // Set once: it was missing a moment ago.
+        // The cell was empty when it was read above, so `set` succeeds.
         let _ = routine.set(Routine { places, body });
         Ok(routine)
     }

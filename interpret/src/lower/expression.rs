@@ -38,7 +38,7 @@ impl Lower<'_, '_> {
             syn::Expr::Index(i) => self.element(e, i)?,
             syn::Expr::Call(c) => self.call(c, ty)?,
             syn::Expr::MethodCall(m) => self.method(m, ty)?,
-            // Braces about a place make a copy, which is changed in its stead.
+            // A place in braces is a copy, and only the copy is changed.
             syn::Expr::Block(b) => match self.block(&b.block)? {
                 code if super::statement::is_place(&code) => Code::Block(vec![code]),
                 code => code,
@@ -73,7 +73,7 @@ impl Lower<'_, '_> {
         })
     }
 
-    /// An element, or a range of them.
+    /// An element, or a range of elements.
     #[inline(never)]
     fn element(&mut self, e: &syn::Expr, i: &syn::ExprIndex) -> Result<Code<f64>, Refused> {
         if let syn::Expr::Range(_) = &*i.index {
@@ -109,13 +109,13 @@ impl Lower<'_, '_> {
         let all = a.elems.iter().map(|e| self.expression(e, ty));
         let all: Vec<Code<f64>> = all.collect::<Result<_, _>>()?;
         Ok(match all.is_empty() {
-            // An array of nothing is a list still; a tuple of nothing is `()`.
+            // An empty array is still a list; an empty tuple is `()`.
             true => Code::Constant(Value::List(Vec::new())),
             false => Code::List(all),
         })
     }
 
-    /// A tuple assigned to a tuple, where nothing assigned is read: one after the other.
+    /// Assigns a tuple to a tuple one component at a time, if no assigned place is read.
     #[inline(never)]
     fn one_by_one(&mut self, a: &syn::ExprAssign) -> Result<Option<Code<f64>>, Refused> {
         let (syn::Expr::Tuple(left), syn::Expr::Tuple(right)) = (&*a.left, &*a.right) else {
@@ -184,13 +184,13 @@ impl Lower<'_, '_> {
             [.., "Domain", "NotNegative"] => Value::Domain(domain::Domain::NotNegative),
             [.., "Domain", "NotZero"] => Value::Domain(domain::Domain::NotZero),
             [.., "Function", name] => Value::Function(function(name).ok_or_else(|| refuse(path))?),
-            // Sizes are looked at when they are chosen, scalars known.
+            // Sizes are checked when they are chosen, and the scalar is known.
             [.., "ADMITTED" | "PhantomData"] => Value::Unit,
             _ => return Ok(None),
         })))
     }
 
-    /// A chain of operators is taken from its first operand on, not by recursion: sums over sites have hundreds of terms.
+    /// A loop over the operands, not a recursion: sums over sites have hundreds of terms.
     fn binary(&mut self, b: &syn::ExprBinary) -> Result<Code<f64>, Refused> {
         let mut chain = vec![b];
         let mut first = &*b.left;
@@ -340,7 +340,7 @@ impl Lower<'_, '_> {
         ]))
     }
 
-    /// A closure: its parameters at places of their own.
+    /// A closure: its parameters get places of their own.
     #[inline(never)]
     pub(super) fn closure(&mut self, c: &syn::ExprClosure) -> Result<Code<f64>, Refused> {
         self.scopes.push(BTreeMap::new());
@@ -390,7 +390,7 @@ impl Lower<'_, '_> {
             else {
                 return Err(refuse(s));
             };
-            // Errors name it for as long as they live.
+            // Errors contain the name as long as they live.
             let call = Box::leak(Box::new(domain::Call { function, argument }));
             return Ok(Code::Constant(Value::Call(call)));
         }

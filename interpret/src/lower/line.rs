@@ -39,7 +39,7 @@ impl Lower<'_, '_> {
         }
     }
 
-    /// The two ends of a range, where they are given.
+    /// The two ends of a range, if they are given.
     fn bounds(&mut self, r: &syn::ExprRange) -> Result<[Option<Code<f64>>; 2], Refused> {
         let mut end = |e: &Option<Box<syn::Expr>>| match e {
             Some(e) => self.expression(e, None).map(Some),
@@ -74,7 +74,7 @@ impl Lower<'_, '_> {
     ) -> Result<Option<Code<f64>>, Refused> {
         let list: Vec<&syn::Expr> = c.args.iter().collect();
         let (kind, out, range, body) = match (name, list.as_slice()) {
-            // How several sites are computed together is of no concern: one after the other they get the same.
+            // Lanes do not change the result, so sites are computed one after the other.
             ("line::fill", [_, out, body]) | ("line::fill_in_lanes", [_, out, body, _]) => {
                 (Kind::Fill, vec![self.slice(out)?], None, body)
             }
@@ -86,7 +86,7 @@ impl Lower<'_, '_> {
                 let out = vec![self.slice(out)?, self.slice(kept)?];
                 (Kind::Update, out, None, body)
             }
-            // Bodies that are alike are kept once each.
+            // The interpreter already stores equal bodies only once.
             ("line::once", [_]) => return Ok(Some(Code::Constant(Value::Unit))),
             ("line::try_each", [first, last, body]) => {
                 let range = [self.expression(first, None)?, self.expression(last, None)?];
@@ -140,7 +140,7 @@ impl Lower<'_, '_> {
         Ok(Some(Code::Block(all)))
     }
 
-    /// Methods of lists, and those that change a part of something.
+    /// Methods of lists, and methods that change a part of a value.
     #[inline(never)]
     pub(super) fn method_of_list(
         &mut self,
@@ -252,7 +252,7 @@ impl Lower<'_, '_> {
         }
     }
 
-    /// The errors of a line that are written as structs, and what names a site.
+    /// The errors of a chain that are struct literals, and the struct that names a site.
     pub(super) fn error_of_line(
         &mut self,
         s: &syn::ExprStruct,

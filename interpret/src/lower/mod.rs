@@ -1,5 +1,5 @@
-//! From the emitted functions to operations over numbered places: names are looked up here and never
-//! again. Functions are written out where they are called, but for those that are rarely called.
+//! Translates the emitted functions to operations over numbered places: all names are looked up here. Functions are
+//! inlined at their calls, except rarely called ones.
 //!
 //! Calls nest some hundred deep. Functions marked `inline(never)` keep the frames of the recursion small: a thread has two
 //! megabytes of stack.
@@ -25,7 +25,7 @@ use std::sync::{Arc, OnceLock};
 enum Binding {
     /// A place, and the type of the struct in it.
     Place(Code<f64>, Option<String>),
-    /// A closure, written out where it is given to a function.
+    /// A closure, inlined where a function receives it.
     Closure(Box<syn::ExprClosure>),
 }
 
@@ -52,7 +52,7 @@ pub struct Shared<'a> {
 }
 
 impl<'a> Shared<'a> {
-    /// Nothing lowered yet.
+    /// An empty lowering.
     pub fn new(program: &'a Program, sizes: BTreeMap<String, usize>) -> Self {
         let names = crate::library::NAMES.iter().zip(0..);
         Shared {
@@ -70,7 +70,7 @@ impl<'a> Shared<'a> {
         }
     }
 
-    /// The number of a field's name.
+    /// The index of a field name.
     pub fn name(&mut self, name: &str) -> u32 {
         let mut names = self.names.borrow_mut();
         let next = names.len() as u32;
@@ -112,7 +112,7 @@ pub struct Lower<'a, 'b> {
 /// Lowers a function of a type, with its parameters at given places and locals from `first` on.
 ///
 /// # Errors
-/// [`Refused`] for what emitted code may do and the interpreter does not.
+/// [`Refused`] for emitted code that the interpreter does not support.
 pub fn entry(
     shared: &mut Shared<'_>,
     (ty, name): (&str, &str),
@@ -154,7 +154,7 @@ pub fn projecting(
     function: (&str, &str),
     given: &[usize],
 ) -> Result<Routine<f64>, Refused> {
-    // Functions that it calls are others too.
+    // The functions that it calls are also lowered separately.
     let usual = std::mem::take(&mut shared.routines);
     shared.projects = true;
     let routine = entry(shared, function, given, crate::opened::at::FIRST);
@@ -211,7 +211,7 @@ impl Lower<'_, '_> {
         known.then_some(name)
     }
 
-    /// The struct that an expression gives, where it is seen.
+    /// The struct that an expression evaluates to, if this can be inferred.
     fn kind(&self, e: &syn::Expr) -> Option<String> {
         match e {
             syn::Expr::Path(p) => match self.find(&p.path.get_ident()?.to_string())? {
@@ -256,7 +256,7 @@ impl Lower<'_, '_> {
     }
 }
 
-/// Whether a type is named as one that belongs to the type of the function, such as `Self::State`.
+/// Whether a type is an associated type of the function's own type, such as `Self::State`.
 fn is_of_self(ty: &syn::Type) -> bool {
     match ty {
         syn::Type::Path(p) => p.path.segments.first().is_some_and(|s| s.ident == "Self"),

@@ -1,5 +1,5 @@
-//! Reads the loop of Newton's method from emitted code. Evaluations at a trial become operations. The runtime's solver
-//! does the rest.
+//! Reads the loop of Newton's method from emitted code. The operations evaluate the equations at a trial. The
+//! runtime's solver does everything else.
 
 use super::{Binding, Lower, Shared, refuse};
 use crate::Refused;
@@ -21,7 +21,7 @@ pub struct Looped<'e> {
     pub body: &'e syn::Block,
 }
 
-/// The loop in two statements, if these are one.
+/// The loop in two statements, if these statements are such a loop.
 pub fn looped<'e>(first: &'e syn::Stmt, second: Option<&'e syn::Stmt>) -> Option<Looped<'e>> {
     let (syn::Stmt::Local(local), Some(syn::Stmt::Expr(syn::Expr::Loop(all), _))) = (first, second)
     else {
@@ -37,7 +37,7 @@ pub fn looped<'e>(first: &'e syn::Stmt, second: Option<&'e syn::Stmt>) -> Option
     }
 }
 
-/// The first method call with a name that `wanted` likes, anywhere in an expression.
+/// The first call of a method whose name `wanted` accepts, anywhere in an expression.
 fn called<'e>(
     e: &'e syn::Expr,
     wanted: &dyn Fn(&syn::Ident) -> bool,
@@ -72,7 +72,7 @@ fn in_block<'e>(
     })
 }
 
-/// The first name in code that begins so.
+/// The first name in code with this prefix.
 fn name_in(tokens: &impl ToTokens, beginning: &str) -> Option<String> {
     fn find(stream: proc_macro2::TokenStream, beginning: &str) -> Option<String> {
         stream.into_iter().find_map(|t| match t {
@@ -123,7 +123,7 @@ impl Lower<'_, '_> {
             None => None,
         };
         let capacity = capacity(ty).ok_or_else(|| unknowns("a size"))?;
-        // Searches keep what they are for as long as they live; a model has a few.
+        // Searches borrow their shape for as long as they live; a model has only a few.
         Ok(Box::leak(Box::new(Sought {
             shape: Shape::new(kinds),
             whole,
@@ -173,7 +173,7 @@ fn arguments(ty: &syn::Type) -> Option<Vec<syn::Type>> {
     Some(types.collect())
 }
 
-/// The number of coordinates that a search has places for.
+/// The number of coordinates for which a search has space.
 fn capacity(ty: &syn::Type) -> Option<usize> {
     let syn::Type::Path(p) = ty else {
         return None;
@@ -447,7 +447,7 @@ impl<'a> Lower<'a, '_> {
             }) => Some(crate::text(&name.value())),
             _ => None,
         });
-        // Errors name them for as long as they live.
+        // Errors borrow the names as long as they live.
         let names: &'static [&'static str] =
             Box::leak(names.collect::<Vec<_>>().into_boxed_slice());
         Ok((other, Box::leak(Box::new(names))))

@@ -8,7 +8,7 @@ use crate::value::Value;
 use std::collections::BTreeMap;
 
 impl Lower<'_, '_> {
-    /// The body of a function, whose type says of what shape its value is.
+    /// The body of a function; the return type gives the shape of the value.
     pub(super) fn body(&mut self, function: &syn::ImplItemFn) -> Result<Code<f64>, Refused> {
         match &function.sig.output {
             syn::ReturnType::Type(_, ty) => self.block_of(&function.block, Some(ty)),
@@ -59,7 +59,7 @@ impl Lower<'_, '_> {
             }
             match statement {
                 syn::Stmt::Local(local) => self.local(local, &mut out)?,
-                // The scalar of a block, a list of names.
+                // The scalar type parameter of a block.
                 syn::Stmt::Item(_) => {}
                 syn::Stmt::Expr(e, semicolon) => {
                     let last = semicolon.is_none() && i + 1 == list.len();
@@ -196,7 +196,8 @@ impl Lower<'_, '_> {
         Ok(names.elems.len() == values.elems.len())
     }
 
-    /// Whether a value depends on the model alone, so that it is computed once. `own` are the places within the value.
+    /// Whether a value depends on the model alone, so that it can be computed once. `own` are the places within the
+    /// value.
     pub(super) fn is_steady(&self, code: &Code<f64>, own: &mut Vec<usize>) -> bool {
         match code {
             Code::Constant(_) => true,

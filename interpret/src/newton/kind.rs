@@ -1,5 +1,5 @@
-//! The groups of velocities, with elements as lists of numbers: the runtime's own groups if these are types, matrices in
-//! plain loops if their sizes are known when a model is read.
+//! The groups of velocities, with elements as lists of numbers: the runtime's own groups if they are types, otherwise
+//! matrices in plain loops.
 
 use crate::library::groups::{composed_kept, inverse_kept};
 use crate::value::{MatrixGroup, Value};
@@ -26,7 +26,7 @@ pub enum Kind {
     Field(usize, usize),
 }
 
-/// An expression with the group of a kind as a type, or another one for matrices of any size.
+/// An expression with the group of a kind as a type, or a second expression for matrices of any size.
 macro_rules! of_type {
     ($kind:expr, $G:ident => $body:expr, $matrix:ident => $other:expr) => {{
         macro_rules! with {
@@ -116,7 +116,7 @@ impl Kind {
         of_type!(self, G => <G as Group<f64>>::part_of(index), _matrix => 0)
     }
 
-    /// Whether a part is one of a group that is not a sum.
+    /// Whether the group of a part is not a direct sum.
     pub fn is_pure(self, part: usize) -> bool {
         of_type!(
             self,
@@ -125,7 +125,7 @@ impl Kind {
         )
     }
 
-    /// Whether its elements lack a scale.
+    /// Whether elements of the group lack a natural scale.
     pub fn is_open(self) -> bool {
         matches!(self, Kind::Linear(_) | Kind::Field(..))
     }
@@ -190,7 +190,8 @@ impl Kind {
         );
     }
 
-    /// The squares of lengths of an element and of its distance from coordinates: see [`Group::compared`].
+    /// The squared lengths of the parts of an element, and its squared distances from coordinates: see
+    /// [`Group::compared`].
     pub fn compared(self, of: &[f64], xi: &[f64], out: &mut [[f64; 2]]) {
         of_type!(
             self,
@@ -210,7 +211,7 @@ impl Kind {
         )
     }
 
-    /// Appends the element that past ones with these weights foresee: see [`Group::combined`].
+    /// Appends the weighted combination of past elements that predicts the next one: see [`Group::combined`].
     pub fn combined<'a>(self, weights: &[f64], past: &dyn Fn(usize) -> &'a [f64], out: &mut Reals) {
         of_type!(
             self,
@@ -227,7 +228,7 @@ impl Kind {
     }
 }
 
-/// Matrices with what they are kept as, their rows and their columns.
+/// The group of a matrix, its rows and its columns.
 #[derive(Clone, Copy)]
 struct Matrix(MatrixGroup, usize, usize);
 
@@ -259,7 +260,7 @@ impl Matrix {
         }
     }
 
-    /// Row, column and place of each number.
+    /// Row, column and index of each number.
     fn places(self) -> impl Iterator<Item = (usize, usize, usize)> {
         let Matrix(_, rows, cols) = self;
         (0..rows * cols).map(move |k| (k % rows, k / rows, k))
@@ -281,7 +282,7 @@ impl Matrix {
         })
     }
 
-    /// A number of an element less the same number of the identity.
+    /// A number of an element minus the same number of the identity.
     fn beyond_identity(self, a: &[f64], (i, j, k): (usize, usize, usize)) -> f64 {
         let x = a.get(k).copied().unwrap_or(0.0);
         match self.0 {

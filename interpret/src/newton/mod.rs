@@ -1,5 +1,5 @@
-//! Newton's method for equations that were read: the solver of the runtime on groups of any kind and size,
-//! with residual and tangent run as operations.
+//! Newton's method for equations of a model file: the runtime's solver, on groups of any kind and size, with residual
+//! and tangent run as operations.
 
 mod kind;
 mod search;

@@ -1,4 +1,4 @@
-//! The search for one velocity after the other, as a value.
+//! The search for the velocities of one step after the other, as a value.
 
 use super::shape::Shape;
 use super::solve::{self, Solve};
@@ -20,7 +20,7 @@ pub struct Sought {
     pub shape: Shape,
     /// The groups of all velocities, if some of them are solved for beforehand.
     pub whole: Option<Shape>,
-    /// How many coordinates the emitted code has places for.
+    /// The number of coordinates for which the emitted code has space.
     pub capacity: usize,
 }
 
@@ -39,7 +39,7 @@ pub struct SearchValue {
 }
 
 impl SearchValue {
-    /// A search that begins.
+    /// A new search.
     pub fn begun(sought: &'static Sought, tries: bool) -> Self {
         let dimension = sought.shape.parts().dimension();
         let in_blocks = dimension == sought.capacity;
@@ -49,12 +49,12 @@ impl SearchValue {
         }
     }
 
-    /// Takes over what another one measured of the equations: see [`AnySearch::measure_as`].
+    /// Copies the scales that another search has measured: see [`AnySearch::measure_as`].
     pub fn measure_as(&mut self, other: &SearchValue) {
         self.search.measure_as(&other.search);
     }
 
-    /// From here on steps are only tried.
+    /// From now on, steps are only tried.
     pub fn only_try(&mut self) {
         self.search.only_try();
     }
@@ -64,12 +64,12 @@ impl SearchValue {
         Self::begun(other.sought, self.search.tries())
     }
 
-    /// Whether no step follows.
+    /// Whether steps are only tried.
     pub fn tries(&self) -> bool {
         self.search.tries()
     }
 
-    /// Meets what it remembers.
+    /// Saves or restores the solutions that the search stores.
     pub fn words(&mut self, words: &mut Words) {
         let chart = &self.sought.shape;
         self.search.words(words, chart, |element, words| {
@@ -77,7 +77,7 @@ impl SearchValue {
         });
     }
 
-    /// Solves a step that leaves `node`.
+    /// Solves the step that starts at `node`.
     ///
     /// # Errors
     /// [`Exit`] with the error of the step.
@@ -97,7 +97,7 @@ impl SearchValue {
         self.sought
     }
 
-    /// Remembers the solution of the step that began at `node`.
+    /// Stores the solution of the step that started at `node`.
     pub fn remember(&mut self, node: u64, solution: &Reals) {
         let part = self.sought.shape.part(self.sought.all(), solution);
         self.search.remember(node, part);
@@ -116,7 +116,7 @@ fn layout() -> Arc<Layout> {
     LAYOUT.get_or_init(made).clone()
 }
 
-/// A solution of all groups as emitted code has it.
+/// A solution for all groups, in the form of emitted code.
 pub fn solution_value(shape: &Shape, solved: &Solved<Reals>) -> Value<f64> {
     Value::Struct(Struct {
         layout: layout(),
@@ -128,7 +128,7 @@ pub fn solution_value(shape: &Shape, solved: &Solved<Reals>) -> Value<f64> {
     })
 }
 
-/// `search.remember(node, &found)`, whatever the scalar: searches are in plain numbers.
+/// `search.remember(node, &found)`, for any scalar: searches use plain numbers.
 pub fn remember<T: Real>(search: &mut Value<T>, node: &Value<T>, found: &Value<T>) -> Option<()> {
     let (Value::Search(held), Value::Struct(found)) = (search, found) else {
         return None;

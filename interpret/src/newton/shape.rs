@@ -1,4 +1,4 @@
-//! The groups in which a search finds its velocities. An element is the list of all their numbers.
+//! The groups of the velocities that a search solves for. An element is the concatenation of all their numbers.
 
 use super::kind::{Kind, read, write};
 use crate::value::Value;
@@ -10,9 +10,9 @@ use clebsch::{Real, RigidMotion};
 /// The groups of the velocities that are found together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shape {
-    /// One after the other.
+    /// The groups, in order.
     kinds: Vec<Kind>,
-    /// How many numbers an element of each has.
+    /// The number of numbers in an element of each group.
     counts: Vec<usize>,
     parts: Parts,
 }
@@ -55,13 +55,13 @@ impl Shape {
         all
     }
 
-    /// An element as values, one for each group.
+    /// An element as values, one value per group.
     pub fn value(&self, element: &[f64]) -> Value<f64> {
         let each = self.split(element);
         Value::List(each.map(|(kind, own)| kind.value(own)).collect())
     }
 
-    /// The part that is searched for of an element as values, whatever the scalar.
+    /// The unknown part of an element as values, for any scalar.
     pub fn part_of<T: Real>(&self, whole: &[Value<T>]) -> Vec<Value<T>> {
         let pairs = self.kinds.iter().zip(whole);
         pairs
@@ -92,7 +92,7 @@ impl Shape {
             .map(move |kind| cut(&mut rest, kind.parts()))
     }
 
-    /// Does something with the numbers and the results of each group.
+    /// Calls `done` with the numbers and the results of each group.
     fn with_each<R>(
         &self,
         of: &[f64],
@@ -108,7 +108,7 @@ impl Shape {
     }
 }
 
-/// The first numbers of a list, and the list without them.
+/// Splits a list after the given count.
 fn cut<'a>(rest: &mut &'a [f64], count: usize) -> &'a [f64] {
     let (own, others) = rest.split_at(count.min(rest.len()));
     *rest = others;

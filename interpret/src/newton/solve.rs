@@ -17,7 +17,7 @@ use clebsch::solvers::newton::{
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// The operations if a solution is not known to be principal, or no solution was found.
+/// The operations for a solution that is not known to be principal, or for a failed search.
 #[derive(Debug)]
 pub struct Settled {
     /// If the motion may leave the domain: the place of the solution, the place of the flag for tried steps, and the
@@ -54,10 +54,10 @@ impl AtTrial {
 pub struct Solve {
     /// The field of the workspace.
     pub search: Code<f64>,
-    /// The node that is left.
+    /// The node at which the step starts.
     pub node: Code<f64>,
-    /// If Newton's method searches for a part of the trial: the whole trial over numbers with their rounding. It takes
-    /// parameters, step, values of the node, momenta and the part.
+    /// If Newton's method solves for a part of the trial: the whole trial, over numbers with rounding bounds. It
+    /// takes parameters, step, values of the node, momenta and the part.
     pub completed_at: Option<Routine<Rounded>>,
     /// The parameters, the step, the values of the node that the residual needs, and the momenta.
     pub known: [Code<f64>; 4],
@@ -71,7 +71,7 @@ pub struct Solve {
     pub from_left: bool,
     /// Whether the action is convex.
     pub convex: Option<AtTrial>,
-    /// The operations if the solution may be another root, or the search fails.
+    /// The operations if the solution may be another root, or if the search fails.
     pub settled: Settled,
     /// The residual as a separate function of parameters, step, values of the node, momenta and trial.
     pub residual_at: Function,
@@ -84,7 +84,7 @@ pub struct Solve {
 impl Iterate<f64> for Solve {
     fn run(&self, places: &mut Places<f64>) -> Result<Value<f64>, Exit<f64>> {
         let node = unfit(self.node.run(places)?.count())?;
-        // Lent for as long as it is at work.
+        // Take the search out of its place while it runs.
         let place = unfit(self.search.place_mut(places))?;
         let mut held = match std::mem::replace(place, Value::Unit) {
             Value::Search(held) => held,
@@ -105,7 +105,7 @@ impl Iterate<f64> for Solve {
 /// The numbers of the velocities of all groups.
 type Element = Reals;
 
-/// The entries of a vector of so many coordinates.
+/// The entries of a vector with this number of coordinates.
 pub fn vector<T: Real>(value: &Value<T>, size: usize) -> Option<Vec<T>> {
     if let Value::Real(x) = value {
         return (size == 1).then(|| vec![*x]);
@@ -176,7 +176,7 @@ pub fn by(
 }
 
 impl Solve {
-    /// The residual at a trial, then the whole trial if a part of it is searched for.
+    /// The residual at a trial, then the whole trial if only a part of it is unknown.
     fn residual(
         &self,
         trial: &Element,
@@ -201,7 +201,7 @@ impl Solve {
         Ok(())
     }
 
-    /// The tangent; gives its factor.
+    /// Evaluates the tangent; returns its factor.
     fn tangent(
         &self,
         trial: &Element,
@@ -288,7 +288,7 @@ impl Solve {
         let Some(convex) = &self.convex else {
             return Ok(false);
         };
-        // Recorded only where it is.
+        // The tape exists only where the action was convex.
         if around.by_tape(NewtonFunction::Convex, trial, &mut Reals::new()) {
             return Ok(true);
         }
@@ -385,7 +385,7 @@ impl Solve {
         Err(Failure::from(StepCause::from(e)).into())
     }
 
-    /// The equations of the step, with everything at its node held fixed.
+    /// The equations of the step, with all values at the start node fixed.
     fn principal<R>(
         &self,
         known: &[Value<f64>; 4],
@@ -415,7 +415,7 @@ impl Solve {
         })
     }
 
-    /// Reports the equation with the largest residual, and the step size that could be solved.
+    /// Reports the equation with the largest residual, and a step size that can be solved.
     #[cold]
     fn refused(
         &self,

@@ -7,22 +7,22 @@ use clebsch::Real;
 /// How the counts of a recording are chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice {
-    /// All equal the first one.
+    /// All are equal to the first count.
     Equal,
-    /// The first one goes up by 1000, the next one by 2000 and so on.
+    /// The first count goes up by 1000, the second by 2000 and so on.
     Apart,
 }
 
-/// The counts that a recording has met, before a step.
+/// The counts of a recording, before a step.
 #[derive(Debug)]
 pub struct Chosen {
     choice: Choice,
-    /// As they were chosen.
+    /// The counts as they were chosen.
     pub all: Vec<i64>,
 }
 
 impl Chosen {
-    /// None met yet.
+    /// No counts yet.
     pub fn by(choice: Choice) -> Self {
         Chosen {
             choice,
@@ -42,16 +42,16 @@ impl Chosen {
     }
 }
 
-/// A count after a step: another one before it and a number more.
+/// A count after a step: some count before the step, plus a constant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Growth {
     /// Which one.
     pub from: usize,
-    /// How much more.
+    /// The constant.
     pub by: i64,
 }
 
-/// How each count grows, from two recordings: counts before and after. A count grows from itself if it can.
+/// How each count grows, from two recordings: counts before and after. A count grows from itself if this is possible.
 pub fn growth(one: [&[i64]; 2], other: [&[i64]; 2]) -> Option<Vec<Growth>> {
     let [before, after] = one;
     let [others, later] = other;
@@ -69,7 +69,7 @@ pub fn growth(one: [&[i64]; 2], other: [&[i64]; 2]) -> Option<Vec<Growth>> {
     (0..after.len()).map(grown).collect()
 }
 
-/// The counts after a step that grows them so.
+/// Replaces the counts by the counts after a step with this growth.
 pub fn grow(counts: &mut Vec<i64>, by: &[Growth]) {
     let is_own = |(at, growth): (usize, &Growth)| at == growth.from;
     if by.iter().enumerate().all(is_own) {
@@ -83,7 +83,7 @@ pub fn grow(counts: &mut Vec<i64>, by: &[Growth]) {
     *counts = by.iter().map(of).collect();
 }
 
-/// Meets every count of a value.
+/// Visits every count of a value.
 pub fn each_count<T: Real>(value: &mut Value<T>, met: &mut dyn FnMut(&mut i64)) {
     match value {
         Value::Int(n) => met(n),
@@ -93,14 +93,14 @@ pub fn each_count<T: Real>(value: &mut Value<T>, met: &mut dyn FnMut(&mut i64)) 
     }
 }
 
-/// The value with every count zero.
+/// The value with all counts zero.
 pub fn uncounted(value: &Value<Traced>) -> Value<Traced> {
     let mut value = value.clone();
     each_count(&mut value, &mut |n| *n = 0);
     value
 }
 
-/// Notes every count of a value.
+/// Appends every count of a value.
 pub fn counts<T: Real>(value: &Value<T>, out: &mut Vec<i64>) {
     match value {
         Value::Int(n) => out.push(*n),

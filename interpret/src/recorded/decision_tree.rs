@@ -7,10 +7,10 @@ use super::tape_storage::MOST;
 use crate::code::Places;
 use clebsch_program::{Frame, Machine};
 
-/// A function as tapes, by how it decided where it was recorded.
+/// A function as tapes, for one outcome of its decisions.
 #[derive(Debug)]
 pub struct OutcomeTape {
-    /// The equations that are solved on the way, with the tapes before them.
+    /// The equations that the function solves, each with the tape before it.
     pub between: Vec<SolveBetweenTapes>,
     /// The last tape.
     pub machine: Machine,
@@ -18,7 +18,7 @@ pub struct OutcomeTape {
     pub frame: Frame<1>,
     /// How each count grows.
     pub growth: Vec<Growth>,
-    /// The numbers it starts from, and solutions behind them.
+    /// The input of the last tape: the numbers at the node, then the solutions.
     pub numbers: Vec<f64>,
 }
 
@@ -28,7 +28,7 @@ pub struct Node<'a> {
     pub numbers: &'a [f64],
     /// The first count.
     pub first: i64,
-    /// The places, which have the searches.
+    /// The places that contain the searches.
     pub places: &'a mut Places<f64>,
 }
 
@@ -66,7 +66,7 @@ impl OutcomeTape {
         TapeOutcome::On
     }
 
-    /// Searches are as they were before the parts up to `at`.
+    /// Resets the searches of the parts up to `at`.
     fn undo(&self, at: usize, places: &mut Places<f64>) {
         for solved in self.between.iter().take(at + 1).rev() {
             solved.undo(places);
@@ -74,7 +74,8 @@ impl OutcomeTape {
     }
 }
 
-/// The ways of one function, with the last used way at the end, and the number of further ways that may be recorded.
+/// The tapes of one function, one for each outcome, the last used at the end, and the number of outcomes that may
+/// still be recorded.
 #[derive(Debug)]
 pub struct TapesByOutcome {
     known: Vec<OutcomeTape>,
@@ -82,7 +83,7 @@ pub struct TapesByOutcome {
 }
 
 impl TapesByOutcome {
-    /// None yet; none at all, unless the function `records`.
+    /// No tapes yet; if the function does not `record`, there will never be any.
     pub fn new(records: bool) -> Self {
         TapesByOutcome {
             known: Vec::new(),
@@ -90,12 +91,12 @@ impl TapesByOutcome {
         }
     }
 
-    /// Whether there is none, and none is recorded.
+    /// Whether the function is not recorded and will not be.
     pub fn are_none(&self) -> bool {
         self.known.is_empty() && self.left == 0
     }
 
-    /// The way that computes the function at a node, and has done so. If there is none, one is recorded.
+    /// The tapes that have just computed the function at a node. If no tape fits, a new one is recorded.
     pub fn found(
         &mut self,
         mut node: Node,

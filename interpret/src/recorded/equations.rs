@@ -1,5 +1,5 @@
-//! The equations of a step as tapes: the functions that Newton's method evaluates at a trial, on the numbers of the step
-//! and of the trial.
+//! The equations of a step as tapes: the functions that Newton's method evaluates at a trial, as functions of the
+//! numbers of the step and of the trial.
 
 use super::load;
 use crate::code::Places;
@@ -11,18 +11,18 @@ use clebsch_program::{Frame, Machine, Part, Scalar, Tape};
 pub enum NewtonFunction {
     /// The residual at a trial, then the whole trial if a part of it is searched for.
     Residual,
-    /// The tangent row after row, then its factor.
+    /// The tangent row by row, then its factor.
     Tangent,
     /// The residual of all equations at rest.
     AtRest,
-    /// No numbers: the action is convex as long as the decisions stay.
+    /// The tape returns no numbers: the action is convex as long as every decision comes out as recorded.
     Convex,
-    /// The residual by itself, which tests of a solution evaluate far from it.
+    /// The residual alone, which tests of a solution evaluate far from it.
     Alone,
 }
 
 impl NewtonFunction {
-    /// All of them.
+    /// All functions.
     pub const ALL: [Self; 5] = [
         Self::Residual,
         Self::Tangent,
@@ -51,7 +51,7 @@ impl Ready {
 #[derive(Debug)]
 pub struct Equations {
     parts: [Option<Ready>; 5],
-    /// How many numbers of the step they take.
+    /// The number of inputs from the step.
     given: usize,
     /// Which numbers of the solution a trial has.
     of_trial: Vec<usize>,
@@ -69,11 +69,11 @@ pub struct Equations {
 pub struct Recorded {
     /// The functions, in the order of [`NewtonFunction::ALL`].
     pub parts: [Option<Part>; 5],
-    /// How many inputs the step had before.
+    /// The number of inputs that the step had before.
     pub inputs: usize,
     /// Which numbers of the solution a trial has.
     pub of_trial: Vec<usize>,
-    /// The places, for all that is not computed.
+    /// The places, for functions without a tape.
     pub places: Places<f64>,
     /// The places whose numbers are computed.
     pub computed: Vec<usize>,
@@ -82,7 +82,7 @@ pub struct Recorded {
 }
 
 impl Recorded {
-    /// Whether two recordings are one. Counts enter neither.
+    /// Whether two recordings agree. Counts are not compared.
     pub fn agrees(&self, other: &Recorded) -> bool {
         self.parts == other.parts
             && self.inputs == other.inputs
@@ -90,7 +90,7 @@ impl Recorded {
             && self.around == other.around
     }
 
-    /// The equations, and what the step has to compute for them.
+    /// The equations, and the numbers that the step must compute for them.
     pub fn equations(self, tape: &Tape, solution: usize) -> (Equations, Vec<Scalar>) {
         let recorded: Vec<&Part> = self.parts.iter().flatten().collect();
         let (given, tapes) = tape.behind(self.inputs, &recorded);
@@ -119,7 +119,7 @@ impl Recorded {
 }
 
 impl Equations {
-    /// Takes the numbers of a step, and what it computed for the equations.
+    /// Sets the numbers of a step, and the numbers that the step has computed for the equations.
     pub fn begin(&mut self, own: &[f64], given: impl Iterator<Item = f64> + Clone) {
         self.own.clear();
         self.own.extend_from_slice(own);
@@ -168,7 +168,7 @@ pub enum EquationValues<'a> {
 }
 
 impl EquationValues<'_> {
-    /// Appends the numbers of a function at a trial. False if no tape computes it there.
+    /// Appends the numbers of a function at a trial. Returns false if no tape can compute it there.
     pub fn by_tape(
         &mut self,
         wanted: NewtonFunction,

@@ -1,4 +1,4 @@
-//! Operations among places that others fill, over the scalar that records.
+//! Operations over the recording scalar, in places that the caller fills.
 
 use super::Traced;
 use super::loop_inputs::SiteReader;
@@ -7,7 +7,7 @@ use crate::map_scalar::alike;
 use crate::value::Value;
 use std::collections::BTreeSet;
 
-/// Operations over the scalar that records, and the paths of what they read around them.
+/// Operations over the recording scalar, and the paths that they read from the surrounding places.
 #[derive(Debug)]
 pub struct Form {
     body: Code<Traced>,
@@ -33,7 +33,7 @@ impl Form {
         })
     }
 
-    /// Places with what the body reads, as inputs.
+    /// The places that the body reads, filled with inputs.
     pub fn places(&self, asker: &mut SiteReader, places: &Places<f64>) -> Option<Places<Traced>> {
         let mut own = vec![Value::Unit; places.len()];
         for path in &self.paths {
@@ -54,7 +54,7 @@ pub fn value_of(body: &Code<Traced>, places: &mut Places<Traced>) -> Option<Valu
     value.filter(|value| !matches!(value, Value::Failed(_)))
 }
 
-/// Whether two paths are one.
+/// Whether two paths are equal.
 pub fn is_same(a: &Code<f64>, b: &Code<f64>) -> bool {
     match (a, b) {
         (Code::Place(a), Code::Place(b)) => a == b,

@@ -1,4 +1,4 @@
-//! A function of numbers, recorded when it is first called. It depends on its arguments alone.
+//! A function of numbers, recorded when it is first called. It depends only on its arguments.
 
 use super::form::value_of;
 use super::tape_storage::{Pool, Tapes};
@@ -28,7 +28,7 @@ pub struct Function {
 }
 
 impl Function {
-    /// Nothing recorded yet.
+    /// An empty record.
     pub fn new(plain: Routine<f64>) -> Self {
         Function {
             plain,
@@ -50,7 +50,7 @@ impl Function {
         self.tapes.compute(computes, || self.recorded(given))
     }
 
-    /// The function over the scalar that records, if it can be recorded.
+    /// The function over the recording scalar, if it can be recorded.
     pub fn traced(&self) -> Option<&Routine<Traced>> {
         let traced = || self.plain.map_scalar(Traced::constant);
         self.traced.get_or_init(traced).as_ref()

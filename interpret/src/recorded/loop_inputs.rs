@@ -1,4 +1,4 @@
-//! The values around a loop over the scalar that records. Each number is an input, noted with the place it came from.
+//! The values around a loop over the recording scalar. Each number becomes an input, and its origin is noted.
 
 use crate::code::{Code, Places};
 use crate::map_scalar::{map_scalar, numbers};
@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// A list, or a field of the entries of a list.
 #[derive(Clone, Debug)]
 pub struct List {
-    /// The path, or `None` for the values that the loop keeps at its sites.
+    /// The path, or `None` for the list that the loop updates.
     pub path: Option<Code<f64>>,
     /// The field, as a path of nested fields.
     pub fields: Vec<usize>,
@@ -26,16 +26,16 @@ pub struct ReadValue {
     pub first: usize,
     /// How many inputs it has.
     pub count: usize,
-    /// The value, for its kind.
+    /// A value of the same kind.
     pub kind: Value<f64>,
 }
 
 /// The source of a value.
 #[derive(Clone, Debug)]
 pub enum InputSource {
-    /// At a path around the loop.
+    /// A value at a path outside the loop.
     Around(Code<f64>),
-    /// In a list, at a site. Whether it is the only one.
+    /// A value at a site of a list. The flag tells whether the list has only this site.
     Of(List, usize, bool),
 }
 
@@ -62,7 +62,7 @@ impl Log {
     }
 }
 
-/// How far from its own site a body may read.
+/// The largest distance from its own site at which a body may read.
 const NEAR: usize = 8;
 
 /// A list that notes which of its values are read.
@@ -97,7 +97,7 @@ impl TrackedList<Traced> for Leaf {
     }
 }
 
-/// Values at paths, which a tape relies on: all but their numbers.
+/// Values at paths that a tape assumes constant, except for their numbers.
 pub type Fixed = Vec<(Code<f64>, Value<f64>)>;
 
 /// Provides what a body reads at one site.
@@ -108,7 +108,7 @@ pub struct SiteReader {
 }
 
 impl SiteReader {
-    /// For this site.
+    /// A reader for this site.
     pub fn new(site: usize) -> Self {
         SiteReader {
             site,
@@ -117,19 +117,19 @@ impl SiteReader {
         }
     }
 
-    /// The values that were read, and the values that a tape relies on; for a list, its length.
+    /// The values that were read, and the values that the tape assumes constant; for a list, its length.
     pub fn into_reads(self) -> (Vec<ReadValue>, Fixed) {
         let mut log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
         (std::mem::take(&mut log.reads), self.fixed)
     }
 
-    /// A value that is read, as inputs.
+    /// Reads a value as inputs.
     pub fn read(&self, from: InputSource, value: &Value<f64>) -> Option<Value<Traced>> {
         let mut log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
         log.read(from, value)
     }
 
-    /// Puts the value of a path where the body reads it. Structs on the way are made with nothing else in them.
+    /// Puts the value of a path into the places of the body. Structs along the path contain nothing else.
     pub fn provide(
         &mut self,
         path: &Code<f64>,
@@ -142,7 +142,7 @@ impl SiteReader {
         Some(())
     }
 
-    /// The value that the loop keeps at a site.
+    /// The value that the loop stores at a site.
     pub fn kept(&self, column: &Column<f64>, site: usize) -> Option<Value<Traced>> {
         let list = List {
             path: None,

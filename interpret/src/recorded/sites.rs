@@ -1,7 +1,7 @@
-//! The body of a loop over sites as a tape: recorded at two neighbouring sites, run at many side by side.
+//! The body of a loop over sites as a tape: recorded at two neighbouring sites, and run at many sites side by side.
 //!
-//! A body reads a list at a distance from the loop's site, or at a fixed site. The two recordings tell which.
-//! A body whose operations may depend on the number of a site is run itself.
+//! A body reads a list at a distance from the loop's site, or at a fixed site. The two recordings show which of the
+//! two it is. If the operations may depend on the number of a site, clebsch runs the body itself.
 
 mod load;
 mod run;
@@ -19,19 +19,19 @@ use run::SiteTape;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 
-/// The lists that a loop fills, each from a site on.
+/// The lists that a loop fills, each with its first site.
 #[derive(Default)]
 pub struct Lists<'a> {
     /// The list that the loop fills.
     pub out: Option<(&'a mut Column<f64>, usize)>,
     /// The list that the loop reads and changes, site by site.
     pub kept: Option<(&'a mut Column<f64>, usize)>,
-    /// Values that are put one after the other.
+    /// The list to which the loop appends values.
     pub gathered: Option<&'a mut Column<f64>>,
 }
 
 impl Lists<'_> {
-    /// The shapes of what comes out, where these are arrays.
+    /// The shapes of the results, if they are arrays.
     fn shapes(&self) -> Vec<Option<[usize; 2]>> {
         let shape = |column: &Column<f64>| match column {
             Column::Arrays(dims, _) => Some(*dims),
@@ -44,14 +44,14 @@ impl Lists<'_> {
     }
 }
 
-/// The body of a loop, a function of a site and, for some loops, of what is kept there.
+/// The body of a loop: a function of a site and, in some loops, of the stored value at the site.
 #[derive(Debug)]
 pub struct SiteFunction {
     parameters: Vec<usize>,
     body: Code<f64>,
-    /// With whether it takes sites beyond a list for the last of it.
+    /// The form, and whether the body may clamp sites to a list.
     form: OnceLock<Option<(Form, bool)>>,
-    /// The newest last.
+    /// The newest tape is last.
     tapes: RwLock<Vec<Arc<SiteTape>>>,
     /// How often recording failed.
     failures: AtomicUsize,
@@ -69,7 +69,7 @@ impl SiteFunction {
         }
     }
 
-    /// The value of the body, run itself.
+    /// The value of the body, without a tape.
     pub fn at(
         &self,
         arguments: impl Iterator<Item = Value<f64>>,
@@ -81,7 +81,7 @@ impl SiteFunction {
         self.body.returned(places)
     }
 
-    /// Runs sites by a tape, as far as that goes: the next site that is left to the body.
+    /// Runs sites by tapes as far as possible; returns the next site, which the body itself must compute.
     pub fn advance(
         &self,
         places: &Places<f64>,
@@ -103,7 +103,7 @@ impl SiteFunction {
                     .cloned()
                     .collect()
             };
-            // The newest runs as many sites as it can, others those that it leaves.
+            // The newest tape runs as many sites as it can, older tapes the remaining ones.
             for (k, tape) in fitting.iter().enumerate() {
                 let end = if k == 0 { to } else { to.min(site + 1) };
                 site = tape.run(places, [site, end], lists).unwrap_or(site);
@@ -114,7 +114,7 @@ impl SiteFunction {
             if site > before {
                 continue;
             }
-            // In the middle, so that neighbours are there; later where a decision came out otherwise.
+            // Record in the middle, where neighbours exist, or at the site where a decision differs.
             let at = match fitting.first() {
                 None => from + (to - from - 1) / 2,
                 Some(tape) if tape.admits(places, site) => site,
@@ -227,7 +227,7 @@ struct SiteRecording {
     inputs: usize,
     /// Where inputs come from.
     reads: Vec<ReadValue>,
-    /// The values that the tape relies on.
+    /// The values that the tape assumes constant.
     fixed: Fixed,
     gives: Vec<Value<f64>>,
 }

@@ -1,4 +1,4 @@
-//! Equations that a step solves on its way, as parts of a recording. A tape ends where Newton's method begins; the next one
+//! Equations that a step solves, as parts of a recording. A tape ends where Newton's method starts; the next tape
 //! takes the solution as inputs.
 
 use super::equations::{EquationValues, Equations, NewtonFunction, Recorded};
@@ -16,19 +16,19 @@ use clebsch::solvers::newton::{Chart, Solved};
 use clebsch_program::{Frame, Guard, Machine, Part, Scalar, Tape};
 use std::sync::Arc;
 
-/// Where a recording ends for a while.
+/// The end of a part of a recording.
 #[derive(Clone, Debug)]
 pub struct RecordingPause {
-    /// How many decisions were noted before.
+    /// The number of decisions recorded before it.
     pub guards: usize,
-    /// How many inputs there were before.
+    /// The number of inputs before it.
     pub inputs: usize,
-    /// The equations that are solved there.
+    /// The equations that Newton's method solves there.
     pub solved: SolvedHere,
 }
 
 impl RecordingPause {
-    /// Whether two recordings have the same cut. Counts enter neither.
+    /// Whether two recordings have the same pause. Counts are not compared.
     pub fn agrees(&self, other: &RecordingPause) -> bool {
         let (own, others) = (&self.solved, &other.solved);
         let same = match (&own.equations, &others.equations) {
@@ -46,17 +46,17 @@ impl RecordingPause {
 #[derive(Clone, Debug)]
 pub struct SolvedHere {
     with: Arc<Solve>,
-    /// How they are evaluated.
+    /// The functions that evaluate them.
     equations: Option<Recorded>,
-    /// How far the node is from the first count of the state.
+    /// The node minus the first count of the state.
     node: i64,
     /// The numbers of the solution.
     solution: Vec<Scalar>,
-    /// Whether the search remembers the solution once the step is made.
+    /// Whether the search stores the solution after the step.
     remembers: bool,
 }
 
-/// Newton's method over the scalar that records.
+/// Newton's method over the recording scalar.
 #[derive(Debug)]
 pub struct RecordedSolve {
     with: Arc<Solve>,
@@ -67,12 +67,12 @@ pub struct RecordedSolve {
     tangent: Option<Code<Traced>>,
     at_rest: Option<Code<Traced>>,
     convex: Option<Code<Traced>>,
-    /// The arguments of the residual by itself before the trial.
+    /// The arguments of the separate residual, before the trial.
     known: Option<Vec<Code<Traced>>>,
 }
 
 impl RecordedSolve {
-    /// Records these equations. Returns `None` if places alone do not give the search or the node.
+    /// Records these equations. Returns `None` if the search or the node is not at a place.
     pub fn of(with: Arc<Solve>) -> Option<Self> {
         let at_trial = |what: &AtTrial| what.body.map_scalar(Traced::constant);
         Some(RecordedSolve {
@@ -163,7 +163,7 @@ impl Iterate<Traced> for RecordedSolve {
             });
         });
         unfit(noted)?;
-        // Nothing is computed from how the solution was found.
+        // The tapes do not depend on how the solution was found.
         let told = solution_value(sought.all(), &solved);
         let Value::Struct(Struct { layout, .. }) = told else {
             return unfit(None);
@@ -202,7 +202,7 @@ impl RecordedSolve {
         let of_trial: Option<Vec<usize>> = own.iter().map(place).collect();
         let sizes = [&sought.shape, sought.all()].map(|shape| shape.parts().dimension());
         let in_part = self.with.completed_at.is_some();
-        // Tests of a solution evaluate the residual by itself only if a part of the unknowns lacks a scale.
+        // Tests of a solution evaluate the residual alone only if a part of the unknowns lacks a scale.
         let is_asked_alone = !in_part && sought.shape.parts().open.contains(&true);
         let wanted = |wanted: NewtonFunction| {
             let (body, trial_at) = match wanted {
@@ -232,7 +232,7 @@ impl RecordedSolve {
         Some((NewtonFunction::ALL.map(wanted), of_trial?))
     }
 
-    /// The residual by itself.
+    /// The residual alone.
     fn alone(
         &self,
         trial: &Value<Traced>,
@@ -252,7 +252,7 @@ impl RecordedSolve {
     }
 }
 
-/// The numbers of what is wanted, of so many equations that are searched for, and so many in all.
+/// The numbers of a function of Newton's method, for `size` unknowns of `all` equations.
 fn wanted_numbers(
     wanted: NewtonFunction,
     value: Value<Traced>,
@@ -281,7 +281,7 @@ fn wanted_numbers(
     }
 }
 
-/// `search.remember(node, &found)`: noted, and done when the whole step is made.
+/// `search.remember(node, &found)`: recorded, and executed after the whole step.
 pub fn remember(
     places: &mut Places<Traced>,
     a: &[Code<Traced>],
@@ -320,15 +320,15 @@ pub struct SolveBetweenTapes {
     with: Arc<Solve>,
     node: i64,
     remembers: bool,
-    /// The search before the step, with its measurements.
+    /// The search before the step, with its measured scales.
     before: Option<SearchValue>,
-    /// Whether this step has come to the equations.
+    /// Whether this step has reached the equations.
     begun: bool,
     /// The newest solution.
     found: Reals,
 }
 
-/// The tapes before each cut, and the tape of the last part.
+/// The tapes before each pause, and the tape of the last part.
 pub fn in_parts(tape: Tape, cuts: Vec<RecordingPause>) -> Option<(Vec<SolveBetweenTapes>, Tape)> {
     let mut decided = 0;
     let mut all = Vec::new();
@@ -364,12 +364,12 @@ pub fn in_parts(tape: Tape, cuts: Vec<RecordingPause>) -> Option<(Vec<SolveBetwe
     Some((all, Tape { guards, ..tape }))
 }
 
-/// How a step by tapes went.
+/// The outcome of a step by tapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TapeOutcome {
     /// As recorded.
     On,
-    /// A decision came out otherwise.
+    /// A decision differs from the recorded one.
     Elsewhere,
     /// The equations were not solved.
     Unsolved,
@@ -412,7 +412,7 @@ impl SolveBetweenTapes {
         TapeOutcome::On
     }
 
-    /// Gives the search back what it had measured before the step, if the step has come to the equations.
+    /// Restores the scales that the search had before the step, if the step has reached the equations.
     pub fn undo(&self, places: &mut Places<f64>) {
         if let (true, Some(before), Some(Value::Search(held))) =
             (self.begun, &self.before, self.with.search.place_mut(places))
@@ -421,7 +421,7 @@ impl SolveBetweenTapes {
         }
     }
 
-    /// The step from the node `first` is made: the search remembers its solution.
+    /// The step from the node `first` is complete: the search stores its solution.
     pub fn remember(&self, first: i64, places: &mut Places<f64>) {
         if self.remembers
             && let Some(Value::Search(held)) = self.with.search.place_mut(places)

@@ -2,10 +2,10 @@
 
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
-/// Most tapes of a function: if decisions come out in more ways than these, the function itself is run.
+/// Maximum number of tapes of a function: if its decisions have more outcomes, the function itself is run.
 pub const MOST: usize = 8;
 
-/// The tapes of a function, the newest last; nothing for a try that failed.
+/// The tapes of a function, the newest last; `None` for a failed recording.
 #[derive(Debug)]
 pub struct Tapes<T> {
     tried: RwLock<Vec<Option<Arc<T>>>>,
@@ -19,7 +19,7 @@ impl<T> Tapes<T> {
         }
     }
 
-    /// The result of the newest tape for which `computes` gives one, otherwise the result of a new recording.
+    /// The first result of `computes`, trying the newest tape first; otherwise the result of a new recording.
     pub fn compute<V>(
         &self,
         computes: impl Fn(&T) -> Option<V>,
@@ -57,7 +57,7 @@ impl<F> Pool<F> {
         }
     }
 
-    /// Runs something in registers that are free, or made now.
+    /// Calls a function with free registers, or with new ones.
     pub fn with<V>(&self, make: impl FnOnce() -> F, run: impl FnOnce(&mut F) -> V) -> V {
         let free = self
             .free

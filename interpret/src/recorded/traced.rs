@@ -1,8 +1,8 @@
-//! A scalar that records its operations, so that one evaluation of generic code becomes a tape.
+//! A scalar that records its operations, so that a single evaluation of generic code becomes a tape.
 //!
-//! If the code decides by methods of [`Real`] that return a truth value, the decisions become guards of the tape. If a
-//! number leaves the tape in any other way, as with `value()`, the recording is void, since later decisions would be
-//! invisible.
+//! If the code decides by methods of [`Real`] that return a truth value, the decisions become guards of the tape. If
+//! a number leaves the tape in any other way, as with `value()`, the recording is invalid, since it cannot see later
+//! decisions.
 
 use super::solves::{RecordingPause, SolvedHere};
 use crate::value::Value;
@@ -33,7 +33,7 @@ thread_local! {
     static HERE: RefCell<Option<Here>> = const { RefCell::new(None) };
 }
 
-/// Most steps of a tape: what takes more is not recorded.
+/// Maximum number of steps of a tape; longer evaluations are not recorded.
 const MOST: usize = 1 << 17;
 
 /// Records `body`, which returns the numbers that the tape computes. Returns nothing if they depend on more than tests
@@ -43,7 +43,7 @@ pub fn record(body: impl FnOnce() -> Option<Vec<Traced>>) -> Option<(Tape, usize
     cuts.is_empty().then_some((tape, inputs))
 }
 
-/// As [`record`], of a function that solves equations of `model` on the way.
+/// Like [`record`], for a function that solves equations of `model`.
 pub fn record_with_solves(
     model: Option<Value<f64>>,
     body: impl FnOnce() -> Option<Vec<Traced>>,
@@ -77,8 +77,8 @@ pub fn cut(solved: SolvedHere) {
     });
 }
 
-/// Records a computation aside from the step. Returns its value with its own decisions; the step does not rely on these.
-/// `None` if a decision uses more than tests of numbers.
+/// Records a computation aside from the step. Returns its value with its own decisions; the step does not depend on
+/// them. `None` if a decision uses more than tests of numbers.
 pub fn aside<R>(body: impl FnOnce() -> Option<R>) -> Option<(R, Vec<Guard>)> {
     let before = noted(|here| {
         let spoiled = std::mem::replace(&mut here.spoiled, false);
@@ -102,12 +102,12 @@ pub fn steps(numbers: &[Traced]) -> Vec<Scalar> {
     made.unwrap_or_default()
 }
 
-/// Does something with the newest cut.
+/// Changes the newest pause.
 pub fn with_newest_cut<R>(what: impl FnOnce(&mut RecordingPause) -> R) -> Option<R> {
     noted(|here| here.cuts.last_mut().map(what)).flatten()
 }
 
-/// Does something with the recording, if there is one.
+/// Changes the recording, if there is one.
 fn noted<R>(what: impl FnOnce(&mut Here) -> R) -> Option<R> {
     HERE.with_borrow_mut(|here| here.as_mut().map(what))
 }
@@ -127,12 +127,12 @@ impl Traced {
         Traced { value, at }
     }
 
-    /// Its value where it is recorded, for what decides nothing.
+    /// Its value during the recording, which must not influence a decision.
     pub fn seen(self) -> f64 {
         self.value
     }
 
-    /// Which step computes it.
+    /// The step that computes it.
     pub fn at(self) -> Option<Scalar> {
         self.at
     }
@@ -168,7 +168,7 @@ impl Traced {
         self.one(function.of(self.value), |a| Step::Function(function, a))
     }
 
-    /// Notes how a test of two numbers came out.
+    /// Records the outcome of a comparison of two numbers.
     fn asked(self, other: Self, holds: bool, test: impl FnOnce(Scalar, Scalar) -> Test) -> bool {
         if self.at.is_some() || other.at.is_some() {
             noted(|here| {
@@ -180,7 +180,7 @@ impl Traced {
         holds
     }
 
-    /// Its value leaves the tape.
+    /// Takes the value off the tape, which invalidates the recording.
     fn read(self) -> f64 {
         if self.at.is_some() {
             noted(|here| here.spoiled = true);
@@ -289,7 +289,7 @@ impl Real for Traced {
     fn where_positive(self, then: Self) -> Self {
         let value = if self.value > 0.0 { then.value } else { 0.0 };
         match self.at {
-            // A constant decides for good.
+            // A decision on a constant never changes.
             None if self.value > 0.0 => then,
             None => Self::zero(),
             Some(_) => self.two(then, value, Step::WherePositive),

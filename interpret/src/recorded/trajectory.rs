@@ -67,7 +67,7 @@ impl Recordable {
     }
 }
 
-/// The values that stay the same while a trajectory runs.
+/// The values that are constant along a trajectory.
 #[derive(Clone, Debug)]
 pub struct Fixed {
     /// The parameters as given.
@@ -101,7 +101,7 @@ pub struct Recorded {
     watched: [TapesByOutcome; 3],
     /// The numbers of the state, followed by the numbers of the workspace.
     numbers: Vec<f64>,
-    /// How many are the state's.
+    /// The number of numbers that belong to the state.
     of_state: usize,
     counts: Vec<i64>,
     newest: Newest,
@@ -115,7 +115,7 @@ impl Clone for Recorded {
     }
 }
 
-/// Where the newest state and workspace are.
+/// Where the newest state and workspace are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Newest {
     /// In the numbers of the tapes.
@@ -127,7 +127,7 @@ enum Newest {
 }
 
 impl Recorded {
-    /// Nothing recorded yet. Steps are recorded if they are the model's own.
+    /// An empty record. Only steps of the model itself are recorded.
     pub fn new(functions: &'static Recordable, fixed: Fixed, own_step: bool) -> Self {
         Recorded {
             functions,
@@ -144,12 +144,12 @@ impl Recorded {
         }
     }
 
-    /// Something else has changed the places.
+    /// Marks the values in the places as newest.
     pub fn follow(&mut self) {
         self.newest = Newest::Places;
     }
 
-    /// Takes the numbers of the places, if these are newer.
+    /// Reads the numbers from the places, if these are newer.
     fn read(&mut self, places: &Places<f64>) {
         if self.newest != Newest::Places {
             return;
@@ -172,12 +172,12 @@ impl Recorded {
         }
     }
 
-    /// Puts the numbers into the places, if they are newer.
+    /// Writes the numbers to the places, if the numbers are newer.
     pub fn write(&mut self, places: &mut Places<f64>) {
         put(&self.numbers, &self.counts, &mut self.newest, places);
     }
 
-    /// Makes a step; false if the function itself has to.
+    /// Takes a step; returns false if the function itself must run.
     pub fn step(&mut self, places: &mut Places<f64>) -> bool {
         if self.step.are_none() {
             return false;
@@ -210,7 +210,7 @@ impl Recorded {
         true
     }
 
-    /// Makes a step from this state; false if the function itself has to, from the places.
+    /// Takes a step from this state; returns false if the function itself must run, from the places.
     pub fn step_from(&mut self, state: &mut Packed, places: &mut Places<f64>) -> bool {
         if self.step.are_none() || !self.put(state, places) || !self.step(places) {
             return false;
@@ -219,7 +219,7 @@ impl Recorded {
             .is_some_and(|(all, node)| state.set(all, node))
     }
 
-    /// Puts a state into the numbers; false if it has others than the state there.
+    /// Sets the state in the numbers; returns false if the count of numbers differs.
     pub fn put(&mut self, state: &Packed, places: &Places<f64>) -> bool {
         self.read(places);
         let given = state.numbers();
@@ -234,7 +234,7 @@ impl Recorded {
         true
     }
 
-    /// The numbers of the state and its node, if they are here.
+    /// The numbers of the state and its node, if they are stored here.
     fn newest(&self) -> Option<(&[f64], u64)> {
         if self.newest == Newest::Places {
             return None;
@@ -243,7 +243,7 @@ impl Recorded {
         Some((self.numbers.get(..self.of_state)?, node))
     }
 
-    /// The state, if the numbers have it.
+    /// The state, if it is stored in the numbers.
     pub fn packed(&self) -> Option<Packed> {
         let (all, node) = self.newest()?;
         Packed::of_numbers(all, node)
@@ -307,15 +307,15 @@ fn put(numbers: &[f64], counts: &[i64], newest: &mut Newest, places: &mut Places
     }
 }
 
-/// Whether a tape can take a value. A solver's memory it cannot.
+/// Whether a tape can contain a value. It cannot contain the memory of a solver.
 fn recordable(value: &Value<f64>) -> bool {
     numbers(value, &mut Vec::new()).is_some()
 }
 
-/// A recording: a tape with so many inputs and the cuts on its way; the counts before and after.
+/// A recording: a tape, its number of inputs and its pauses; the counts before and after.
 type StepRecording = ((Tape, usize, Vec<RecordingPause>), [Vec<i64>; 2]);
 
-/// Records twice, with different counts: if these enter a number or a decision, recording gives up.
+/// Records twice, with different counts: if a number or a decision depends on them, the recording is discarded.
 fn twice(once: impl Fn(Choice) -> Option<StepRecording>) -> Option<OutcomeTape> {
     let ((tape, inputs, cuts), [before, after]) = once(Choice::Equal)?;
     let ((other, _, others), [earlier, later]) = once(Choice::Apart)?;
@@ -336,7 +336,7 @@ fn twice(once: impl Fn(Choice) -> Option<StepRecording>) -> Option<OutcomeTape> 
     })
 }
 
-/// The numbers of a value as inputs, its counts as they are chosen.
+/// The value with its numbers as inputs and with the chosen counts.
 fn input(value: &Value<f64>, counts: &mut Chosen) -> Option<Value<Traced>> {
     numbers(value, &mut Vec::new())?;
     let mut value = map_scalar(value, &mut Traced::input)?;

@@ -73,7 +73,7 @@ impl A {
         })
     }
 
-    /// The inverse of a homogeneous matrix of a rotation and a place.
+    /// The inverse of a homogeneous matrix of a rotation and a position.
     pub fn motion_inverse(&self) -> Self {
         let n = self.rows - 1;
         let turn = self.block((0, 0), (n, n)).t();

@@ -1,5 +1,5 @@
-//! Lines whose sites are linear maps, rotations of the plane and rigid motions: their statements, data, and their actions as
-//! sums typed by hand.
+//! Chains whose sites are linear maps, rotations of the plane and rigid motions: their statements, data, and their
+//! actions as sums typed by hand.
 
 use super::matrix::{A, D, real};
 use clebsch::Real;
@@ -42,7 +42,7 @@ impl Chain {
     }
 }
 
-/// Numbers between -1 and 1, the same each time.
+/// Numbers between -1 and 1, the same in every run.
 pub fn scattered(n: usize, by: f64) -> Vec<f64> {
     (1..=n).map(|i| (by * i as f64).sin()).collect()
 }
@@ -210,7 +210,7 @@ fn turns(count: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Rotors of the plane in a field, each coupled to its neighbours; the first one may be prescribed.
+/// Rotors of the plane in a field, each coupled to its neighbours; the first may be prescribed.
 pub fn rotors(ends: Option<[&'static str; 2]>) -> Chain {
     fn given(name: &str, nodes: usize) -> Option<Vec<f64>> {
         Some(match name {
@@ -293,7 +293,8 @@ fn frames_at(count: usize) -> Vec<f64> {
 
 const SIX: [f64; 6] = [0.2, 0.3, 0.4, 1.0, 1.3, 0.8];
 
-/// A rod of frames with places in one group, in a fluid: added masses, weight, stretching, shear, bending and twist.
+/// A rod of frames and positions in one group, in a fluid: added masses, weight, stretching, shear, bending and
+/// twist.
 pub fn frames(ends: Option<[&'static str; 2]>, spatial: bool) -> Chain {
     fn given(name: &str, nodes: usize) -> Option<Vec<f64>> {
         Some(match name {
@@ -445,7 +446,7 @@ pub fn hanging(ends: Option<[&'static str; 2]>) -> Chain {
     }
 }
 
-/// Sledges on a plane, each before the next one.
+/// Sledges on a plane, one behind the other.
 pub fn sledges() -> Chain {
     fn given(name: &str, nodes: usize) -> Option<Vec<f64>> {
         Some(match name {

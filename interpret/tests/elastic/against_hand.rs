@@ -1,6 +1,7 @@
-//! One step of the shipped elastic bodies from random states against steppers written by hand, to rounding times conditioning:
-//! ten thousand states, of bipolar forms three hundred, whose steps follow the curve from rest and take some forty milliseconds each when
-//! interpreted; more by `ELASTIC_STATES=10000`. Every kind of datum changed by a millionth is noticed.
+//! One step of the shipped elastic bodies from random states, compared with hand-written steppers, to rounding times
+//! conditioning. There are ten thousand states for each body, but three hundred for bipolar forms, whose interpreted
+//! steps follow the curve from rest and take about forty milliseconds each; `ELASTIC_STATES=10000` selects more.
+//! Every kind of datum changed by a millionth is detected.
 
 use clebsch::card::{Card, Settings};
 use clebsch_oracle::handwritten::ellipsoid::{ElasticEllipsoid, Ellipsoid, Of};
@@ -15,11 +16,11 @@ type Matrix = [[f64; 3]; 3];
 /// Some hundred roundings of numbers of order one, for data that are not magnified.
 const ONE_STEP: f64 = 3e-14;
 
-/// The equations of bipolar forms hold squares of stretches, of order two, and momenta of stretches are what is left of them over
-/// h, a hundredth.
+/// The equations of bipolar forms contain squares of stretches, of order two; momenta of stretches are differences of
+/// these, divided by h = 0.01.
 const BIPOLAR: f64 = 3e-13;
 
-/// Relative change of a datum by which conditioning is measured, and by which it is mistaken.
+/// Relative change of a datum, for measuring conditioning and for a deliberate mistake.
 const NUDGE: f64 = 1e-6;
 
 /// Parameters and initial values as a card takes them, and the step.
@@ -241,7 +242,7 @@ const PSEUDO_RIGID: System = System {
     free: (&[0, 1, 2, 3], &[1, 3, 4, 5]),
 };
 
-/// The direct discretisation is Störmer's and Verlet's of the placement, with which it is compared.
+/// The direct discretisation is the Störmer-Verlet scheme of the placement, with which it is compared.
 const DIRECT: System = System {
     states: 300,
     rounding: BIPOLAR,
@@ -295,7 +296,7 @@ impl System {
             .collect()
     }
 
-    /// The largest difference over conditioning from so many states, with one kind of datum mistaken or none.
+    /// The largest difference over conditioning for this number of states, with one kind of datum changed or none.
     fn worst(&self, card: &Card, states: u64, mistaken: Option<(bool, usize)>) -> f64 {
         let mut source = Source::seeded(51);
         let (mut worst, mut refused) = (0.0_f64, 0);

@@ -23,13 +23,14 @@ use std::sync::Arc;
 
 const ROD: &str = include_str!("../../../models/lattices/geometrically-exact-rod.clebsch");
 
-/// Length and mass of a unit of length are one; the beam is thick, so that shear and turning are seen.
+/// Length and mass per unit length are one; the beam is thick, so that shear and rotary inertia have a visible
+/// effect.
 const SHEAR: f64 = 100.0;
 const INERTIA: f64 = 0.01;
 /// Against bending about the second axis: B1 + B3, since `tr(B) Id - B` are the stiffnesses.
 const BENDING: f64 = 1.0;
 
-/// A rod of n segments with its ends.
+/// A rod of n segments with its end conditions.
 struct Beam {
     model: Arc<LineModel>,
     choice: ChainConfig,
@@ -38,11 +39,11 @@ struct Beam {
     force: f64,
 }
 
-/// Places and turns in the plane of bending.
+/// Positions and rotations in the plane of bending.
 struct Shape {
-    /// Across and along, at each node.
+    /// Transverse and axial positions, at each node.
     places: Vec<[f64; 2]>,
-    /// At each segment.
+    /// Rotation angles, at each segment.
     turns: Vec<f64>,
 }
 
@@ -78,7 +79,7 @@ impl Beam {
         }
     }
 
-    /// From rest in a shape.
+    /// From rest in a given shape.
     fn start(&self, shape: &Shape, h: f64) -> LineTrajectory {
         let s = self.section();
         let one = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
@@ -130,7 +131,7 @@ fn measured(text: &str, n: usize, waves: f64, branch: usize) -> f64 {
     let k = waves * PI;
     let seen = 2.0 / s * (0.5 * k * s).sin();
     let square = timoshenko(seen)[branch];
-    // So small that its square, by which supports that stay where they are pull it straight, is below the bound.
+    // Small enough that its square is below the bound; fixed supports stretch the beam by this square.
     let turn = 1e-5;
     let deflection = turn * SHEAR * seen / (SHEAR * seen * seen - square);
     let mut shape = beam.straight();
@@ -142,7 +143,8 @@ fn measured(text: &str, n: usize, waves: f64, branch: usize) -> f64 {
     }
     let h = 1e-3;
     let mut line = beam.start(&shape, h);
-    // By what it was started in: of `cos(ω t)` the sum of the neighbours in time is 2 cos(ω h) times the value.
+    // The component along the initial mode: for `cos(ω t)`, the sum of the neighbours in time is 2 cos(ω h) times the
+    // value.
     let amplitude = |line: &mut LineTrajectory| {
         let places = line.observe("φ").expect("is seen");
         let sum = (0..=n).map(|i| places[3 * i] * (k * s * i as f64).sin());
@@ -162,8 +164,8 @@ fn measured(text: &str, n: usize, waves: f64, branch: usize) -> f64 {
     -both / (own * h * h)
 }
 
-/// Rounding of strains, 1e-16 of 1e-5, over (ω h)² = 1e-4 of the slowest mode, with the mean over the run; and the square of the
-/// amplitude.
+/// Rounding of strains, 1e-16 of 1e-5, over (ω h)² = 1e-4 of the slowest mode, averaged over the run; and the square
+/// of the amplitude.
 const MEASURED: f64 = 1e-6;
 
 /// Long, since six modes are followed on rods of up to forty segments.
@@ -188,7 +190,7 @@ fn a_beam_on_two_supports_has_the_frequencies_of_timoshenko() {
                 assert!((order - 2.0).abs() < 0.05, "{waves} {branch}: {errors:?}");
             }
         }
-        // The beam that only bends is off by a tenth and more: the shear is seen.
+        // The Euler-Bernoulli beam is wrong by a tenth or more: the shear has a visible effect.
         let bends = BENDING * (waves * PI).powi(4);
         assert!(bends / timoshenko(waves * PI)[0] > 1.1);
     }
@@ -208,7 +210,7 @@ fn another_energy_has_other_frequencies() {
     }
 }
 
-/// The deflection of the far end where the rod rests: the shape from which a step makes no momentum, by Newton's method.
+/// The deflection of the far end in equilibrium: the shape from which a step creates no momentum, by Newton's method.
 fn deflection(beam: &Beam) -> f64 {
     let n = beam.n;
     let read = |x: &DVector<f64>| {
@@ -252,7 +254,8 @@ fn deflection(beam: &Beam) -> f64 {
     x[3 * (n - 1)]
 }
 
-/// Relative errors for 10, 20 and 40 sections: of second order, and what is left of their extrapolation.
+/// Relative errors for 10, 20 and 40 sections: they are of second order, and the errors after extrapolation are
+/// smaller.
 fn of_second_order(what: &str, exact: f64, load: impl Fn(&mut Beam)) {
     let found = [10, 20, 40].map(|n| {
         let mut beam = Beam::new(ROD, n, ["clamped", "load"]);
@@ -270,7 +273,7 @@ fn of_second_order(what: &str, exact: f64, load: impl Fn(&mut Beam)) {
     assert!(limit.abs() < 1e-6, "{what}: {limit:e}");
 }
 
-/// Long, since beams of three sizes are derived and brought to rest.
+/// Long, since beams of three sizes are derived and their equilibria computed.
 #[test]
 fn cantilevers_at_rest_are_those_of_beam_theory() {
     let load = 1e-4;

@@ -1,7 +1,7 @@
-//! The bipolar chart near equal stretches: the tangent at rest is singular to the square of their difference and grows along the
-//! curve from rest, so that the principal root of a step exists. The thesis's run of figures 3.1 to 3.3 comes to stretches that
-//! differ by 4.1e-5 at node 949. The roots here are ends of that curve, followed with forty digits by another program, in which the
-//! determinant of the tangent is nowhere smaller than at rest.
+//! The bipolar chart near equal stretches: the tangent at rest is singular to the square of their difference and
+//! grows along the curve from rest, so that the principal root of a step exists. In the thesis's run of figures 3.1
+//! to 3.3, the stretches differ by only 4.1e-5 at node 949. The roots here are ends of this curve, followed with
+//! forty digits by another program; along it, the determinant of the tangent is nowhere smaller than at rest.
 
 use clebsch::card::{Settings, Trajectory};
 

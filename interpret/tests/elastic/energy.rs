@@ -129,7 +129,7 @@ impl Energy {
         self.0.iter().map(term).collect::<Vec<_>>().join(" + ")
     }
 
-    /// The energy with another exponent or share in one factor.
+    /// The energy with another exponent or weight in one factor.
     pub fn changed(&self, source: &mut Source) -> Self {
         let mut terms = self.0.clone();
         let at = source.below(terms.len());

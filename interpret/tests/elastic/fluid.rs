@@ -1,6 +1,6 @@
-//! Homogeneous fluid ellipsoids of Dirichlet and Riemann against what is known of them: the modes of a sphere, where Maclaurin's
-//! spheroids lose their stability, the pressure of a sphere at rest, the invariants of any motion. Density and constant of
-//! gravitation are one, the reference is a unit ball.
+//! Homogeneous fluid ellipsoids of Dirichlet and Riemann against known results: the modes of a sphere, the stability
+//! limit of Maclaurin's spheroids, the pressure of a sphere at rest, the invariants of any motion. Density and
+//! constant of gravitation are one, the reference is a unit ball.
 
 use clebsch::card::{Card, Settings, Trajectory};
 use core::f64::consts::PI;
@@ -81,8 +81,8 @@ fn spheroid(e: f64) -> (f64, f64, f64) {
     (a, a * c, PI * rate)
 }
 
-/// Positions are Störmer's, so that the second difference of a small motion is its force: the square of the frequency is
-/// 16 pi/15 for every one of the five modes, to the amplitude and to rounding over amplitude and h².
+/// Positions follow the Störmer scheme, so the second difference of a small motion is its force: the squared
+/// frequency is 16 pi/15 for each of the five modes, up to the amplitude and to rounding over amplitude and h².
 #[test]
 fn a_sphere_has_five_modes_of_one_frequency() {
     let (small, h) = (1e-5, 0.01);
@@ -119,7 +119,7 @@ fn a_sphere_has_five_modes_of_one_frequency() {
     }
 }
 
-/// How far a spheroid is from being round, after so many units of time, by the part that it was not at the start.
+/// The deviation of a spheroid from rotational symmetry at these times, relative to the initial deviation.
 fn out_of_round(e: f64, times_at: &[f64]) -> Vec<f64> {
     let (a, c, square) = spheroid(e);
     let (small, h) = (1e-6, 0.02);
@@ -164,13 +164,13 @@ fn flat_spheroids_are_unstable() {
         let grown = out_of_round(e, &[12.0, 18.0]);
         let found = (grown[1] / grown[0]).ln() / 6.0;
         assert!(grown[1] > 300.0, "{e}: {grown:?}");
-        // The rest of the motion at the start, e^(-2·12 rate), and the square of the step.
+        // The remainder of the initial motion, e^(-2·12 rate), and the square of the step.
         assert!((found / rate - 1.0).abs() < 0.02, "{e}: {found} {rate}");
     }
 }
 
-/// At rest a sphere stays, and the multiplier is its pressure, M²/5, whatever the step: the other roots of the cubic grow as
-/// the step becomes short.
+/// A sphere at rest stays at rest, and the multiplier is its pressure, M²/5, for any step size: the other roots of
+/// the cubic grow if the step becomes short.
 #[test]
 fn the_multiplier_of_a_sphere_at_rest_is_its_pressure() {
     for h in [0.1, 0.01, 1e-3] {
@@ -192,8 +192,8 @@ fn the_multiplier_of_a_sphere_at_rest_is_its_pressure() {
     }
 }
 
-/// An ellipsoid that turns, streams and pulsates: volume, angular momentum and circulation over 1e4 steps, the energy
-/// within the square of the step and without trend.
+/// An ellipsoid that rotates, streams and pulsates: volume, angular momentum and circulation over 1e4 steps; the
+/// energy error is bounded by the square of the step, without a trend.
 #[test]
 fn a_riemann_ellipsoid_keeps_what_it_should() {
     let q = diagonal(1.2, 1.0, 1.0 / 1.2);

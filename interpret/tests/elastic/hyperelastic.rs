@@ -1,6 +1,6 @@
-//! Ten random hyperelastic energies, each of three strains, stated on GL(3) seen from the body, seen from space, and by a
-//! matrix field: the derived equations and one emitted step against the variation of the action of the placement, by dual
-//! numbers; the three motions are one. An energy with one exponent changed fails.
+//! Ten random hyperelastic energies, each with three strains, stated on GL(3) in the body frame, in the space frame,
+//! and by a matrix field. Compares the derived equations and one emitted step with the variation of the action of the
+//! placement, by dual numbers; the three motions agree. An energy with one exponent changed fails.
 
 use super::energy::Energy;
 use clebsch::card::{Card, Settings, Trajectory};
@@ -89,7 +89,7 @@ impl Statement {
         )
     }
 
-    /// The change of a placement along a direction: momenta are seen from the body, from space, or of each entry.
+    /// The change of a placement along a direction: in the body frame, in the space frame, or for each entry.
     fn change(self, q: &Matrix, direction: &Matrix) -> Matrix {
         match self {
             Self::Convective => *q * *direction,
@@ -223,7 +223,7 @@ fn seen(card: &Card, of: &dyn Trajectory) -> [Vec<f64>; 2] {
     })
 }
 
-/// A step from a random state: the action of its edge has the momenta of both ends as its derivatives.
+/// A step from a random state: the derivatives of the action of its edge are the momenta at both ends.
 fn step(
     card: &Card,
     energy: &Energy,
@@ -256,7 +256,8 @@ fn step(
 /// Short enough that placements stay invertible under each of these forces.
 const STEP: f64 = 2e-3;
 
-/// Rounding leaves 1e-14 of the sum of all terms; inverses and fractional powers near their ends some digits more.
+/// Rounding errors are 1e-14 of the sum of all terms; inverses and fractional powers near their singularities lose a
+/// few more digits.
 const AGREEMENT: f64 = 1e-10;
 
 /// Long, since ninety models are derived, and thirty of them stepped.
@@ -297,7 +298,8 @@ fn ten_random_energies_are_varied_as_the_oracle_varies_them() {
     println!("worst of equations and of steps {worst:?}");
 }
 
-/// Placements after some steps of what is seen from the body, from space and as a matrix: `Q`, `Q`, `Q`.
+/// Placements after several steps for the statements in the body frame, in the space frame and as a matrix: `Q`, `Q`,
+/// `Q`.
 fn end(
     card: &Card,
     statement: Statement,
@@ -306,7 +308,7 @@ fn end(
     v: &Matrix,
     steps: usize,
 ) -> Vec<f64> {
-    // The momentum of each entry at the velocity v; along Q E and E Q it is Qᵀ p and p Qᵀ.
+    // The momentum of each entry for the velocity v; along Q E and E Q it is Qᵀ p and p Qᵀ.
     let p = body.metric * *v * body.moments;
     let p = match statement {
         Statement::Convective => q.transpose() * p,
@@ -321,8 +323,7 @@ fn end(
     q
 }
 
-/// Every step rounds by some units in the last place, which strains of order one magnify by their rates over the time of
-/// the run.
+/// Every step rounds by several units in the last place; strains of order one amplify these errors over the run.
 const ROUNDING: f64 = 1e-12;
 
 #[test]

@@ -1,8 +1,8 @@
-//! Whether the maps of rods are Poisson (sections 3.5 and 3.7.1 of the thesis leave it open): `D B Dᵀ` against B at the image, D
-//! the derivative of one emitted step by differences of sixth order, B the bracket that is derived from the statement. The rod at
-//! rest along its length in its reduced space of moment and force; the geometrically exact rod in its phase space, and what rotations of
-//! space do to it. Brackets at the wrong end of a step, steps whose length depends on the state, and the tangent carried as
-//! (3.66) prints it fail.
+//! Whether the maps of rods are Poisson (sections 3.5 and 3.7.1 of the thesis leave it open): `D B Dᵀ` against B at
+//! the image, D the derivative of one emitted step by differences of sixth order, B the bracket that is derived from
+//! the statement. The static rod in its reduced space of moment and force; the geometrically exact rod in its phase
+//! space, and the action of rotations of space on it. Brackets at the wrong end of a step, steps whose length depends
+//! on the state, and the tangent advected as (3.66) prints it all fail.
 
 use clebsch::Rotation;
 use clebsch::card::{Card, Field, Kind, Settings};
@@ -20,7 +20,7 @@ const EXACT: &str = include_str!("../../../models/lattices/geometrically-exact-r
 /// products of three matrices of up to thirty rows magnify.
 const TOLERANCE: f64 = 1e-10;
 
-/// The derivative of a map at zero, a column for each coordinate.
+/// The derivative of a map at zero, one column per coordinate.
 fn derivative(size: usize, map: impl Fn(&[f64]) -> Vec<f64>) -> DMatrix<f64> {
     let moved = 1e-2;
     let columns: Vec<Vec<f64>> = (0..size)
@@ -67,8 +67,7 @@ fn value(seen: &[(&'static Field, Vec<f64>)], ascii: &str) -> Vec<f64> {
     found.unwrap_or_else(|| panic!("{ascii}")).1.clone()
 }
 
-/// A rod at rest along its length: a step from moment and force in the section to those in the next one, with the turn
-/// between them.
+/// A static rod: the step from moment and force in one section to the next section, with the rotation between them.
 struct Section {
     card: Card,
     derived: Derivation,
@@ -76,7 +75,7 @@ struct Section {
 }
 
 impl Section {
-    /// The shipped rod, and one that bends more easily one way.
+    /// The shipped rod, and a rod with two different bending stiffnesses.
     fn new(text: &str, parameters: Vec<Vec<f64>>) -> Self {
         Self {
             card: clebsch_interpret::card(text).expect("is read"),
@@ -219,7 +218,7 @@ impl Rod {
                     let v: [f64; 3] = source.vector();
                     row_major(&Rotation::exp(&(Vector3::from(v) * 0.3)).matrix())
                 }
-                // Places along the third axis; momenta.
+                // Positions along the third axis, and momenta.
                 _ => {
                     let v: [f64; 3] = source.vector();
                     let along = if k % 2 == 0 { 0.25 * k as f64 } else { 0.0 };
@@ -330,7 +329,8 @@ fn the_map_of_the_geometrically_exact_rod_is_poisson() {
         let late = rod.defect(&state, true, |x| rod.step(x, h));
         let long = rod.defect(&state, false, |x| rod.step(x, h * (1.0 + 0.1 * x[1][0])));
         assert!(late.min(long) > 1e4 * TOLERANCE, "{h}: {late:e} {long:e}");
-        // Rotations of space commute with the step, so that it acts on what they leave alone: on Λᵀ p, M, Γ and Λᵀ next(Λ).
+        // Rotations of space commute with the step, so the step acts on quantities that they leave invariant: Λᵀ p,
+        // M, Γ and Λᵀ next(Λ).
         let turn = Rotation::exp(&Vector3::new(0.7, -0.4, 1.1)).matrix();
         let turned = |x: &State| -> State {
             let each = x

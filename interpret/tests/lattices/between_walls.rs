@@ -31,7 +31,7 @@ const BODIES: &str = "model Bodies {
         wall { param W: SO<3>; term h*k*(1 + a*sin(w*τ))*tr(W^T*Λ); } }
 }";
 
-/// A turn about an axis that differs from site to site.
+/// A rotation about an axis that differs from site to site.
 fn attitude(site: usize) -> Vec<f64> {
     let angle = 0.4 + 0.3 * site as f64;
     let (s, c) = angle.sin_cos();
@@ -90,13 +90,13 @@ fn an_end_that_holds_a_rotation_is_a_wall_beside_a_shorter_chain() {
                     let one = observed(&*a, &format!("{name}_{}", site + first));
                     let other = observed(&*b, &format!("{name}_{site}"));
                     for (x, y) in one.iter().zip(&other) {
-                        // The roots are found to rounding, and forty steps add it up.
+                        // The roots are accurate to rounding, and forty steps accumulate these errors.
                         assert!((x - y).abs() < 1e-12, "{name} {site}: {one:?} {other:?}");
                     }
                 }
             }
         }
-        // The clocks of prescribed sites advance, too.
+        // The clocks of prescribed sites advance too.
         for (held, site) in [(first, 0), (last, n)] {
             if held == 1 {
                 let told = observed(&*a, &format!("tau_{site}"));
@@ -121,8 +121,8 @@ const RODS: &str = "model Rods {
     end i = N { free; pinned { x = given; } }
 }";
 
-/// A step of the bead by hand: half a kick, the place that is reached with the impulse along the rod that puts it on the
-/// circle, half a kick, and the momentum along the circle.
+/// A step of the bead by hand: half a kick, the position on the circle that an impulse along the rod gives, half a
+/// kick, and the momentum tangent to the circle.
 fn by_hand(x: &mut [f64; 2], p: &mut [f64; 2], about: [f64; 2], m: f64, force: [f64; 2]) {
     let radius = |x: &[f64; 2]| [x[0] - about[0], x[1] - about[1]];
     let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
@@ -130,7 +130,7 @@ fn by_hand(x: &mut [f64; 2], p: &mut [f64; 2], about: [f64; 2], m: f64, force: [
     let length = dot(here, here);
     p[0] += H / 2.0 * force[0];
     let free = [here[0] + H * p[0] / m, here[1] + H * p[1] / m];
-    // |free - s here|² = length, the root near zero.
+    // |free - s here|² = length; the root near zero.
     let (b, c) = (dot(free, here), dot(free, free) - length);
     let s = c / (b + (b * b - length * c).sqrt());
     for i in 0..2 {

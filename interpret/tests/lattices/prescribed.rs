@@ -1,6 +1,6 @@
-//! A quantity that an end prescribes is constant, and nothing else is. The chains have clocks, quantities that fields
-//! and rotations advect, and terms of ends. They are compared with the discrete equations typed by hand and with
-//! shorter chains between walls.
+//! A quantity that an end prescribes is constant; all other quantities move. The chains have clocks, quantities that
+//! fields and rotations advect, and terms of ends. They are compared with the discrete equations typed by hand and
+//! with shorter chains between walls.
 
 use super::{card, choice, observed, started};
 
@@ -14,7 +14,7 @@ enum Beside {
     Forces,
     /// These additions, and a quantity that a field advects.
     Carried,
-    /// A clock at every node drives it, and so do its ends.
+    /// A clock at every node drives the chain, and so do its ends.
     Clock,
     /// Clocks of every kind, and quantities that fields advect at nodes and at segments.
     Everything,
@@ -87,7 +87,7 @@ impl Beside {
     }
 }
 
-/// The numbers of a case, at a site where there is one.
+/// The numbers of a case, at a site if there is one.
 fn value(name: &str, site: Option<usize>) -> f64 {
     let j = site.unwrap_or(0) as f64;
     match name {
@@ -247,7 +247,7 @@ fn agrees(beside: Beside, n: usize, ends: Option<[&'static str; 2]>) {
                 return false;
             }
             let off = (observed(&*t, name)[index] - wanted).abs();
-            // Rounding of numbers of order one over all steps, which springs do not let grow.
+            // Rounding of numbers of order one over all steps; springs do not amplify it.
             assert!(
                 off < 1e-12,
                 "{name} is off by {off:e} after {step} steps: {beside:?} {n} {ends:?}"

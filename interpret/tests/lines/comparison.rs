@@ -77,8 +77,8 @@ pub fn values(fields: &[Field], data: &Data) -> Vec<Vec<f64>> {
     each.collect()
 }
 
-/// Every number that a trajectory shows beside what the line has there; of energies what they have changed
-/// since the start, as the bodies leave out what is constant.
+/// Every number that a trajectory shows, next to the number of the chain; for energies the change since the start,
+/// because the bodies omit constants.
 pub fn beside(
     (card, bodies): (&Card, &dyn Trajectory),
     line: &mut LineTrajectory,
@@ -114,7 +114,7 @@ pub fn beside(
             continue;
         }
         let Some(values) = line.total(invariant.name) else {
-            // An invariant of this choice of ends only, not of every chain.
+            // An invariant for this choice of ends only, not for every chain.
             continue;
         };
         match own.len() == values.len() {
@@ -196,7 +196,7 @@ pub fn move_as_bodies_do(lines: impl IntoIterator<Item = Line>, sites: usize) {
             let pairs = beside((&card, &*bodies), &mut line, &model, energies);
             assert!(pairs.len() > 8, "{case:?}");
             for [x, y] in pairs {
-                // Twenty steps of a few roundings each, of numbers up to ten.
+                // Twenty steps with a few roundings each, for numbers up to ten.
                 assert!(
                     (x - y).abs() < 1e-12 * x.abs().max(10.0),
                     "{case:?}: {x} {y}"
@@ -235,7 +235,7 @@ pub fn go_on(lines: impl IntoIterator<Item = Line>) {
     }
 }
 
-/// The same of composed steps, by the card, of which a process opens some dozens and no more.
+/// The same for composed steps, from the card; a process can open only a few dozen cards.
 pub fn go_on_composed(lines: impl IntoIterator<Item = Line>) {
     for own in lines {
         let case = own.cases.last().expect("has cases");

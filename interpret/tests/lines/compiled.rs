@@ -1,4 +1,4 @@
-//! The compiled lines of the gallery with random data, and the same data as numbers.
+//! The compiled chains of the gallery with random data, and the same data as numbers.
 
 use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
 use clebsch::of_numbers::{OfNumbers, Shown};
@@ -88,7 +88,7 @@ impl Entry for BodyMomentum {
     const NUMBERS: usize = 3;
 }
 
-/// The value of a field of a compiled line: one, or one for each site.
+/// The value of a field of a compiled chain: one value, or one for each site.
 trait Value {
     fn of(name: &'static str, numbers: &[f64]) -> Self;
 }
@@ -315,12 +315,12 @@ impl Line {
     }
 }
 
-/// Numbers around another one.
+/// Random numbers around a given number.
 fn about(middle: f64, list: Vec<f64>) -> Vec<f64> {
     list.iter().map(|x| middle + x).collect()
 }
 
-/// Places along the last axis, as far apart as half of it, with some disorder.
+/// Positions along the last axis, half a unit apart, with random perturbations.
 fn along(list: Vec<f64>) -> Vec<f64> {
     let each = list.into_iter().enumerate();
     each.map(|(k, x)| match k % 3 {
@@ -330,7 +330,7 @@ fn along(list: Vec<f64>) -> Vec<f64> {
     .collect()
 }
 
-/// Matrices of so many sections, of which every third is alike.
+/// Matrices for this number of sections, with period three.
 fn by_threes(n: usize, one: [f64; 9]) -> Vec<f64> {
     let each = (0..n).map(|i| 1.0 + 0.1 * (i % 3) as f64);
     each.flat_map(|x| one.map(|y| x * y)).collect()
@@ -422,7 +422,7 @@ fn rod(case: &Case) -> Data {
     ]))
 }
 
-/// Every first end with every last one.
+/// Every combination of a first and a last end.
 fn pairs(first: &[&'static str], last: &[&'static str]) -> Vec<[&'static str; 2]> {
     let each = first.iter();
     each.flat_map(|a| last.iter().map(|b| [*a, *b])).collect()
@@ -443,7 +443,7 @@ fn cases(ring: bool, ends: &[[&'static str; 2]]) -> Vec<Case> {
         .collect()
 }
 
-/// Every compiled line, with the numbers of its sites and its ends.
+/// Every compiled chain, with the numbers of its sites and its ends.
 pub fn all() -> Vec<Line> {
     let pinned = pairs(&["free", "pinned"], &["free", "pinned"]);
     let mut of_rod = cases(true, &pinned);

@@ -74,7 +74,7 @@ fn rod(case: &Case) -> Data {
     let masses = about(0.5, r.list(nodes, 0.1));
     let mut places = vec![Vector3::new(0.1, -0.2, 0.3)];
     let mut momenta: Vec<f64> = Vec::new();
-    // Sections that spin about their own axes alone leave the line as it is.
+    // Sections that rotate about their own axes only do not change the chain.
     for (i, turn) in turns.chunks(9).enumerate() {
         places.push(places[i] + Matrix3::from_row_slice(turn) * Vector3::z() * 0.5);
         momenta.extend([0.0, 0.0, 0.3 * r.number()]);
@@ -152,7 +152,7 @@ fn charged(case: &Case) -> Data {
         let (x, y) = (places[i], places[(i + 1) % nodes]);
         (y[0] - x[0]).hypot(y[1] - x[1])
     };
-    // At rest: momenta are those that the field gives.
+    // At rest: the momenta are the momenta of the field.
     let (f, b) = (0.7, 0.2);
     Data(BTreeMap::from([
         ("m", about(1.0, r.list(nodes, 0.2))),
@@ -176,7 +176,7 @@ fn charged(case: &Case) -> Data {
     ]))
 }
 
-/// All of them, with the numbers of their sites and their ends.
+/// All chains, with the numbers of their sites and their ends.
 pub fn all() -> [Line; 3] {
     let of_rod = pairs(&["free", "pinned", "clamped"], &["free", "pinned", "load"]);
     let pinned = pairs(&["free", "pinned"], &["free", "pinned"]);

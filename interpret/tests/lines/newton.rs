@@ -1,9 +1,9 @@
-//! Lines whose sites are solved by Newton's method, stated here.
+//! Chains whose sites are solved by Newton's method, stated in this file.
 
 use super::*;
 
 clebsch::model! {
-    /// Beads in the plane whose masses change with a number that moves as well.
+    /// Beads in the plane whose masses depend on another dynamic number.
     pub model Beads {
         label i in 0..N;
         periodic;
@@ -19,7 +19,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A number with a potential in the middle of the step that has folds, held at an end.
+    /// A number with a potential at the midpoint of the step, which causes folds; one end may be prescribed.
     pub model Steep {
         label i in 0..N;
         end i = 0 { free; pinned { q = given; } }

@@ -1,4 +1,4 @@
-//! Lines in unit quaternions, their signs given at random.
+//! Chains in unit quaternions with random signs.
 
 use super::*;
 use clebsch_models::lattices::quaternion_rod::*;

@@ -1,4 +1,4 @@
-//! Beads in space that are joined by springs: totals about positions that one or both ends prescribe.
+//! Beads in space connected by springs: totals about positions that one or both ends prescribe.
 
 use super::*;
 
@@ -29,7 +29,7 @@ compiled!(
     ]
 );
 
-/// Beads with random data; none of them moves at the start that an end holds.
+/// Beads with random data; prescribed beads are initially at rest.
 fn beads(case: &Case) -> Data {
     let mut r = Random(21 + case.n as u64);
     let nodes = case.nodes();
@@ -42,7 +42,7 @@ fn beads(case: &Case) -> Data {
     ]))
 }
 
-/// It with the numbers of sites and the ends.
+/// The chain with the numbers of sites and the ends.
 pub fn line() -> Line {
     Line {
         source: Strung::<f64>::SOURCE,

@@ -1,5 +1,5 @@
-//! Lines with constraints on sums over sites, with data that are on them: a rod of one tension, beads whose centre
-//! of mass and whose sum of squares are held.
+//! Chains with constraints on sums over sites, with data that satisfy them: a rod of uniform tension, beads with a
+//! fixed centre of mass and a fixed sum of squares.
 
 use super::*;
 use clebsch::nalgebra::Vector2;
@@ -8,7 +8,7 @@ use clebsch_models::lattices::uniform_tension_rod::*;
 const ROD: &str = include_str!("../../../models/lattices/uniform-tension-rod.clebsch");
 
 clebsch::model! {
-    /// Beads in the plane whose centre of mass is held, and the sum of the squares of their distances.
+    /// Beads in the plane whose centre of mass and sum of squared distances are constrained.
     pub model HeldBeads {
         label i in 0..N;
         periodic;
@@ -58,7 +58,7 @@ fn rod(case: &Case) -> Data {
         .chunks(9)
         .map(|turn| Matrix3::from_row_slice(turn) * Vector3::z() * 0.5)
         .sum();
-    // Sections that spin about their own axes alone leave the line as it is.
+    // Sections that rotate about their own axes only do not change the chain.
     let spins = (0..n).flat_map(|_| [0.0, 0.0, 0.3 * r.number()]).collect();
     Data(BTreeMap::from([
         ("s", vec![0.5]),
@@ -95,7 +95,7 @@ fn beads(case: &Case) -> Data {
     ]))
 }
 
-/// All of them, with the numbers of their sites and their ends.
+/// All chains, with the numbers of their sites and their ends.
 pub fn all() -> [Line; 2] {
     let both = |held: &'static str| [["free", "free"], [held, "free"], [held, held]];
     let beyond = |least: usize, held: &'static str| {

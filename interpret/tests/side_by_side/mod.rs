@@ -1,4 +1,4 @@
-//! A built model and the same model read from its text, side by side.
+//! A compiled model and the same model from its text, side by side.
 
 use clebsch::card::{Card, OpenError, Settings, Trajectory};
 use clebsch_models::Case;

@@ -12,7 +12,7 @@ pub struct Draw {
     pub h: f64,
     pub mass: f64,
     pub momentum: f64,
-    /// Whether elements start at the identity and places near zero, where increments are shown in full.
+    /// Whether elements start at the identity and positions near zero, where increments have all digits.
     pub fine: bool,
 }
 

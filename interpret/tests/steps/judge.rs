@@ -1,4 +1,5 @@
-//! Judges one model: from random data, each step is run from the text and solved by the oracle. Wrong data must be detected.
+//! Judges one model: from random data, each step is run from the text and solved by the oracle. Wrong data must be
+//! detected.
 
 use super::data::{Data, Draw, drawn};
 use super::posed::{observed, problem, turned};
@@ -11,8 +12,8 @@ use clebsch_oracle::oracle::step::{Problem, Solved};
 /// A step must be correct to twelve digits.
 pub const WANTED: f64 = 1e-12;
 
-/// Where the data leave more open: a step takes some hundred operations, which round independently, and each is worth
-/// a datum changed by its last bit.
+/// If the data determine the step less accurately: a step takes several hundred operations, which round
+/// independently, and each counts as a datum with a changed last bit.
 pub const OPERATIONS: f64 = 32.0;
 
 /// The relative error of a wrong datum.
@@ -44,7 +45,7 @@ pub struct Found {
     /// Successful steps whose root the oracle does not reach from rest.
     pub lost: usize,
     pub wrong: Vec<Wrong>,
-    /// Data whose errors remain undetected.
+    /// Wrong data that remain undetected.
     pub unseen: usize,
     pub unseen_names: Vec<String>,
 }
@@ -146,7 +147,7 @@ fn step(row: &Row, card: &Card, draw: &Draw, data: &Data, source: &mut Source, f
     }
 }
 
-/// The data with one of them wrong: of each field one number that is not zero. Elements of groups are turned instead.
+/// The data with a wrong value: one nonzero number of each field. Elements of groups are turned instead.
 fn faults(card: &Card, data: &Data, source: &mut Source) -> Vec<(String, Data)> {
     let mut out = Vec::new();
     for (which, fields) in [card.parameters, card.initial].into_iter().enumerate() {
@@ -172,7 +173,7 @@ fn faults(card: &Card, data: &Data, source: &mut Source) -> Vec<(String, Data)> 
     out
 }
 
-/// Makes one number wrong; symmetric and skew matrices stay so.
+/// Makes one number wrong; symmetric and skew matrices keep their structure.
 fn spoil(field: &Field, list: &mut [f64], k: usize) {
     let (r, c) = (k / field.cols, k % field.cols);
     let across = match field.rows == field.cols {

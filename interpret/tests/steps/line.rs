@@ -1,4 +1,4 @@
-//! A model with labels of the table, for several numbers of sites and ends.
+//! A model with labels from the table, for several numbers of sites and ends.
 
 use super::judge;
 use super::judge::{Found, Wrong};
@@ -137,7 +137,7 @@ impl Line {
         }
     }
 
-    /// One step of the model by loops over sites: what moves and momenta, as the oracle has them.
+    /// One step of the model by loops over sites: moving quantities and momenta, in the form of the oracle.
     fn stepped(
         &self,
         model: &Arc<LineModel>,

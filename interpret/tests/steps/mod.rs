@@ -1,5 +1,5 @@
-//! One step of models read from their texts, against the two end equations solved apart from the engine in 32 digits:
-//! places and momenta, from random states, for three steps and five scales of masses and momenta.
+//! One step of models from their texts, against the two end equations solved independently of the engine with 32
+//! digits: positions and momenta, from random states, for three step sizes and five scales of masses and momenta.
 
 #[allow(dead_code)]
 pub mod data;
@@ -29,7 +29,7 @@ struct Judged {
     found: Found,
 }
 
-/// Judges all models, prints what was measured, and panics with all that is wrong.
+/// Judges all models, prints the measurements, and panics with all failures.
 fn print_table<R>(rows: &[R], name: impl Fn(&R) -> &'static str, judge: impl Fn(&R) -> Judged) {
     let mut wrong = Vec::new();
     let asked = std::env::var("CLEBSCH_STEP_OF").ok();

@@ -1,5 +1,5 @@
 //! Data of a card as the oracle has them: elements exactly in their groups, momenta along the directions of a basis.
-//! Takes values of a card; gives a problem to solve, and what a state shows.
+//! Takes values of a card; gives a problem to solve, and the numbers that a state shows.
 
 use super::data::{Data, Draw, moving};
 use super::row::Row;
@@ -78,7 +78,7 @@ pub fn along(element: &Field, momentum: &Field, list: &[f64]) -> Vec<f64> {
     }
 }
 
-/// The starts that differ from this by a small turn: one for each direction of each element of a group.
+/// The starts that differ from this start by a small rotation: one for each direction of each group element.
 pub fn turned(card: &Card, data: &Data, problem: &Problem, by: f64) -> Vec<(String, Data)> {
     let mut out = Vec::new();
     let all = moving(card).into_iter().filter(|(_, p)| p.is_some());

@@ -1,11 +1,11 @@
-//! Quantities along a line of sites: where they live, what they are, and random values of them.
-//! Takes a kind and scales; gives numbers as the model takes them and as the oracle has them.
+//! Quantities along a chain of sites: where they are defined, their kinds, and random values. Takes a kind and
+//! scales; gives numbers as the model takes them and as the oracle has them.
 
 use clebsch_oracle::oracle::pair::Pair;
 use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::step::Motion;
 
-/// Where a quantity lives.
+/// The sites of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum At {
     Whole,
@@ -16,7 +16,7 @@ pub enum At {
 /// The kind of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum What {
-    /// A number or a vector of so many components.
+    /// A number or a vector with this number of components.
     Vector(usize),
     /// One that is positive.
     Positive,
@@ -35,7 +35,7 @@ pub enum What {
 /// A quantity.
 pub type Quantity = (&'static str, At, What);
 
-/// Numbers of segments and how the line ends; a ring where that is not said.
+/// The number of segments and the end conditions; a ring unless stated otherwise.
 pub type Sites = (usize, Option<[&'static str; 2]>);
 
 impl At {

@@ -1,4 +1,4 @@
-//! A model of the table: its text, its action typed by hand, and what is known of its steps.
+//! A model of the table: its text, its action typed by hand, and known facts about its steps.
 
 use clebsch_oracle::oracle::step::Action;
 
@@ -14,7 +14,7 @@ pub struct Row {
     pub action: Action,
     /// Parameters that are inertias: positive, and of the scale of masses.
     pub inertias: &'static [&'static str],
-    /// Numbers and places that stay positive.
+    /// Numbers and positions that stay positive.
     pub positive: &'static [&'static str],
     /// Moves random data onto the constraints.
     pub settle: fn(&mut Named),

@@ -1,4 +1,4 @@
-//! Words of the language as generic functions: what actions are typed with.
+//! Words of the language as generic functions, in which actions are typed.
 
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::square::{Square, dot};
@@ -37,7 +37,7 @@ pub fn times<T: Number, const N: usize>(x: T, a: &[T; N]) -> [T; N] {
     a.map(|y| x * y)
 }
 
-/// `-tr(J*R^T*next(R))/h`, whatever the side of the velocity.
+/// `-tr(J*R^T*next(R))/h`, for either side of the velocity.
 pub fn body<T: Number, const N: usize>(e: &Edge<'_, T>, moments: &str, attitude: &str) -> T {
     -(e.given.square::<N>(moments) * e.turn(attitude)).trace() / e.h
 }
@@ -54,12 +54,12 @@ pub fn point<T: Number>(e: &Edge<'_, T>, mass: &str, place: &str) -> T {
 
 /// The number of segments, and whether they form a ring.
 pub fn extent<T: Number>(e: &Edge<'_, T>) -> (usize, bool) {
-    // Rounded: they are numbers among others, of which last bits may change.
+    // Rounded, since they are data whose last bits may change.
     let count = e.given.real("N").value().round() as usize;
     (count, e.given.real("ring").value() > 0.5)
 }
 
-/// The segments of a line with the nodes at their ends, and whether they go across the seam of a ring.
+/// The segments of a chain with the nodes at their ends, and whether they cross the seam of a ring.
 pub fn segments<T: Number>(e: &Edge<'_, T>) -> Vec<(usize, usize, bool)> {
     let (count, is_ring) = extent(e);
     let each = (0..count).map(|i| match is_ring && i + 1 == count {

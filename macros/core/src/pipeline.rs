@@ -1,4 +1,4 @@
-//! The whole way from text to derivation, one line a stage.
+//! The stages from text to derivation, one line per stage.
 
 use crate::check::{
     self,
@@ -19,8 +19,8 @@ pub fn derive_tokens(tokens: TokenStream) -> Result<Derivation, Errors> {
     derive_model(&syntax::parse(tokens)?)
 }
 
-/// Derives the model that a text states: the same, outside a compiler. The text is a bare
-/// `model NAME { ... }`, or Rust source that holds one `model! { ... }`.
+/// Derives the model that a text states, outside a compiler, with the same result as the macro. The text is a bare
+/// `model NAME { ... }`, or Rust source that contains one `model! { ... }`.
 pub fn derive_source(source: &str) -> Result<Derivation, Errors> {
     derive_model(&parse_source(source)?)
 }
@@ -47,13 +47,13 @@ pub fn representative(model: &Model, line: &Lattice) -> Result<ChainConfig, Erro
     Ok(ChainConfig::representative(line, width))
 }
 
-/// How many times the work of an ordinary model a lattice is given: as many as it has copies, the work
-/// of each growing with their number.
+/// The work limit of a lattice as a multiple of the limit of an ordinary model: proportional to its number of copies,
+/// because the work for each copy grows with their number.
 fn room(unfolded: &ExpandedModel) -> u64 {
     (unfolded.copies.len() as u64 / 4).max(4)
 }
 
-/// Derives a model with labels for so many sites and these end conditions.
+/// Derives a model with labels for this number of sites and these end conditions.
 pub fn derive_lattice(
     model: &Model,
     line: &Lattice,
@@ -66,7 +66,7 @@ pub fn derive_lattice(
     Ok((unfolded, derived))
 }
 
-/// A lattice that is written out, checked: its configurations know of what they are copies.
+/// Checks an expanded lattice, whose configurations store the quantity and site of which they are copies.
 fn written_out(
     unfolded: &ExpandedModel,
     line: &Lattice,
@@ -97,7 +97,7 @@ fn written_out(
     Ok(spec)
 }
 
-/// The beginning of the same.
+/// The first stages of the derivation of a lattice, see [`derive_lattice`].
 pub fn outline_lattice(
     model: &Model,
     line: &Lattice,
@@ -163,7 +163,7 @@ pub fn emitted(model: &Model) -> Result<Derivation, Errors> {
     }
 }
 
-/// The inside of the only `model! { ... }` of a Rust source, or the tokens as they are.
+/// The contents of the only `model! { ... }` in Rust source, otherwise the tokens unchanged.
 fn invocation(tokens: TokenStream) -> Result<TokenStream, Errors> {
     let trees: Vec<TokenTree> = tokens.clone().into_iter().collect();
     let mut found: Option<TokenStream> = None;

@@ -1,9 +1,9 @@
 //! Where the straight line `(1 - s) Q + s Q V` from a linear map to the next meets `det = 0`.
 //! Takes the velocity `V`; gives the first share `s` of the step.
 //!
-//! `det((1 - s) 1 + s V)` is a polynomial in `s` whose coefficients in the basis of Bernstein are
-//! the elementary symmetric functions of the eigenvalues, each over its binomial coefficient. If
-//! they are positive, so is the polynomial; bisection finds the first point where it is not.
+//! `det((1 - s) 1 + s V)` is a polynomial in `s`. Its coefficients in the Bernstein basis are the elementary
+//! symmetric functions of the eigenvalues, each divided by its binomial coefficient. If they are positive, so is the
+//! polynomial; bisection finds the first point where it is not.
 
 use crate::linalg::{Dense, determinant};
 use nalgebra::SMatrix;
@@ -14,12 +14,13 @@ const MOST: usize = 9;
 /// Halvings after which an interval is a point.
 const HALVINGS: u32 = 53;
 
-/// A determinant of so many roundings of the coefficients is zero: each is a sum of at most ten
-/// minors, and halving adds one rounding a coefficient. If a motion only touches zero, the
-/// determinant does not change its sign.
+/// A determinant counts as zero if it is at most this many roundings of the coefficients: each coefficient is a sum
+/// of at most ten minors, and each halving adds one rounding. If a motion only touches zero, the determinant does not
+/// change its sign.
 const ROUNDINGS: f64 = 64.0;
 
-/// A crossing is found to this at least where zero is taken for so many roundings: the root of them.
+/// The largest distance of a sign change from the point at which the determinant counts as zero, if both belong to
+/// one zero. It is above the square root of `ROUNDINGS` roundings.
 const SHARPER: f64 = 1e-6;
 
 /// The first `s` from 0 to 1 at which the determinant is zero, or negative to rounding; also where
@@ -42,7 +43,7 @@ fn by_minors(n: usize, symmetric: impl Fn(usize) -> f64) -> Option<f64> {
         *c = symmetric(k) / binomial;
         binomial *= (n - k) as f64 / (k + 1) as f64;
     }
-    // Sums of positive numbers lose nothing, however small.
+    // Sums of positive numbers lose no digits, however small the numbers are.
     if coefficients.iter().all(|c| *c > 0.0) {
         return None;
     }
@@ -94,7 +95,7 @@ fn symmetric_of(a: &Dense<f64>, k: usize) -> f64 {
     sum
 }
 
-/// The first place in an interval where the polynomial of these coefficients is not above `zero`.
+/// The first point in an interval at which the polynomial with these coefficients does not exceed `zero`.
 fn first(coefficients: &[f64], zero: f64, from: f64, to: f64, halved: u32) -> Option<f64> {
     if coefficients.iter().all(|c| *c > zero) {
         return None;
@@ -129,7 +130,7 @@ mod tests {
     }
 
     fn diagonal(a: f64, b: f64, c: f64) -> Matrix3<f64> {
-        // Between other axes, not orthogonal ones.
+        // The same in a basis that is not orthogonal.
         let frame = Matrix3::new(1.0, 0.3, -0.2, 0.1, 1.2, 0.4, -0.5, 0.2, 0.9);
         let back = frame.try_inverse().unwrap();
         frame * Matrix3::from_diagonal(&Vector3::new(a, b, c)) * back
@@ -172,7 +173,7 @@ mod tests {
             let (s, c) = f64::sin_cos(angle);
             assert_eq!(contact(&Matrix2::new(c, -s, s, c)), None, "{angle}");
         }
-        // A shear is far from the identity and near to nothing singular.
+        // A shear is far from the identity, but not near a singular matrix.
         assert_eq!(contact(&Matrix2::new(1.0, 50.0, 0.0, 1.0)), None);
     }
 

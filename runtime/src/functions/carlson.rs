@@ -13,20 +13,21 @@ use nalgebra::SMatrix;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct carlson_rf;
 
-/// Duplications after which nothing changes any more: each leaves a quarter of the differences.
+/// The number of duplications after which nothing changes: each reduces the differences to a quarter.
 const MOST: usize = 64;
 
-/// Where the series is exact to rounding with its derivatives: deviations of 3e-3 to the seventh power.
+/// Below this, the series and its derivatives are exact to rounding: its error is the seventh power of deviations of
+/// 3e-3.
 const NEAR: f64 = 1e-5;
 
-/// Where it is exact to rounding with its second derivatives.
+/// The same with second derivatives.
 const NEARER: f64 = 1e-10;
 
 /// Newton's iterations for the trace of the root, which converge from above.
 const MOST_CORRECTIONS: usize = 64;
 
 impl carlson_rf {
-    /// R_F(B) of a symmetric positive definite matrix; NaN where it is not.
+    /// R_F(B) of a symmetric positive definite matrix; NaN for any other matrix.
     #[must_use]
     pub fn value<T: Real>(&self, b: &SMatrix<T, 3, 3>) -> T {
         integral(invariants(b), []).value
@@ -93,7 +94,7 @@ impl carlson_rf {
 pub struct carlson_rf_of_invariants;
 
 impl carlson_rf_of_invariants {
-    /// R_F of a matrix with these invariants; NaN where it is not positive definite.
+    /// R_F of a matrix with these invariants; NaN unless the matrix is positive definite.
     #[must_use]
     pub fn value<T: Real>(&self, first: &T, second: &T, third: &T) -> T {
         integral([*first, *second, *third], []).value
@@ -284,9 +285,9 @@ fn duplicated<A: Number, const N: usize>([first, second, third]: [Jet<A, N>; 3])
     ]
 }
 
-/// The trace `u` of the root of B, the largest root of `((u² - I1)/2)² = I2 + 2 √I3 u`. It is found in plain numbers,
-/// lane by lane, and improved in the scalar at hand, the last time with derivatives: bounds of rounding then do not
-/// accumulate over the iterations.
+/// The trace `u` of the root of B, the largest root of `((u² - I1)/2)² = I2 + 2 √I3 u`. The iteration uses plain
+/// numbers, lane by lane; final corrections use the scalar type, the last of them with derivatives. Rounding bounds
+/// then do not accumulate over the iterations.
 fn trace_of_root<A: Number, const N: usize>(
     first: Jet<A, N>,
     second: Jet<A, N>,

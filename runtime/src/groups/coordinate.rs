@@ -1,5 +1,5 @@
-//! The meaning of one coordinate of a Lie algebra, and of the corresponding component of a momentum.
-//! Takes its index; gives words for errors.
+//! The meaning of one coordinate of a Lie algebra, and of the corresponding component of a momentum. Takes its index;
+//! gives the words for messages.
 
 use core::fmt;
 
@@ -28,7 +28,7 @@ pub enum Part {
     Entry(u8, u8),
 }
 
-/// An index as the stored type, which can hold every index of a group.
+/// An index in the stored type, whose range covers the coordinates of all groups.
 fn small(index: usize) -> u8 {
     u8::try_from(index).unwrap_or(u8::MAX)
 }
@@ -74,7 +74,7 @@ impl Part {
         }
     }
 
-    /// The plane with this place among the pairs `i < j` of `n` axes, row by row.
+    /// The plane with this index among the pairs `i < j` of `n` axes, row by row.
     #[must_use]
     pub fn of_pair(index: usize, n: usize) -> Self {
         let mut pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));

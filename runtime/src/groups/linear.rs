@@ -89,10 +89,10 @@ impl<const N: usize, T: Real> Linear<N, T> {
     }
 }
 
-/// Whether a matrix is one of [`Linear::from_matrix`], of any size.
+/// Checks that [`Linear::from_matrix`] would accept a matrix, for any size.
 ///
 /// # Errors
-/// As there.
+/// The same as [`Linear::from_matrix`].
 pub fn invertible_map<T: Real>(a: &Dense<T>) -> Result<(), NotInvertible> {
     if !a.is_finite() {
         return Err(NotInvertible::NotFinite);
@@ -150,7 +150,7 @@ impl<const N: usize, T: Real> Group<T> for Linear<N, T> {
         Coordinate::of(Part::entry(index, N))
     }
 
-    /// Zero for every invertible matrix: rounding does not carry it off the group. NaN otherwise.
+    /// Zero for every invertible matrix: rounding cannot move it off the group. NaN otherwise.
     fn distance_from_group(&self) -> f64 {
         match inverse(&self.matrix) {
             Some(_) => 0.0,
@@ -189,7 +189,7 @@ impl<const N: usize, T: Real> Linear<N, T> {
 impl<const N: usize, T: Real> Coadjoint<T> for Linear<N, T> {
     type Covector = SMatrix<T, N, N>;
 
-    /// `Q^-T M Q^T`: what pairs with `Q X Q^-1` as `M` does with `X`, in `<A, B> = tr(A^T B)`.
+    /// `Q^-T M Q^T`: its pairing with `Q X Q^-1` equals the pairing of `M` with `X`, for `<A, B> = tr(A^T B)`.
     #[inline]
     fn covector_to_space(&self, body: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         self.inverse().matrix.tr_mul(body) * self.matrix.transpose()

@@ -1,18 +1,17 @@
-//! Momenta of matrix groups, by the frame they are seen from.
-//! Takes and gives covectors of the Lie algebra as matrices: skew for SO(n), any for GL(n).
+//! Momenta of matrix groups, by frame. Takes and gives covectors of the Lie algebra as matrices: skew for SO(n), any
+//! for GL(n).
 
 use super::Coadjoint;
 use crate::Real;
 use crate::scalar::of_scalars;
 use nalgebra::SMatrix;
 
-/// A node momentum seen from the body, an n x n matrix: it pairs with a body velocity `X` as
-/// `tr(M^T X)/2` for SO(n), where it is skew, and as `tr(M^T X)` for GL(n).
+/// A node momentum in the body frame, an n x n matrix: it pairs with a body velocity `X` as `tr(M^T X)/2` for SO(n),
+/// where it is skew, and as `tr(M^T X)` for GL(n).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyMomentumMatrix<const N: usize, T = f64>(pub SMatrix<T, N, N>);
 
-/// A node momentum seen from space, an n x n matrix paired as [`BodyMomentumMatrix`]; a free motion
-/// keeps it.
+/// A node momentum in the space frame, an n x n matrix paired like [`BodyMomentumMatrix`]; free motion conserves it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpatialMomentumMatrix<const N: usize, T = f64>(pub SMatrix<T, N, N>);
 

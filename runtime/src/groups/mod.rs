@@ -1,5 +1,5 @@
-//! Matrix Lie groups as the solvers see them, one file a group, and their products.
-//! Takes group elements and algebra coordinates; gives group elements.
+//! Matrix Lie groups for the solvers, one file per group, and their products. Takes group elements and algebra
+//! coordinates; gives group elements.
 
 mod additive;
 mod coordinate;
@@ -29,7 +29,7 @@ pub use turned::TurnedRotation;
 use crate::scalar::Real;
 use nalgebra::SMatrix;
 
-/// Forwards operations of [`Group`] to the inherent methods of the same names.
+/// Forwards operations of [`Group`] to the inherent methods with the same names.
 macro_rules! own_operations {
     () => {
         #[inline]
@@ -52,7 +52,7 @@ use own_operations;
 
 /// A Lie group with the operations that an iteration on it needs.
 ///
-/// Laws every implementation keeps to rounding: associativity, neutral element, inverses, and
+/// Laws that every implementation satisfies to rounding: associativity, neutral element, inverses, and
 /// `g.retract(xi) = g . (1 + hat(xi) + O(xi^2))`.
 pub trait Group<T>: Copy {
     /// Dimension of the Lie algebra, the number of coordinates [`Group::retract`] reads.
@@ -91,9 +91,9 @@ pub trait Group<T>: Copy {
         Self::identity().retract(xi).compose(self)
     }
 
-    /// An element near the combination of `element(0)`, `element(1)`, ... with weights that add up to
-    /// one, entry by entry. It extrapolates velocities that vary smoothly along a trajectory. If a
-    /// group cannot compute it cheaply, it returns the first element.
+    /// An element near the combination of `element(0)`, `element(1)`, ... entry by entry, with weights whose sum is
+    /// one. It extrapolates velocities that vary smoothly along a trajectory. If a group cannot compute it cheaply,
+    /// it returns the first element.
     #[inline(always)]
     fn combined(_weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
         element(0)
@@ -104,11 +104,11 @@ pub trait Group<T>: Copy {
         Coordinate::of(Part::axis(index))
     }
 
-    /// How far rounding has carried the element off the group, in the units of its entries.
+    /// The distance by which rounding has moved the element off the group, in the units of its entries.
     fn distance_from_group(&self) -> f64;
 
-    /// How many parts the coordinates have, each measured by its own length: angles and
-    /// translations do not add up.
+    /// The number of parts of the coordinates, each measured by its own length, because angles and translations
+    /// cannot be added.
     const PARTS: usize = 1;
 
     /// The part that a coordinate belongs to.
@@ -117,8 +117,8 @@ pub trait Group<T>: Copy {
         0
     }
 
-    /// Whether the coordinates of a part are pure numbers, as angles are. Parts that are lengths
-    /// follow the angles of the same element.
+    /// Whether the coordinates of a part are pure numbers, as angles are. Parts that are lengths come after the
+    /// angles of the same element.
     #[must_use]
     fn is_pure(_part: usize) -> bool {
         true
@@ -131,9 +131,9 @@ pub trait Group<T>: Copy {
         false
     }
 
-    /// The squares of the lengths of the coordinates `x` of the element seen from the neutral one,
-    /// `identity().retract(x)`, and of their distances from `xi`, part by part, in every lane. They are infinite or NaN
-    /// if such coordinates do not exist. Missing coordinates of `xi` count as zero.
+    /// The squared lengths of the coordinates `x` of the element relative to the neutral element,
+    /// `identity().retract(x)`, and their squared distances from `xi`, part by part, in every lane. They are infinite
+    /// or NaN if such coordinates do not exist. Missing coordinates of `xi` count as zero.
     fn compared(&self, xi: &[T], out: &mut [[T; 2]]);
 
     /// Whether the length of each part is at most its entry of `reach`, in every lane.
@@ -155,14 +155,14 @@ fn squares<T: Real, const R: usize, const C: usize>(own: &SMatrix<T, R, C>, xi: 
     [length, off]
 }
 
-/// How covectors of the Lie algebra, momenta, change between body and space.
+/// How covectors of the Lie algebra, that is momenta, transform between body and space.
 pub trait Coadjoint<T>: Group<T> {
     /// A covector: a vector for SO(3), an n x n matrix for matrix groups.
     type Covector: Copy;
 
-    /// A covector of the body frame seen from space: `<m, g X g^-1> = <mu, X>`.
+    /// A covector of the body frame in the space frame: `<m, g X g^-1> = <mu, X>`.
     fn covector_to_space(&self, body: &Self::Covector) -> Self::Covector;
 
-    /// A covector of the space frame seen from the body.
+    /// A covector of the space frame in the body frame.
     fn covector_to_body(&self, spatial: &Self::Covector) -> Self::Covector;
 }

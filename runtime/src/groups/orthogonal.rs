@@ -1,5 +1,5 @@
-//! Rotations of n-dimensional space, SO(n), kept as orthogonal matrices. Takes matrices or algebra
-//! coordinates; gives elements that stay orthogonal in arbitrarily long products.
+//! Rotations of n-dimensional space, SO(n), stored as orthogonal matrices. Takes matrices or algebra coordinates;
+//! gives elements that stay orthogonal in arbitrarily long products.
 
 use super::{Coadjoint, Coordinate, Group, NotARotation, Part};
 use crate::Real;
@@ -9,8 +9,8 @@ use nalgebra::SMatrix;
 
 /// A rotation of n-dimensional space, by convention from body to space: `v_space = R v_body`.
 ///
-/// Products and retractions are made orthogonal again by one Newton step, so that rounding does not
-/// add up. For three dimensions [`Rotation`](super::Rotation) is shorter and faster.
+/// Products and retractions are made orthogonal again by one Newton step, so that rounding errors do not accumulate.
+/// For three dimensions [`Rotation`](super::Rotation) is shorter and faster.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orthogonal<const N: usize, T = f64> {
     matrix: SMatrix<T, N, N>,
@@ -18,11 +18,11 @@ pub struct Orthogonal<const N: usize, T = f64> {
 
 of_scalars!(Orthogonal<N> { matrix });
 
-/// Input data typed with ten digits is accepted and made orthonormal; anything worse is a mistake.
+/// Input data typed with ten digits are accepted and made orthonormal; larger defects are treated as mistakes.
 const ALLOWED_DEFECT: f64 = 1e-9;
 
-/// Newton steps that take a defect of [`ALLOWED_DEFECT`] to rounding, for double-double too: each
-/// squares it.
+/// Newton steps that reduce a defect of [`ALLOWED_DEFECT`] to rounding, even in double-double: each step squares the
+/// defect.
 const STEPS_FROM_INPUT: usize = 2;
 
 impl<const N: usize, T: Real> Orthogonal<N, T> {
@@ -46,8 +46,7 @@ impl<const N: usize, T: Real> Orthogonal<N, T> {
         })
     }
 
-    /// A matrix that the caller knows to be a rotation up to rounding: it is made orthogonal to
-    /// working precision.
+    /// A matrix that the caller knows to be a rotation up to rounding: the result is orthogonal to working precision.
     #[inline]
     pub(crate) fn nearby(a: &SMatrix<T, N, N>) -> Self {
         Self {
@@ -55,7 +54,7 @@ impl<const N: usize, T: Real> Orthogonal<N, T> {
         }
     }
 
-    /// The rotation of space with this quaternion, where `N` is three; the identity otherwise.
+    /// The rotation of space with this quaternion, if `N` is three; the identity otherwise.
     #[inline]
     pub(crate) fn of_rotation(r: &super::Rotation<T>) -> Self {
         let matrix = r.matrix();

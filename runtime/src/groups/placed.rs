@@ -1,7 +1,6 @@
-//! Elements with a position that steps add to: fields and rigid motions. Positions and momenta are
-//! stored as two numbers, so that steps of any size add up without loss.
-//! Takes an element, its velocity in the body frame and the rest left by rounding; gives element and rest after the
-//! edge.
+//! Elements with a position that steps add to: fields and rigid motions. Positions and momenta are stored as two
+//! numbers, so that steps of any size add up without loss. Takes an element, its velocity in the body frame and the
+//! rounding remainder; gives element and remainder after the edge.
 
 use super::{Coadjoint, Group};
 use crate::Real;
@@ -9,9 +8,9 @@ use nalgebra::SMatrix;
 
 /// A group whose elements have a position: the value of a field, the translation of a rigid motion.
 ///
-/// The exact position of an element is the stored one plus a rest, which is below the rounding of the
-/// stored one. Without the rest, rounding errors of a motion in small steps accumulate in one
-/// direction, and so do the errors of every conserved moment about a fixed point.
+/// The exact position of an element is the stored position plus a remainder, which is below the rounding of the
+/// stored position. Without the remainder, rounding errors of a motion in small steps accumulate in one direction,
+/// and so do the errors of every conserved moment about a fixed point.
 pub trait Placed<T>: Group<T> {
     /// The displacement from one position to another, in the axes of space.
     type Way: Copy;
@@ -19,16 +18,15 @@ pub trait Placed<T>: Group<T> {
     /// The displacement along the edge of this velocity (body frame).
     fn way(&self, velocity: &Self) -> Self::Way;
 
-    /// The element at the end of the edge, `self . velocity`, and its rest; `rest` belongs to `self`.
+    /// The element at the end of the edge, `self . velocity`, and its remainder; `rest` belongs to `self`.
     fn moved(&self, velocity: &Self, rest: &Self::Way) -> (Self, Self::Way);
 
-    /// The velocity (body frame) from this element to the `next` one, given the rests of both.
+    /// The velocity (body frame) from this element to the `next` one, given the remainders of both.
     fn velocity_between(&self, rest: &Self::Way, next: &Self, next_rest: &Self::Way) -> Self;
 }
 
-/// Momenta of rigid motions about the body's own origin, in the axes of space: `(R a, R l)` of the
-/// body's `(a, l)`. They do not depend on the position, so the spin is as accurate far from the
-/// origin of space as near it.
+/// Momenta of rigid motions about the body's own origin, in the axes of space: `(R a, R l)` of the body's `(a, l)`.
+/// They do not depend on the position, so the spin is equally accurate far from the origin and near it.
 pub trait AboutBody<T>: Placed<T> + Coadjoint<T> {
     /// A covector of the body frame in the axes of space.
     fn covector_turned(&self, body: &Self::Covector) -> Self::Covector;
@@ -41,7 +39,7 @@ pub trait AboutBody<T>: Placed<T> + Coadjoint<T> {
     fn gained_along(&self, velocity: &Self, turned: &Self::Covector) -> Self::Covector;
 }
 
-/// `value + rest + added` as a value and its rest: the sum in two numbers (Knuth).
+/// `value + rest + added` as a value and its remainder, by Knuth's two-sum.
 #[inline(always)]
 #[must_use]
 pub fn added<T: Real, const R: usize, const C: usize>(

@@ -11,7 +11,7 @@ use nalgebra::{Matrix2, Matrix3, SVector, Vector2};
 
 /// A rigid motion of the plane, by convention from the body: `p_plane = R p_body + x`.
 ///
-/// The coordinates of its Lie algebra are `(ω, v)`, one angular and two linear. They denote the matrix
+/// The coordinates of its Lie algebra are `(ω, v)`, one angular and two linear. They represent the matrix
 /// `[ω i, v; 0 0]` with the quarter turn `i`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneMotion<T = f64> {
@@ -26,7 +26,7 @@ of_scalars!(PlaneMotion {
     translation
 });
 
-/// A vector after a quarter turn.
+/// A vector rotated by a quarter turn.
 fn quarter<T: Real>(v: &Vector2<T>) -> Vector2<T> {
     Vector2::new(-v.y, v.x)
 }
@@ -263,13 +263,12 @@ impl<T: Real> AboutBody<T> for PlaneMotion<T> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyPlaneImpulse<T = f64>(pub SVector<T, 3>);
 
-/// Angular and linear momentum in the axes of the plane, about the body's own origin, at a node: what
-/// a state keeps, since it does not depend on where the body is.
+/// Angular and linear momentum in the axes of the plane, about the body's own origin, at a node. A state stores this
+/// momentum because it does not depend on the position of the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CarriedPlaneImpulse<T = f64>(pub SVector<T, 3>);
 
-/// Angular and linear momentum in the axes of the plane, about its origin, at a node; a free motion
-/// keeps both.
+/// Angular and linear momentum in the axes of the plane, about its origin, at a node; free motion conserves both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpatialPlaneImpulse<T = f64>(pub SVector<T, 3>);
 

@@ -56,7 +56,7 @@ impl fmt::Display for NotARigidMotion {
 impl std::error::Error for NotARigidMotion {}
 
 impl<T: Real> RigidMotion<T> {
-    /// The motion that leaves everything where it is.
+    /// The identity motion.
     #[inline]
     pub fn identity() -> Self {
         Self {
@@ -137,8 +137,8 @@ impl<T: Real> Group<T> for RigidMotion<T> {
 
     super::own_operations!();
 
-    /// `(R^T R', R^T (x' - x))`: two places near each other are subtracted before anything is rounded
-    /// to their distance from the origin.
+    /// `(R^T R', R^T (x' - x))`: nearby positions are subtracted first, so the result is not rounded to their
+    /// distance from the origin.
     #[inline]
     fn body_velocity(&self, next: &Self) -> Self {
         let way = next.translation - self.translation;
@@ -173,7 +173,7 @@ impl<T: Real> Group<T> for RigidMotion<T> {
             }
     }
 
-    /// `(cay(ω) R, x + ω × x + v)`: to first order the same, and no rotation is made for it.
+    /// `(cay(ω) R, x + ω × x + v)`: equal to first order, and without a rotation of its own.
     #[inline]
     fn retract_from_left(&self, xi: &[T]) -> Self {
         let at = |i: usize| xi.get(i).copied().unwrap_or_else(T::zero);
@@ -327,13 +327,12 @@ impl<T: Real> AboutBody<T> for RigidMotion<T> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyImpulse<T = f64>(pub SVector<T, 6>);
 
-/// Angular and linear momentum in space axes, about the body's own origin, at a node: what a state
-/// keeps, since it does not depend on where the body is.
+/// Angular and linear momentum in space axes, about the body's own origin, at a node. A state stores this momentum
+/// because it does not depend on the position of the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CarriedImpulse<T = f64>(pub SVector<T, 6>);
 
-/// Angular and linear momentum in space axes, about the origin of space, at a node; a free motion
-/// keeps both.
+/// Angular and linear momentum in space axes, about the origin of space, at a node; free motion conserves both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpatialImpulse<T = f64>(pub SVector<T, 6>);
 

@@ -14,9 +14,9 @@ use nalgebra::{Matrix3, Vector3};
 /// Stored as a unit quaternion `(w, x, y, z)`, so it can never shear; `q` and `-q` are the same
 /// rotation. Equality compares the four numbers.
 ///
-/// Its alignment keeps each half of the quaternion within one line of the cache wherever a stepper's
-/// state is put: a pair across two lines cannot be handed from one step's store to the next one's
-/// load, which costs a free body half of its time again.
+/// The alignment keeps each half of the quaternion within one cache line, wherever the state of a stepper is stored.
+/// The processor cannot forward a pair across two lines from the store of one step to the next load. A step of a free
+/// body would then take half as long again.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub struct Rotation<T = f64> {
@@ -26,8 +26,8 @@ pub struct Rotation<T = f64> {
 of_scalars!(Rotation { q });
 in_lanes!(Rotation { q });
 
-/// Whether all pairs are equal, looking at all of them: steppers ask at each step, and one branch
-/// is cheaper than one per number.
+/// Whether all pairs are equal; compares all of them, because steppers call this at each step, and one branch is
+/// cheaper than one branch per number.
 #[inline(always)]
 fn all_equal<T: PartialEq, const N: usize>(a: &[T; N], b: &[T; N]) -> bool {
     a.iter().zip(b).fold(true, |all, (x, y)| all & (x == y))
@@ -73,7 +73,7 @@ impl fmt::Display for NotARotation {
 
 impl std::error::Error for NotARotation {}
 
-/// Input data typed with ten digits is accepted and made orthonormal; anything worse is a mistake.
+/// Input data typed with ten digits are accepted and made orthonormal; larger defects are treated as mistakes.
 const ALLOWED_DEFECT: f64 = 1e-9;
 
 /// Hamilton's product, without any normalisation.
@@ -99,7 +99,7 @@ pub(super) fn times<T: Real>([w, x, y, z]: [T; 4], scale: T) -> [T; 4] {
 }
 
 impl<T: Real> Rotation<T> {
-    /// The rotation that does nothing.
+    /// The identity rotation.
     #[inline]
     pub fn identity() -> Self {
         let o = T::zero();
@@ -128,7 +128,7 @@ impl<T: Real> Rotation<T> {
             return Err(NotARotation::NotFinite);
         }
         let defect = largest_real_part(square - T::one());
-        // Written so that NaN is refused: products of finite entries may overflow.
+        // Written so that NaN is rejected: products of finite entries may overflow.
         let near = defect <= ALLOWED_DEFECT;
         if !near {
             return Err(NotARotation::NotOrthogonal { defect });
@@ -147,7 +147,7 @@ impl<T: Real> Rotation<T> {
         }
         let gram = a.transpose() * *a - Matrix3::identity();
         let defect = largest(gram.iter().map(|x| largest_real_part(*x)));
-        // Written so that NaN is refused: products of finite entries may overflow.
+        // Written so that NaN is rejected: products of finite entries may overflow.
         let near = defect <= ALLOWED_DEFECT;
         if !near {
             return Err(NotARotation::NotOrthogonal { defect });
@@ -168,7 +168,7 @@ impl<T: Real> Rotation<T> {
         Self { q: times(q, scale) }
     }
 
-    /// A quaternion the caller knows to be unit.
+    /// A quaternion that the caller knows to be unit.
     #[inline(always)]
     pub(crate) fn from_unit(q: [T; 4]) -> Self {
         Self { q }
@@ -180,8 +180,8 @@ impl<T: Real> Rotation<T> {
         set_all(&mut self.q, lane, one.q);
     }
 
-    /// The product without renormalisation: each call may move `|q|` by one rounding, so a caller
-    /// on a long path must renormalise now and then.
+    /// The product without renormalisation: each call may change `|q|` by one rounding, so renormalise from time to
+    /// time if you multiply often.
     #[inline(always)]
     pub(crate) fn compose_raw(&self, other: &Self) -> Self {
         Self {
@@ -237,14 +237,14 @@ impl<T: Real> Rotation<T> {
         matrix
     }
 
-    /// `R v`: a body vector as seen from space.
+    /// `R v`: a body vector in the space frame.
     #[inline(always)]
     pub fn rotate(&self, v: &Vector3<T>) -> Vector3<T> {
         let [w, x, y, z] = self.q;
         turn(w, [x, y, z], v)
     }
 
-    /// `R^T v`: a spatial vector as seen from the body.
+    /// `R^T v`: a spatial vector in the body frame.
     #[inline(always)]
     pub fn inverse_rotate(&self, v: &Vector3<T>) -> Vector3<T> {
         let [w, x, y, z] = self.q;
@@ -260,7 +260,7 @@ impl<T: Real> Rotation<T> {
 
     /// The rotation about `v` by the angle `|v|` radians: the exponential of `hat(v)`.
     ///
-    /// Small angles use the Taylor series, so derivative parts are right at `v = 0` too.
+    /// Small angles use the Taylor series, so that derivative parts are also right at `v = 0`.
     pub fn exp(v: &Vector3<T>) -> Self {
         let quarter = T::from_f64(0.25);
         // Half the angle, squared.
@@ -271,7 +271,7 @@ impl<T: Real> Rotation<T> {
             let half = square.sqrt();
             (half.cos(), half.sin() / half)
         } else {
-            // If some lanes are at rest, lift these off zero by less than rounding.
+            // If some lanes are at rest, add less than rounding, so that the square root has a derivative.
             let lift = T::from_f64(T::EPSILON * T::EPSILON);
             let half = (square + lift).sqrt();
             (half.cos(), half.sin() / half)
@@ -314,8 +314,8 @@ fn largest_real_part<T: Real>(x: T) -> f64 {
     larger(x.greatest().abs(), x.least().abs())
 }
 
-/// A quaternion, not normalised, of an orthogonal matrix (Shepperd, 1978): the columns of
-/// `4 q q^T` are linear in the matrix, and each lane takes its longest one.
+/// A quaternion, not normalised, of an orthogonal matrix (Shepperd, 1978): the columns of `4 q q^T` are linear in the
+/// matrix, and each lane takes its longest column.
 fn quaternion_of<T: Real>(a: &Matrix3<T>) -> [T; 4] {
     let [[a11, a21, a31], [a12, a22, a32], [a13, a23, a33]] = a.data.0;
     let one = T::one();
@@ -459,7 +459,7 @@ impl<T: Real> Coadjoint<T> for Rotation<T> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyMomentum<T = f64>(pub Vector3<T>);
 
-/// Angular momentum in spatial axes, at a node; a free motion keeps it.
+/// Angular momentum in spatial axes, at a node; free motion conserves it.
 #[derive(Clone, Copy, Debug)]
 pub struct SpatialMomentum<T = f64>(pub Vector3<T>);
 

@@ -61,7 +61,7 @@ impl<T: Real> UnitQuaternion<T> {
         left_multiplication(self.components())
     }
 
-    /// The rotation that it covers, body -> space; `-q` covers the same rotation.
+    /// The rotation that it represents, body -> space; `-q` represents the same rotation.
     #[inline]
     pub fn rotation(&self) -> Rotation<T> {
         self.0
@@ -79,7 +79,7 @@ impl<T: Real> UnitQuaternion<T> {
         Self(rotation)
     }
 
-    /// `self* . other`, of unit length to the rounding of both.
+    /// `self* . other`, whose length is 1 up to the rounding of both.
     #[inline(always)]
     pub(crate) fn to(&self, other: &Self) -> Self {
         let [w, x, y, z] = self.components();

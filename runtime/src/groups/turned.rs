@@ -1,5 +1,5 @@
-//! The product of a rotation with one whose quaternion has not been normalised yet.
-//! Takes both; gives the product's action on vectors and its matrix after one division, its quaternion after a root as well.
+//! The product of a rotation with a rotation whose quaternion has not been normalised yet. Takes both; gives the
+//! product's action on vectors and its matrix after one division, its quaternion after a root as well.
 
 use super::so3::{hamilton, norm_squared, times};
 use super::{Rotation, UnitQuaternion};
@@ -70,8 +70,8 @@ impl<T: Real> TurnedRotation<T> {
         );
         matrix
     }
-    /// The inverse rotation of a vector, space -> body: `v + s (E^T v)`, where only the last step waits for the division
-    /// that `s` is. For one vector less than the matrix, for several more.
+    /// The inverse rotation of a vector, space -> body: `v + s (E^T v)`; only the last operation waits for `s`, which
+    /// needs a division. For one vector less than the matrix, for several more.
     #[inline(always)]
     pub fn inverse_rotate(&self, v: &Vector3<T>) -> Vector3<T> {
         let ([w, x, y, z], s) = (self.q, self.scale);

@@ -1,10 +1,9 @@
 //! Steps of high order, composed of several symmetric steps of order two. Takes a model shown to be
 //! reversible, a state, a step size and an order; advances the state.
 //!
-//! Each factor is a step of the model itself, so whatever a step conserves, a composition does: the
-//! symplectic form of the full phase space, momentum maps, Casimirs. With a one-sided node rule the
-//! order would silently drop to one; such a model is not [`Reversible`], and its composition does
-//! not compile.
+//! Each factor is a step of the model itself, so a composition conserves everything that a step conserves: the
+//! symplectic form of the full phase space, momentum maps, Casimirs. With a one-sided node rule the order would
+//! silently fall to one; such a model is not [`Reversible`], and its composition does not compile.
 
 use super::{Reversible, Stepper};
 use crate::solvers::largest_step::{confirmed_step, largest_step};
@@ -97,7 +96,7 @@ impl fmt::Display for CompositionOrder {
     }
 }
 
-/// One factor of the step, and the workspace of the steps it makes.
+/// One factor of the step, and the workspace of the substeps with this factor.
 #[derive(Clone, Debug)]
 struct Stage<W> {
     factor: f64,
@@ -148,7 +147,7 @@ impl<S: Stepper> Composition<S> {
         self.stages.iter_mut().map(|stage| &mut stage.workspace)
     }
 
-    /// One composed step, in place; it is counted as one node.
+    /// One composed step, in place; it counts as one node.
     ///
     /// # Errors
     /// When one of its steps cannot be solved, with the numbers of the composed step; the state is
@@ -184,9 +183,8 @@ impl<S: Stepper> Composition<S> {
     }
 }
 
-/// The largest share of the step size `h` for which a step from this state succeeds, by bisection.
-/// A shorter step passes through other states, so the limit of the failed stage does not determine
-/// it.
+/// The largest share of the step size `h` for which a step from this state succeeds, by bisection. A shorter step
+/// passes through other states, so the limit of the failed stage does not determine it.
 #[cold]
 #[inline(never)]
 fn feasible<S: Stepper>(
@@ -215,8 +213,7 @@ fn feasible<S: Stepper>(
     }
 }
 
-/// Zero if all stages succeed one after the other, and each of them also succeeds from the first
-/// state.
+/// Zero unless all stages succeed one after the other, and each of them also succeeds from the first state.
 fn composed<S: Copy, T: Copy>(
     state: &S,
     steps: impl Iterator<Item = T>,
@@ -230,8 +227,8 @@ fn composed<S: Copy, T: Copy>(
     Some(0.0)
 }
 
-/// The cause with the numbers of the composed step instead of the failed stage, and the share of the
-/// step that can be made.
+/// The cause, with the numbers of the composed step instead of the failed stage, and the fraction of the step that is
+/// possible.
 fn in_all<T: Real>(cause: StepCause, h: T, share: f64) -> StepCause {
     let in_lane = |lane: usize| {
         let h = h.lane(lane);

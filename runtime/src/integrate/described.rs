@@ -13,7 +13,7 @@ pub trait Described: Model<Scalar = f64, State: Saved, Workspace: Saved> + Sized
     /// The description.
     fn card() -> &'static Card;
 
-    /// The model and its initial data from the fields of the card, of which there are as many as it says.
+    /// The model and its initial data from the fields of the card, which gives their number.
     ///
     /// # Errors
     /// Names the field that is not admissible, or has too few or too many numbers.

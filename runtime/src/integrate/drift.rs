@@ -1,5 +1,5 @@
-//! How far an invariant has moved: relative to its natural scale, absolute where that scale is zero.
-//! Takes its value and its scale at every step; gives the largest and the last deviation.
+//! How far an invariant has moved: relative to its natural scale, or absolute if that scale is zero. Takes its value
+//! and its scale at every step; gives the largest and the last deviation.
 
 use crate::card::Card;
 use crate::saved::{Saved, Words};
@@ -24,15 +24,16 @@ use nalgebra::SMatrix;
 /// below the smallest normal number counts as zero. [`Drift::is_absolute`] reports this case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drift {
-    /// `max |I_k - I_0| / scale` over the checked nodes, or `max |I_k - I_0|` if the scale is zero; NaN
-    /// once a value or a scale was NaN.
+    /// `max |I_k - I_0| / scale` over the checked nodes, or `max |I_k - I_0|` if the scale is zero; NaN if a value or
+    /// a scale was NaN.
     pub worst: f64,
     /// `(I_k - I_0) / scale` at the last checked node, with its sign, or `I_k - I_0` if the scale is zero.
     pub last: f64,
     /// The natural scale of the component, in its own unit.
     pub scale: f64,
     /// The first checked node where `|I_k - I_0|` exceeds both the scale at the start and a tenth of the scale at the
-    /// node: from there on the value is unrelated to its start. `None` also if the scale at the start is zero.
+    /// node: from this node on, the value is unrelated to the initial value. `None` also if the scale at the start is
+    /// zero.
     pub lost: Option<u64>,
 }
 
@@ -60,8 +61,8 @@ impl Drift {
 /// and after 1e12 steps is still smaller. A larger momentum is its own scale, even if strong impulses nearly cancel.
 const SHARE: f64 = 1e9;
 
-/// A momentum for use in scales. If all entries in `count` rows from row `from` are much smaller than the impulse at a
-/// node, each of them is replaced by the size of the impulse: the remainder of impulses that cancel is rounding.
+/// A momentum for use in scales. If all entries in `count` rows from row `from` on are much smaller than the impulse
+/// at a node, replaces each of them by the size of the impulse: a remainder of impulses that cancel is only rounding.
 #[doc(hidden)]
 #[must_use]
 pub fn not_less<T: Real, const R: usize, const C: usize>(
@@ -77,8 +78,8 @@ pub fn not_less<T: Real, const R: usize, const C: usize>(
     taken
 }
 
-/// 1 in the lanes where all of these entries are much smaller than the impulse, else 0. Also 0 if all entries are zero
-/// or the impulse is not finite.
+/// 1 in the lanes where all these entries are much smaller than the impulse, otherwise 0. Also 0 if all entries are
+/// zero or the impulse is not finite.
 #[doc(hidden)]
 pub fn fills<T: Real>(entries: impl Iterator<Item = T>, impulse: T) -> T {
     let one = T::one();
@@ -88,7 +89,7 @@ pub fn fills<T: Real>(entries: impl Iterator<Item = T>, impulse: T) -> T {
     (T::from_f64(f64::MAX) - impulse).where_positive(less)
 }
 
-/// The entry, or the impulse where `fills` is 1.
+/// The entry, or the impulse if `fills` is 1.
 #[doc(hidden)]
 pub fn filled<T: Real>(entry: T, fills: T, impulse: T) -> T {
     fills.where_positive(impulse) + (T::one() - fills).where_positive(entry)
@@ -130,7 +131,7 @@ impl HeldRate {
         starts.iter().filter_map(of).collect()
     }
 
-    /// Raises the scales of the rate to the share [`PART`] of the constraint's scale per step `h`.
+    /// Raises the scales of the rate to the fraction [`PART`] of the constraint's scale per step `h`.
     pub(super) fn not_less(&self, scales: &mut [f64], h: f64) {
         for i in 0..self.count {
             let held = scales.get(self.held + i).copied();
@@ -154,11 +155,11 @@ pub(super) struct Deviation {
     scale: f64,
     /// The sum at the start.
     first: f64,
-    /// The first node at which the deviation was larger than the scale at the start and than a part of the terms there.
+    /// The first node at which the deviation exceeded both the scale at the start and a fraction of the terms there.
     lost: Option<u64>,
 }
 
-/// If a deviation is below this share of the terms, the value does not count as lost: the start may be near
+/// If a deviation is below this fraction of the terms, the value does not count as lost: the start may be near
 /// equilibrium, where the terms are small.
 const LOST: f64 = 0.1;
 
@@ -182,7 +183,7 @@ impl Saved for Deviation {
 }
 
 impl Deviation {
-    /// None yet, from the value and the size of its terms at the start.
+    /// No deviation yet, from the value and the size of its terms at the start.
     pub(super) fn none(start: f64, terms: f64) -> Self {
         Self {
             start,
@@ -221,7 +222,7 @@ impl Deviation {
 mod tests {
     use super::{Deviation, Drift};
 
-    /// The drift after these deviations, the size of the terms the same throughout.
+    /// The drift after these deviations, for terms of constant size.
     fn after(terms: f64, deviations: &[f64]) -> Drift {
         let mut seen = Deviation::none(0.0, terms);
         (1..)
@@ -235,7 +236,7 @@ mod tests {
         let drift = after(4.0, &[2.0, -6.0, 1.0]);
         assert_eq!((drift.worst, drift.last), (1.5, 0.25));
         assert!(!drift.is_absolute());
-        // Zero, and what is too small to divide by: 1 / 1e-310 is infinite.
+        // Zero, and scales too small to divide by: 1 / 1e-310 is infinite.
         for scale in [0.0, -0.0, 1e-310] {
             let drift = after(scale, &[0.0, -1e-15, 1e-16]);
             assert_eq!((drift.worst, drift.last), (1e-15, 1e-16));
@@ -246,7 +247,7 @@ mod tests {
 
     #[test]
     fn the_scale_is_the_largest_of_the_run() {
-        // From rest: nothing at the start, most in the middle.
+        // A motion from rest: the terms vanish at the start and are largest in the middle.
         let mut seen = Deviation::none(10.0, 0.0);
         for (value, terms) in [(10.5, 1.0), (9.0, 8.0), (10.25, 4.0)] {
             seen.record(1, value, terms);

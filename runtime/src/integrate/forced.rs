@@ -1,14 +1,13 @@
-//! The step of a body whose forced equation is solved by its factor, written once: a solver finds how the body turns
-//! along an edge, and the torques of the model act at the node where it arrives.
-//! Takes the names of a model's types and fields; gives `prepared`, `step` and `refused` around its functions `edge`
-//! and `arrived`.
+//! The step of a body whose forced equation is solved by its factor, written once: a solver finds the rotation of the
+//! body along an edge, and the torques of the model act at the node at its end. Takes the names of a model's types
+//! and fields; gives `prepared`, `step` and `refused` around its functions `edge` and `arrived`.
 
 /// Its arguments, in order:
 ///
 /// - `pub step`, or `step_untested`, which leaves numbers that are not finite to a later test;
 /// - the fields of the element, of its momentum and of the other quantities of a state;
 /// - the fields from which the `factor` is computed, if each trajectory has its own;
-/// - how the step is solved, in words, and the function that tests a start, if there is one;
+/// - how the step is solved, as a phrase, and the function that tests a start, if there is one;
 /// - the types.
 #[doc(hidden)]
 #[macro_export]

@@ -1,5 +1,6 @@
-//! The stability limit of the step size: 2/ω, with ω the frequency of the fastest small motion about the initial state.
-//! Takes a model's card with its data; makes single steps from rest to get forces and the inverse of the mass.
+//! The stability limit of the step size: 2/ω, with ω the frequency of the fastest small motion about the initial
+//! state. Takes a model's card with its data; takes single steps from rest to compute forces and the inverse of the
+//! mass.
 
 mod equilibrium;
 mod extremes;
@@ -26,20 +27,20 @@ const FAR: f64 = 0.1;
 /// The shares of the step for these repetitions.
 const SHORTER: [f64; 5] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10];
 
-/// If nothing oscillates, the probe is repeated with these multiples of the step, which may be far below all times of
-/// the motion.
+/// If no motion oscillates, the probe is repeated with these multiples of the step, which may be far shorter than all
+/// times of the motion.
 const LONGER: [f64; 4] = [1e3, 1e6, 1e9, 1e12];
 
 /// A growth rate that a trial step does not confirm is ignored if its square is below this share of ω² of the fastest
 /// motion.
 const SLIGHT: f64 = 1e-3;
 
-/// The growth rate times the step size above which clebsch warns. The fall of an inverted body takes many steps and
-/// stays below it.
+/// The growth rate times the step size above which clebsch warns. An inverted body falls over many steps and stays
+/// below it.
 const GROWTH: f64 = 0.3;
 
-/// Waves that turn by more than about 135 degrees from site to site alternate; for two neighbours that move in opposite directions
-/// the value is 1.5.
+/// Waves whose phase changes by more than about 135 degrees from site to site alternate; for two neighbours that move
+/// in opposite directions the value is 1.5.
 const ALTERNATING: f64 = 1.7;
 
 /// The smallest number of configurations for a warning about waves.
@@ -48,21 +49,21 @@ const WAVES: usize = 4;
 /// The stability limit and the growth rate of small motions about the initial configuration, at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LongestStep {
-    /// 2/ω, with ω the frequency of the fastest small motion; infinite if none oscillates.
+    /// 2/ω, where ω is the frequency of the fastest small motion; infinite if no motion oscillates.
     pub step: f64,
-    /// The rate of the fastest growing small motion, in the inverse unit of time; 0 if none grows.
+    /// The rate of the fastest growing small motion, in the inverse unit of time; 0 if no motion grows.
     pub growth: f64,
-    /// The number of disturbed configurations, each site counted.
+    /// The number of disturbed configurations; each site counts.
     pub configurations: usize,
     /// How much neighbours move against each other in the motion that grows fastest: 0 if they move alike, 2 if they
-    /// alternate; 0 if none grows.
+    /// alternate; 0 if no motion grows.
     pub alternating: f64,
 }
 
 /// The effort to find the stability limit.
 #[derive(Clone, Copy)]
 pub struct Effort<'a> {
-    /// Returns whether to give up the search. It is called before each probe step.
+    /// Returns whether to give up the search. The search calls it before each probe step.
     pub ended: &'a dyn Fn() -> bool,
     /// Whether limits thousands of times above the step are of interest.
     pub far: bool,
@@ -77,7 +78,7 @@ impl fmt::Debug for Effort<'_> {
 }
 
 impl Effort<'_> {
-    /// A search that is never given up, also for limits far above the step.
+    /// A search without a time limit, also for limits far above the step.
     pub const UNBOUNDED: Self = Self {
         ended: &|| false,
         far: true,
@@ -178,7 +179,7 @@ impl LongestStep {
             let mut longer = longer.flatten().filter(|found| found.step > h.abs());
             return longer.next().ok_or(Unknown::Still);
         }
-        // If the step is hundreds of times too long, even a small share of it is too long for the probe.
+        // If the step is hundreds of times too long, even a small fraction of it is too long for the probe.
         let shorter = SHORTER.into_iter().filter_map(|part| asked(part).ok());
         let mut shorter = shorter.filter(|found| found.step < h.abs());
         shorter
@@ -189,8 +190,8 @@ impl LongestStep {
     /// The limit, from probe steps that are short compared with `h`.
     fn asked(probe: &Probe<'_>, h: f64) -> Result<Self, Missed> {
         let [least, largest] = probe.extremes()?;
-        // If a rate is below 2e-5 / h, or its square below 1e-6 of the other square, it is the rounding of forces that
-        // vanish.
+        // If a rate is below 2e-5 / h, or its square is below 1e-6 of the other square, it is only the rounding error
+        // of vanishing forces.
         let rounding = (2.0e-5 / h).powi(2);
         let seen = |x: f64, beside: f64| x.abs() > rounding && x.abs() > 1e-6 * beside.abs();
         let swings = largest.square > 0.0 && seen(largest.square, least.square);
@@ -210,8 +211,9 @@ impl LongestStep {
             why,
             fastest: step.min(1.0 / growth),
         };
-        // A trial step must move each motion as a Störmer-Verlet step does. If the model has constraints, they turn
-        // within a step that resolves slow growth, so the trial step is then not longer than the limit.
+        // A trial step must move each motion as a Störmer-Verlet step does. If the model has constraints, their
+        // directions change within a step that resolves slow growth, so the trial step is then not longer than the
+        // limit.
         let resolving = match probe.is_held() {
             true => step.min(1.0 / growth),
             false => 1.0 / growth,
@@ -221,7 +223,7 @@ impl LongestStep {
             true => probe.is_left(&largest, step).ok_or(missed(Unknown::Far))?,
             false => true,
         };
-        // Growth that is slow compared with ω may come from forces that turn with their frames.
+        // Growth that is slow compared with ω may come from forces that rotate with their frames.
         let slight = swings && least.square.abs() < SLIGHT * largest.square;
         let moved = swung && (!grows || growing || slight || probe.is_held() && swings);
         let growth = match growing {
@@ -243,20 +245,20 @@ impl LongestStep {
         }
     }
 
-    /// ω of the fastest small motion, in radians per unit of time; 0 if none oscillates.
+    /// ω of the fastest small motion, in radians per unit of time; 0 if no motion oscillates.
     #[must_use]
     pub fn frequency(&self) -> f64 {
         2.0 / self.step
     }
 
-    /// The step size over which the fastest growing motion grows by a third; infinite if none grows.
+    /// The step size over which the fastest growing motion grows by a third; infinite if no motion grows.
     #[must_use]
     pub fn resolving(&self) -> f64 {
         GROWTH / self.growth
     }
 
-    /// Whether the fastest growing motion alternates between neighbours. If so, shorter waves grow faster, as when a
-    /// wrong sign makes the equations elliptic along the label.
+    /// Whether the fastest growing motion alternates between neighbours. If so, shorter waves grow faster, as if a
+    /// wrong sign made the equations elliptic along the label.
     #[must_use]
     pub fn is_elliptic(&self) -> bool {
         self.configurations >= WAVES && self.growth > 0.0 && self.alternating > ALTERNATING

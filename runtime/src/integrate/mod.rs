@@ -1,6 +1,6 @@
-//! The integration loop: runs a trajectory, samples it, watches its invariants; steps of high order
-//! composed of a model's own; ensembles of independent trajectories.
-//! Takes a trajectory and an observer; gives a summary with the drift of every invariant.
+//! The integration loop: advances a trajectory, samples it, checks its invariants; steps of high order composed of
+//! the model's own steps; ensembles of independent trajectories. Takes a trajectory and an observer; gives a summary
+//! with the drift of every invariant.
 
 mod composition;
 mod described;

@@ -1,5 +1,5 @@
-//! A model over any scalar: the same derivation for one body and for lanes of bodies.
-//! Takes parameters and initial data as plain data; gives a stepper and its state.
+//! A model over any scalar: the same derivation for a single body and for bodies in lanes. Takes parameters and
+//! initial data as plain data; gives a stepper and its state.
 
 use super::Stepper;
 use crate::{OfScalars, ParameterError, Real, StartError, validate};
@@ -10,17 +10,16 @@ use core::fmt::Debug;
 pub trait Model:
     Stepper<State: OfScalars<Scalar = <Self as Stepper>::Scalar>> + Clone + Debug + Send
 {
-    /// The parameters, as given.
+    /// The given parameters.
     type Parameters: OfScalars<Scalar = Self::Scalar>;
-    /// The initial data, as given.
+    /// The given initial data.
     type Initial: OfScalars<Scalar = Self::Scalar>;
     /// The option of the steps: an order for a free body, a solver for a forced one, `()` for most
     /// models.
     type Choice: Copy + Debug + Default + Send + Sync;
 
-    /// Whether an ensemble steps its bodies side by side in lanes: explicit steps and those with a
-    /// quartic gain by it. Iterative steps do not, because each body needs its own number of
-    /// iterations.
+    /// Whether an ensemble steps its bodies side by side in lanes: explicit steps and steps with a quartic are faster
+    /// in lanes. Iterative steps are not, because each body needs its own number of iterations.
     const SIDE_BY_SIDE: bool;
 
     /// This model over another scalar.

@@ -1,21 +1,22 @@
-//! The protocol of an emitted model, written once: how a trajectory starts, the traits on which compositions,
-//! ensembles and the command line are written, and that all of its data can be saved.
-//! Takes the names of its types and of their fields, and how it steps; gives the implementations around the
-//! functions `begin`, `prepared` and `step` of the model, where they are more than what is made here from names.
+//! The protocol of an emitted model, written once: how a trajectory starts, the traits for compositions, ensembles
+//! and the command line, and how all data are saved. Takes the names of its types and fields, and the form of its
+//! steps; gives the implementations around the functions `begin`, `prepared` and `step` of the model. The macro
+//! generates those functions that follow from the names.
 
 /// The protocol of a model: its types with all their fields, const parameters in brackets, and
 ///
-/// - the form of its steps: `forced` (`forced_untested` if the model tests its steps itself), `free`, `tried` (it has a
-///   shorter function to try a step) or `explicit`;
+/// - the form of its steps: `forced` (`forced_untested` if the model tests its steps itself), `free`, `tried` (it has
+///   a shorter function to try a step) or `explicit`;
 /// - the fields of the element, of its momentum and of the other quantities of a state;
-/// - what may be chosen about its steps: `order`, `solver`, `nothing`;
-/// - how orders above its own are reached: `modified` moments, compositions of `symmetric` steps, or `none`;
+/// - what you can choose about its steps: `order`, `solver`, `nothing`;
+/// - how higher orders are reached: `modified` moments, compositions of `symmetric` steps, or `none`;
 /// - whether its kinetic energy is `judged` at the start, in how many coordinates, or `unjudged`;
-/// - in parentheses how forced steps are solved, `of` which fields the factor is made that is kept with the
-///   trajectory, and the function that `tests` a start of them;
-/// - what of a state at its `start` is an element, and of which momentum given there how its momentum is made; then
-///   the rests of what is kept in two numbers. Nothing where the model has a `begin` of its own;
-/// - what is observed and what is invariant, as `shown!` reads them.
+/// - in parentheses how forced steps are solved, `of` which fields the factor of a trajectory is computed, and the
+///   function that `tests` a start;
+/// - how the `start` of each element of a state is computed, and how the momentum of an element is computed from the
+///   given momentum; then the remainders of positions that are stored in two numbers. Absent if the model has its own
+///   `begin`;
+/// - the observables and the invariants, in the form that `shown!` reads.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! stepper {
@@ -203,7 +204,7 @@ macro_rules! stepper {
     };
 }
 
-/// The parts of [`stepper!`](crate::stepper) that differ from method to method.
+/// The parts of [`stepper!`](crate::stepper) that differ between methods.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! stepper_part {
@@ -227,7 +228,7 @@ macro_rules! stepper_part {
     (@started solver [$($size:ident)*] $initial:ident $state:ident $work:ident $T:ident) => {
         $crate::stepper_part! { @solver }
 
-        /// As `start`, with the given solver.
+        /// Like `start`, with the given solver.
         ///
         /// # Errors
         /// As `start`; also for what this size or scalar does not have.
@@ -291,7 +292,7 @@ macro_rules! stepper_part {
 
     (@watched free [$($size:ident)*] $work:ident) => {
         impl<$(const $size: usize,)* T: $crate::Real> $work<$($size,)* T> {
-            /// The solver: the momentum that it keeps, and what its last projection corrected.
+            /// The solver: the momentum that it stores, and the correction of its last projection.
             pub fn solver(&self) -> &$crate::solvers::moser_veselov::Free<T> {
                 &self.solver
             }
@@ -416,8 +417,8 @@ macro_rules! stepper_part {
     (@warning unjudged $($_:tt)*) => {};
 }
 
-/// The same step lane by lane, for ensembles of bodies whose forced equation is solved by a factor: that
-/// `of_model`, or `of_state` where each trajectory has its own.
+/// The same step lane by lane, for ensembles of bodies whose forced equation is solved by a factor: the factor
+/// `of_model`, or `of_state` if each trajectory has its own factor.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! side_by_side {

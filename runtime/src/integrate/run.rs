@@ -12,7 +12,7 @@ pub trait Observer {
     /// One sample: node, time, all observables, all invariants, in the order of the model's card.
     fn sample(&mut self, node: u64, time: f64, observables: &[f64], invariants: &[f64]);
 
-    /// Reports that `done` of `total` steps are made. A long run calls it at least 200 times.
+    /// Reports that `done` of `total` steps are complete. A long run calls it at least 200 times.
     fn progress(&mut self, done: u64, total: u64) {
         let _ = (done, total);
     }
@@ -25,22 +25,22 @@ pub const LOOKS: u64 = 10_000;
 /// The result of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// Number of steps made, up to the last node at which all checked numbers were finite.
+    /// Number of steps taken, up to the last node at which all checked numbers were finite.
     pub steps: u64,
     /// The node reached.
     pub node: u64,
     /// The time there.
     pub time: f64,
-    /// Number of samples the observer was given.
+    /// Number of samples that the observer received.
     pub samples: u64,
     /// The drift of every component of every invariant, in the order of the model's card.
     pub drifts: Vec<Drift>,
 }
 
-/// Makes `steps` steps, sampling the start, every `every`-th step and the end (`every = 0`: start
-/// and end only). The invariants are compared with those at the start at every sampled node; with
-/// `every = 0` at every node of a run of at most [`LOOKS`] steps, and at that many of a longer one. Allocates before
-/// the loop only.
+/// Takes `steps` steps and samples the start, every `every`-th step and the end (`every = 0`: start and end only).
+/// The invariants are compared with their initial values at every sampled node. If `every = 0`, they are compared at
+/// every node of a run of at most [`LOOKS`] steps, and at [`LOOKS`] nodes of a longer run. Allocates before the loop
+/// only.
 ///
 /// # Errors
 /// As [`run_until_stopped`]; use that function if you need the results of an incomplete run.
@@ -89,8 +89,8 @@ pub fn run_until_stopped(
     (watch.summary(), stopped)
 }
 
-/// A run up to a node: the numbers there, and the drifts so far. You can advance it by any number of steps at a
-/// time, and save and restore it together with its trajectory, without a change of the results.
+/// The state of a run at a node: the numbers there, and the drifts so far. You can advance it by any number of steps
+/// at a time, and save and restore it together with its trajectory, without a change of the results.
 #[derive(Clone, Debug)]
 pub struct Watch {
     total: u64,
@@ -107,11 +107,11 @@ pub struct Watch {
     seen: Vec<Deviation>,
     /// The node sampled last.
     sampled: u64,
-    /// Without drifts: these come from `seen` at the end.
+    /// Without drifts, which come from `seen` at the end.
     summary: Summary,
 }
 
-/// How far a run has come.
+/// The progress of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Place {
     steps: u64,
@@ -149,7 +149,7 @@ impl Watch {
         }
     }
 
-    /// Makes at most `most` of the remaining steps. The first call also checks and samples the start.
+    /// Takes at most `most` of the remaining steps. The first call also checks and samples the start.
     ///
     /// # Errors
     /// As [`run_until_stopped`] says; [`Watch::stop`] then takes the last sample.
@@ -214,7 +214,7 @@ impl Watch {
         Ok(())
     }
 
-    /// Whether all steps are made.
+    /// Whether all steps are complete.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.begun && self.summary.steps >= self.total
@@ -243,7 +243,7 @@ impl Watch {
         }
     }
 
-    /// The summary of the steps made so far.
+    /// The summary of the steps so far.
     #[must_use]
     pub fn summary(&self) -> Summary {
         Summary {
@@ -252,7 +252,8 @@ impl Watch {
         }
     }
 
-    /// Reads the numbers at the node and checks that all are finite; the observables only if the node is sampled.
+    /// Reads the numbers at the node and checks that all are finite; reads the observables only if the node is
+    /// sampled.
     #[inline]
     fn look(&mut self, trajectory: &dyn Trajectory, sampled: bool) -> Result<(), NotFinite> {
         trajectory.invariants(&mut self.invariants);
@@ -274,7 +275,7 @@ impl Watch {
         Ok(())
     }
 
-    /// Reports an invariant that is NaN as infinite if its terms overflow: then no function left its domain.
+    /// Reports an invariant that is NaN as infinite if its terms overflow: in this case no function left its domain.
     #[cold]
     fn overflow_as_infinite(&mut self, trajectory: &dyn Trajectory, found: NotFinite) -> NotFinite {
         trajectory.scales(&mut self.scales);
@@ -311,7 +312,7 @@ impl Saved for Watch {
             every,
             begun,
             looked,
-            // The numbers at the current node: written before they are read.
+            // The numbers at the current node: always written before they are read.
             observables: _,
             invariants: _,
             scales: _,
@@ -344,13 +345,13 @@ impl Saved for Watch {
     }
 }
 
-/// Squares of larger numbers are near overflow, and a product that is stored in two parts is NaN there.
+/// Squares of larger numbers are near overflow, and a product that is stored in two numbers is NaN there.
 const SQUARED: f64 = 1e150;
 
 /// Refuses numbers that are NaN or infinite.
 #[inline]
 fn finite(trajectory: &dyn Trajectory, watched: Watched, values: &[f64]) -> Result<(), NotFinite> {
-    // Zero times a finite number is zero, times any other NaN: one sum looks at all of them.
+    // Zero times a finite number is zero, and zero times any other number is NaN: one sum tests all of them.
     if values.iter().map(|x| 0.0 * x).sum::<f64>() == 0.0 {
         return Ok(());
     }

@@ -1,12 +1,12 @@
-//! The observables and invariants of a model, entry by entry of the lists in its call of `stepper!`.
-//! Takes the place to write to, the model, a state, the step and the workspace; writes the numbers of one entry and
-//! gives the place behind them.
+//! The observables and invariants of a model, entry by entry of the lists in its call of `stepper!`. Takes the place
+//! to write to, the model, a state, the step and the workspace; writes the numbers of one entry and gives the rest of
+//! the place.
 
 /// One entry:
 ///
 /// - `energy`: a function of the model at a state, `h.energy` at a step and a state;
-/// - `state.momentum`: a function of the state, `work.Λ.momentum` the same of the momentum in the body that the solver
-///   iterates, seen from space by the element: what shows a drift, where the state keeps a constant;
+/// - `state.momentum`: a function of the state; `work.Λ.momentum`: the same function of the body momentum that the
+///   solver updates, transformed to space by the element. It shows a drift if the state stores a constant;
 /// - either `as skew`, the coordinates of a skew matrix, or `as spectrum`, the coefficients of a pencil.
 #[doc(hidden)]
 #[macro_export]

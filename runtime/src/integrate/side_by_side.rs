@@ -1,5 +1,5 @@
-//! Steps of bodies side by side, in a loop over the lanes that does the arithmetic of one body.
-//! Takes a model over lanes, its state and workspace; gives as many steps as one iteration of each solve allows.
+//! Steps of bodies side by side, in a loop over the lanes that does the arithmetic of one body. Takes a model over
+//! lanes, its state and workspace; gives steps as long as one iteration suffices for each equation.
 
 use super::Stepper;
 use crate::scalar::InLanes;
@@ -56,7 +56,7 @@ pub trait SideBySide: Stepper {
     /// Whether the body is given in principal axes.
     fn is_diagonal(&self, workspace: &Self::Workspace) -> bool;
 
-    /// One step of every lane; returns whether all were easy. If not, `to` is meaningless.
+    /// One step of every lane; returns whether all steps were easy. If not, `to` is meaningless.
     fn step_lanes<const DIAGONAL: bool>(
         &self,
         state: &Self::State,
@@ -66,8 +66,8 @@ pub trait SideBySide: Stepper {
     ) -> bool;
 }
 
-/// Steps one after the other: easy ones in a loop over the lanes, others by the model's own step,
-/// with the same result.
+/// Takes steps one after the other: easy ones in a loop over the lanes, others by the model's own step, with the same
+/// result.
 ///
 /// # Errors
 /// As [`Stepper::advance`].

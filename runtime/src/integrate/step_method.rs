@@ -1,6 +1,6 @@
-//! Selects how a trajectory makes its steps, from the settings and the orders that a model offers. Compiled models
-//! and models read from their text use the same selection.
-//! Takes the settings; gives the way, or an error that lists the orders on offer.
+//! Selects how a trajectory takes its steps, from the settings and the orders that a model offers. Compiled models
+//! and models read from their text use the same selection. Takes the settings; gives the method, or an error that
+//! lists the available orders.
 
 use super::CompositionOrder;
 use crate::card::{Card, OpenError, Settings};
@@ -30,12 +30,12 @@ impl Offer {
     }
 }
 
-/// How steps are made.
+/// How steps are taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Way {
-    /// One step of the model each.
+    /// Each step is one step of the model.
     Plain,
-    /// One step of the model each, with moments modified for this order, compensated or not.
+    /// Each step is one step of the model with moments modified for this order, with or without compensation.
     Modified(Order, bool),
     /// Several of the model, to this order.
     Composed(CompositionOrder),

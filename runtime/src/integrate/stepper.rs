@@ -32,9 +32,9 @@ pub trait Stepper {
         workspace: &mut Self::Workspace,
     ) -> Result<(), StepError>;
 
-    /// The state after one step of `h` in a new workspace, or `None` if the step fails. Searches that
-    /// try many steps use it, since they do not need the cause of a failure. A model may skip the
-    /// proof of the step here, so a search confirms its result by an ordinary step.
+    /// The state after one step of `h` in a new workspace, or `None` if the step fails. Searches that try many steps
+    /// use it, since they do not need the cause of a failure. The model may skip the proof of the step here, so a
+    /// search confirms its result by an ordinary step.
     #[must_use]
     fn attempt(&self, state: &Self::State, h: Self::Scalar) -> Option<Self::State> {
         let mut moving = *state;
@@ -43,8 +43,8 @@ pub trait Stepper {
         Some(moving)
     }
 
-    /// `count` steps, in place. The result is the same as of `count` single steps, up to rounding if
-    /// the model has a faster loop. It does not depend on how you split `count` into calls.
+    /// `count` steps, in place. The result equals the result of `count` single steps, up to rounding if the model has
+    /// a faster loop. It does not depend on how you split `count` into calls.
     ///
     /// # Errors
     /// If one of them fails. The state is then at one of the nodes of the loop.
@@ -69,6 +69,6 @@ pub trait Stepper {
     fn at_node(state: Self::State, node: u64) -> Self::State;
 }
 
-/// A model whose step is its own inverse under `h -> -h`, which the derivation has shown for the
-/// discrete Lagrangian. Only such steps gain order by [`Composition`](super::Composition).
+/// A model whose step is its own inverse under `h -> -h`; the derivation has proved this for the discrete Lagrangian.
+/// Only such steps gain order by [`Composition`](super::Composition).
 pub trait Reversible: Stepper {}

@@ -1,5 +1,5 @@
-//! The steps of one trajectory, plain or composed, chosen when it is started.
-//! Takes a model, a state and the settings; advances the state.
+//! The steps of one trajectory, plain or composed, selected at its start. Takes a model, a state and the settings;
+//! advances the state.
 
 use super::{Composition, Model, Offer, Reversible, Stepper, Way};
 use crate::StepError;
@@ -10,16 +10,16 @@ use crate::solvers::moser_veselov::Order;
 /// The steps of one trajectory, with their workspaces.
 #[derive(Clone, Debug)]
 pub enum Steps<S: Stepper> {
-    /// One step of the model each.
+    /// Each step is one step of the model.
     Plain(S::Workspace),
-    /// One step of the model each, with modified moments.
+    /// Each step is one step of the model, with modified moments.
     Modified(S::Workspace),
     /// Several.
     Composed(Composition<S>),
 }
 
 impl<S: Stepper<Scalar = f64>> Steps<S> {
-    /// Plain steps, whatever the model; no other order is offered.
+    /// Plain steps for any model; no other order is offered.
     ///
     /// # Errors
     /// For another order, a compensation, a step that is not positive, or a first step that cannot be made.
@@ -44,8 +44,8 @@ impl<S: Stepper<Scalar = f64>> Steps<S> {
         }
     }
 
-    /// One step, in place, that calls `seen` after each of the model's own steps within it. `seen` receives the share
-    /// of the whole step, and the state. Steps with modified moments do not call `seen`.
+    /// One step, in place, that calls `seen` after each of the model's own steps within it. `seen` receives the
+    /// fraction of the whole step, and the state. Steps with modified moments do not call `seen`.
     ///
     /// # Errors
     /// As [`Steps::step`].

@@ -17,20 +17,20 @@ pub enum Watched {
     Observable,
 }
 
-/// A number of a trajectory that is NaN or infinite, though every step was made.
+/// A number of a trajectory that is NaN or infinite, although no step failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NotFinite {
     /// The node.
     pub node: u64,
     /// The time there.
     pub time: f64,
-    /// The last node before it at which a check found finite numbers; the node itself if it is the first.
+    /// The last node before it at which all checked numbers were finite; the node itself if it is the first.
     pub since: u64,
     /// Whether it belongs to an invariant, a scale or an observable.
     pub watched: Watched,
     /// The name of the invariant or observable, as the card has it.
     pub name: &'static str,
-    /// Which of its numbers, row-major from 0; `None` where there is one only.
+    /// The index of the number, row-major from 0; `None` if there is only one number.
     pub index: Option<usize>,
     /// How many numbers a row of it has.
     pub columns: usize,
@@ -69,7 +69,7 @@ impl fmt::Display for NotFinite {
             }
             false => ": it exceeds the largest double, 1.8e308; ",
         })?;
-        // A shorter step changes nothing at the start.
+        // At the start, a shorter step does not help.
         f.write_str(match node {
             0 => "check the parameters and initial values; if a mass or an inertia is zero, give it a small positive value",
             _ => "reduce the step size, or check the parameters and initial values",

@@ -89,7 +89,7 @@ impl Halved {
         values.collect()
     }
 
-    /// The trajectory one whole step further, by `2^depth` substeps, or the cause of the failure.
+    /// The trajectory after one whole step in `2^depth` substeps, or the cause of the failure.
     fn by_parts(&self, from: &[Vec<f64>], depth: u32) -> Result<Box<dyn Trajectory>, StepCause> {
         let started = opened(&self.card, &self.parameters, from, self.settings, depth);
         let mut inner = started
@@ -122,7 +122,7 @@ fn cause(error: &OpenError) -> Option<StepCause> {
     }
 }
 
-/// Where among the observables the numbers of a field begin.
+/// The index of the first number of a field among the observables.
 fn place(card: &Card, ascii: &str) -> Option<usize> {
     let wanted = card.initial.iter().find(|f| f.ascii == ascii)?;
     let mut from = 0;
@@ -161,7 +161,7 @@ impl Trajectory for Halved {
             }
         }
         let from = self.here();
-        // After a subdivided step the whole step is tried first.
+        // After a subdivided step, the next step is tried undivided first.
         let least = u32::from(self.depth == 0);
         for depth in least..=DEEPEST {
             match self.by_parts(&from, depth) {

@@ -1,17 +1,16 @@
-//! The inverse of a small matrix by its cofactors, if that is as accurate as elimination. It needs
-//! no pivots and one division. Takes a square matrix; a matrix of another size, or a badly
-//! conditioned one, is eliminated.
+//! The inverse of a small matrix by its cofactors, if that is as accurate as elimination. It needs no pivots and one
+//! division. Takes a square matrix; uses elimination if the matrix has another size or is badly conditioned.
 
 use super::elimination::{inverse, solve_many};
 use crate::Real;
 use nalgebra::SMatrix;
 
-/// How far `|A|^N` may exceed `|det A|`: at least 2 and 5.2 for sizes 2 and 3, reached by rotations. A
-/// cofactor is wrong by roundings of `|A|^(N-1)`, so that no more than this many are lost.
+/// The largest ratio of `|A|^N` to `|det A|`; it is at least 2 and 5.2 for sizes 2 and 3, which rotations attain. A
+/// cofactor has an error of a few roundings of `|A|^(N-1)`, so at most this many roundings are lost.
 const WELL: f64 = 50.0;
 
-/// The adjugate of a matrix of two or three rows, `det(A) A^-1` of one that has an inverse: its transposed cofactors,
-/// each rounded as its own two products. Not a number for other sizes.
+/// The adjugate of a matrix of two or three rows, which is `det(A) A^-1` if the matrix has an inverse: its transposed
+/// cofactors, each rounded relative to its own two products. NaN for other sizes.
 #[inline(always)]
 #[must_use]
 pub fn adjugate<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
@@ -38,7 +37,7 @@ pub fn adjugate<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, 
     adjugate
 }
 
-/// The inverse by cofactors; none where the matrix is not well-conditioned in every lane.
+/// The inverse by cofactors; `None` unless the matrix is well-conditioned in every lane.
 #[inline(always)]
 pub(super) fn by_cofactors<T: Real, const N: usize>(
     a: &SMatrix<T, N, N>,
@@ -72,7 +71,7 @@ pub fn small_inverse<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> Option<SM
     }
 }
 
-/// The solution of `A X = B`, or `None` as for [`small_inverse`].
+/// The solution of `A X = B`, or `None` under the conditions of [`small_inverse`].
 #[inline]
 pub fn small_solve<T: Real, const N: usize, const C: usize>(
     a: &SMatrix<T, N, N>,

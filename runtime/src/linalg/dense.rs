@@ -1,6 +1,6 @@
-//! Matrices whose size is known only at run time, in plain loops. Every operation takes the same steps, in
-//! the same order, as the operation on matrices of a static size. Results therefore agree bit for bit. Takes
-//! and gives lists of entries; allocates.
+//! Matrices whose size is known only at run time, in plain loops. Every operation performs the same steps, in the
+//! same order, as the operation on matrices of a static size. Results therefore agree bit for bit. Takes and gives
+//! lists of entries; allocates.
 
 use super::elimination::{is_usable, weight};
 use super::{even_degrees, held_scales};
@@ -60,7 +60,7 @@ impl<T: Real> Dense<T> {
         .unwrap_or_else(T::zero)
     }
 
-    /// As a static matrix, cut or filled with zeros.
+    /// As a static matrix, truncated or filled with zeros.
     #[inline]
     pub fn fixed<const R: usize, const C: usize>(&self) -> SMatrix<T, R, C> {
         SMatrix::from_fn(|i, j| self.at(i, j))
@@ -107,7 +107,7 @@ impl<T: Real> Dense<T> {
         sum
     }
 
-    /// The product: columns of the first, weighted, one after the other.
+    /// The product: the weighted columns of the first matrix, summed in order.
     pub fn times(&self, other: &Self) -> Self {
         let (rows, cols, one) = (self.rows, other.cols, T::one());
         let mut data: Vec<T> = Vec::with_capacity(rows * cols);
@@ -127,7 +127,7 @@ impl<T: Real> Dense<T> {
         Dense { rows, cols, data }
     }
 
-    /// The transpose times another.
+    /// The transpose times another matrix.
     pub fn tr_mul(&self, other: &Self) -> Self {
         Self::from_fn(self.cols, other.cols, |i, j| {
             dot_columns(self.column(i), other.column(j))
@@ -224,8 +224,8 @@ impl<T: Real> Dense<T> {
 
 /// Systems of linear equations.
 impl<T: Real> Dense<T> {
-    /// Solves for several right sides at once and gives the determinant along, of the leading `size` rows
-    /// and columns; as `eliminate_leading` of static sizes.
+    /// Solves for several right sides at once and also returns the determinant, of the leading `size` rows and
+    /// columns, like `eliminate_leading` for static sizes.
     fn eliminated(&self, right: &Self, size: usize) -> Option<(Self, T)> {
         let size = size.min(self.rows).min(self.cols);
         let sizes = [self.rows, self.cols, right.cols, size];
@@ -285,7 +285,7 @@ impl<T: Real> Dense<T> {
         }
     }
 
-    /// Takes row `k` times a factor from each row below it.
+    /// Subtracts a multiple of row `k` from each row below it.
     fn take(&mut self, k: usize, factors: &[T], columns: core::ops::Range<usize>) {
         for j in columns {
             let above = self.at(k, j);
@@ -297,7 +297,7 @@ impl<T: Real> Dense<T> {
         }
     }
 
-    /// The determinant; zero where no pivot is found.
+    /// The determinant; zero if no pivot is found.
     pub fn determinant(&self) -> T {
         let at = |i: usize, j: usize| self.at(i, j);
         match self.rows {
@@ -329,13 +329,13 @@ impl<T: Real> Dense<T> {
         self.solved(&Self::identity(self.rows, self.rows))
     }
 
-    /// The solution of `A X = B`, or `None` as for the inverse.
+    /// The solution of `A X = B`, or `None` under the conditions of the inverse.
     pub fn solved(&self, right: &Self) -> Option<Self> {
         self.eliminated(right, self.rows).map(|(x, _)| x)
     }
 
-    /// The solution of the leading `size` equations in as many unknowns; the others are zero. Rows and columns are brought
-    /// to one size where constraints are held.
+    /// The solution of the leading `size` equations in as many unknowns; the others are zero. With constraints, rows
+    /// and columns are first scaled to equal size.
     pub fn leading_solved(&self, right: &Self, size: usize) -> Option<Self> {
         let mut scale = vec![T::one(); self.rows];
         let leading = scale.get_mut(..size)?;
@@ -357,7 +357,7 @@ impl<T: Real> Dense<T> {
         }))
     }
 
-    /// The inverse of a matrix whose rows and columns are brought to one size first, by powers of two.
+    /// The inverse of a matrix whose rows and columns are first scaled to equal size, by powers of two.
     pub fn balanced_inverse(&self) -> Option<Self> {
         let n = self.rows;
         let scale: Vec<T> = (0..n).map(|i| self.at(i, i).balance()).collect();
@@ -385,8 +385,7 @@ impl<T: Real> Dense<T> {
         Some(x.data.iter().zip(&scale).map(|(x, s)| *x * *s).collect())
     }
 
-    /// The inverse, by cofactors where these are as good: as
-    /// [`small_inverse`](super::small_inverse).
+    /// The inverse, by cofactors if these are accurate enough, like [`small_inverse`](super::small_inverse).
     pub fn small_inverse(&self) -> Option<Self> {
         match self.rows {
             2 => super::small_inverse(&self.fixed::<2, 2>()).map(|x| Self::of(&x)),
@@ -474,7 +473,7 @@ impl<T: Real> Dense<T> {
         pairs.map(|(i, j)| self.at(j, i)).collect()
     }
 
-    /// `A - 1` of a matrix whose columns have length 1: as [`less_identity`](super::less_identity).
+    /// `A - 1` for a matrix whose columns have length 1, like [`less_identity`](super::less_identity).
     pub fn less_identity(&self) -> Self {
         let mut out = self.clone();
         for i in 0..self.rows {
@@ -523,7 +522,7 @@ impl<T: Real> Dense<T> {
     }
 }
 
-/// Short columns have an order of their own.
+/// Short columns use a different order of summation.
 fn dot_columns<T: Real>(a: &[T], b: &[T]) -> T {
     match (a, b) {
         ([a0, a1], [b0, b1]) => *a0 * *b0 + *a1 * *b1,
@@ -538,7 +537,7 @@ fn dot_columns<T: Real>(a: &[T], b: &[T]) -> T {
     }
 }
 
-/// Eight sums side by side, then the rest.
+/// Eight parallel sums, then the rest.
 fn dot_long<T: Real>(mut sum: T, a: &[T], b: &[T]) -> T {
     let mut parts = [T::zero(); 8];
     let (long, rest) = (a.chunks_exact(8), a.len() - a.len() % 8);

@@ -6,8 +6,8 @@ use nalgebra::{SMatrix, SVector};
 
 /// The determinant.
 ///
-/// Sizes 1 to 3 are expanded, which is exact to rounding for any scalar; larger ones are
-/// eliminated, and are zero when no pivot can be found.
+/// Sizes 1 to 3 are expanded, which is exact to rounding for any scalar; larger sizes are eliminated, and the result
+/// is zero if no pivot is found.
 #[inline]
 pub fn determinant<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> T {
     let at = |i: usize, j: usize| a.data.0[j][i];
@@ -78,10 +78,10 @@ pub fn inverse_leading<T: Real, const N: usize>(
     eliminate_leading(a, &one, size).map(|(x, _)| x)
 }
 
-/// Solves for `M` right sides at once and gives the determinant along.
+/// Solves for `M` right sides at once and also returns the determinant.
 ///
-/// The pivot of a column is its entry whose smallest real part over the lanes is largest in
-/// absolute value: all lanes exchange the same rows, so the choice must suit the worst of them.
+/// The pivot of a column is the entry whose smallest absolute real part over the lanes is largest: all lanes exchange
+/// the same rows, so the choice must suit the worst lane.
 #[inline]
 fn eliminate<T: Real, const N: usize, const M: usize>(
     a: &SMatrix<T, N, N>,
@@ -148,7 +148,7 @@ fn eliminate_leading<T: Real, const N: usize, const M: usize>(
     Some((SMatrix::from_data(nalgebra::ArrayStorage(x)), det))
 }
 
-/// The absolute value by which pivots are compared, without derivatives. NaN weighs nothing.
+/// The absolute value by which pivots are compared, without derivatives. NaN counts as zero.
 #[inline(always)]
 pub(crate) fn weight<T: Real>(x: T) -> T {
     x.where_positive(x) - (-x).where_positive(x)
@@ -160,7 +160,8 @@ pub(crate) fn is_usable<T: Real>(weight: T) -> bool {
     weight.exceeds(T::zero()) && !weight.exceeds(T::from_f64(f64::MAX))
 }
 
-/// Zero in every lane: the row of an equation that its own unknown does not enter, as of a held constraint.
+/// Whether a number is zero in every lane. Such a diagonal entry belongs to an equation that does not contain its own
+/// unknown, such as a constraint.
 #[inline(always)]
 pub(super) fn vanishes<T: Real>(x: T) -> bool {
     x.nowhere_positive() && (-x).nowhere_positive()
@@ -180,10 +181,10 @@ pub fn solve_scaled<T: Real, const N: usize>(
     Some(SVector::from_fn(|i, _| x[i] * scale[i]))
 }
 
-/// Scales of rows and columns of a symmetric matrix whose diagonal vanishes where a constraint is held. [`Real::balance`] gives
-/// them; a constraint has a power of two that brings its row, so scaled, to the size of the others. False, and no scales,
-/// if no constraint is held. Without them light bodies would be lost beside the constraints, whose entries do not
-/// depend on masses.
+/// Scales of rows and columns of a symmetric matrix whose diagonal vanishes at constraints. They come from
+/// [`Real::balance`]; a constraint is scaled by the power of two that brings its scaled row to the size of the
+/// others. Without constraints, returns false and leaves the scales unchanged. Without scales, light bodies would be
+/// lost next to the constraints, whose entries do not depend on masses.
 #[inline]
 pub fn held_scales<T: Real>(scale: &mut [T], entry: impl Fn(usize, usize) -> T) -> bool {
     let size = scale.len();

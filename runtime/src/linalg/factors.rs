@@ -11,7 +11,7 @@ use nalgebra::{SMatrix, SVector};
 /// The factors of a matrix of which the leading `size` rows and columns count.
 #[derive(Clone, Copy, Debug)]
 pub struct Factors<T, const D: usize> {
-    /// Columns: block `L U` factors with the pivot blocks inverted in place, or the matrix itself.
+    /// Columns: block `L U` factors whose pivot blocks are replaced by their inverses, or the matrix itself.
     columns: [[T; D]; D],
     size: usize,
     blocks: bool,
@@ -53,8 +53,8 @@ impl<T: Real, const D: usize> Factors<T, D> {
         }
     }
 
-    /// The absolute value of an entry in a lane, where the matrix is kept as it is, else zero. It is wherever
-    /// the diagonal has zeros.
+    /// The absolute value of an entry in a lane, if the matrix itself is stored, otherwise zero. It is stored if the
+    /// diagonal contains zeros.
     #[must_use]
     pub fn entry(&self, i: usize, j: usize, lane: usize) -> f64 {
         match self.blocks {
@@ -124,7 +124,7 @@ fn factor<T: Real, const D: usize>(a: &mut [[T; D]; D]) -> bool {
     sum.is_finite()
 }
 
-/// The inverse of the block of three at `p`, by cofactors; not finite where it is singular.
+/// The inverse of the block of three rows at `p`, by cofactors; not finite if the block is singular.
 #[inline(always)]
 fn inverse<T: Real, const D: usize>(a: &[[T; D]; D], p: usize) -> [[T; 3]; 3] {
     let at = |row: usize, column: usize| a[p + column][p + row];
@@ -244,7 +244,7 @@ impl DenseFactors {
         done
     }
 
-    /// The absolute value of an entry, where the matrix is kept as it is, else zero.
+    /// The absolute value of an entry, if the matrix itself is stored, otherwise zero.
     #[must_use]
     pub fn entry(&self, i: usize, j: usize) -> f64 {
         match self.blocks {

@@ -4,8 +4,8 @@
 use crate::Real;
 use nalgebra::SMatrix;
 
-/// Jacobi's method squares the off-diagonal entries in each sweep once they are small: seven sweeps
-/// reach double precision for eight rows, nine double-double.
+/// Jacobi's method squares the off-diagonal entries in each sweep once they are small: seven sweeps reach double
+/// precision for eight rows, nine reach double-double.
 const SWEEPS: usize = 12;
 
 /// 1 in the lanes where `x` is positive, 0 in the others.
@@ -13,9 +13,9 @@ fn positive<T: Real>(x: T) -> T {
     x.where_positive(T::one())
 }
 
-/// The frame `U` of a symmetric `A`: `U^T A U` is diagonal to rounding, lane by lane, by cyclic
-/// Jacobi rotations. Only the upper triangle counts. The derivative parts are not the derivatives of
-/// the eigenvectors, so a result computed in the frame must not depend on the choice of frame.
+/// The frame `U` of a symmetric `A`: `U^T A U` is diagonal to rounding, lane by lane, by cyclic Jacobi rotations.
+/// Only the upper triangle counts. The derivative parts are not the derivatives of the eigenvectors, so the caller's
+/// result must not depend on the choice of frame.
 pub fn principal_frame<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     let one = T::one();
     let half = T::from_f64(0.5);
@@ -28,7 +28,7 @@ pub fn principal_frame<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix
         for p in 0..N {
             for q in p + 1..N {
                 let off = a[(p, q)];
-                // 1 where the entry is more than rounding.
+                // 1 if the entry exceeds rounding.
                 let active = positive(off * off - noise);
                 if active.nowhere_positive() {
                     continue;

@@ -1,15 +1,15 @@
-//! Differences from rest: how far a matrix that keeps lengths is from the identity, with all its digits
-//! where it is near. Takes matrices as they are stored, rounded to 1e-16; gives the difference as of
-//! its own size.
+//! Differences from the identity: how far a matrix with unit columns is from the identity, with all digits even if it
+//! is near. Takes matrices whose entries are rounded to 1e-16; gives the difference with an error relative to its own
+//! size.
 
 use crate::Real;
 use nalgebra::SMatrix;
 
-/// `A - 1` of a matrix `A` whose columns have length 1: its diagonal from the other entries, since
-/// `A_ii - 1 = -|A e_i - e_i|²/2`, where the plain difference keeps what `A_ii` was rounded to.
+/// `A - 1` of a matrix `A` whose columns have length 1. The diagonal follows from the other entries, since
+/// `A_ii - 1 = -|A e_i - e_i|²/2`; the plain difference would contain the rounding error of `A_ii`.
 ///
-/// Off the diagonal an entry of order h has its own digits; on it one of order h² is found to h² times
-/// rounding. No entry is near a pole: the identity holds for every angle.
+/// Off the diagonal, an entry of order h has full relative precision; on the diagonal, an entry of order h² has an
+/// error of h² times rounding. The formula does not have poles: the identity holds for every angle.
 #[inline]
 #[must_use]
 pub fn less_identity<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
@@ -35,7 +35,7 @@ mod tests {
     use crate::groups::{Group, Orthogonal, Rotation};
     use nalgebra::Vector3;
 
-    /// `tr(1 - R)` is `4 sin²(|v|/2)` for a turn by `|v|`.
+    /// `tr(1 - R)` is `4 sin²(|v|/2)` for a rotation by `|v|`.
     #[test]
     fn the_trace_keeps_its_digits_at_every_angle() {
         for angle in [
@@ -53,7 +53,7 @@ mod tests {
             let r = Rotation::<f64>::exp(&v).matrix();
             let expected = 4.0 * (angle / 2.0).sin().powi(2);
             let found = -less_identity(&r).trace();
-            // A few roundings of entries of its own size.
+            // A few roundings of entries of the same size.
             assert!((found / expected - 1.0).abs() < 1e-14, "{angle}: {found}");
             let apart = less_identity(&r) - (r - SMatrix::identity());
             assert!(apart.amax() < 1e-15, "{angle}: {apart}");

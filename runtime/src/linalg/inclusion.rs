@@ -3,8 +3,8 @@
 use crate::Real;
 use nalgebra::SMatrix;
 
-/// The `R x C` matrix that puts a vector of length `C` into one of length `R`, from the row `at` on;
-/// its transpose takes it out again.
+/// The `R x C` matrix that embeds a vector of length `C` into a vector of length `R`, starting at row `at`; its
+/// transpose extracts it again.
 #[inline]
 #[must_use]
 pub fn inclusion<T: Real, const R: usize, const C: usize>(at: usize) -> SMatrix<T, R, C> {

@@ -1,7 +1,6 @@
-//! Small dense linear algebra for any [`Real`](crate::Real): hat and vee, determinants, inverses,
-//! linear solves, eigenvalues of a symmetric 3x3 matrix, coefficients of pencils.
-//! Takes and gives nalgebra matrices of fixed size; nothing allocates but [`Dense`], whose size is known when
-//! a model is read.
+//! Small dense linear algebra for any [`Real`](crate::Real): hat and vee, determinants, inverses, linear solves,
+//! eigenvalues of a symmetric 3x3 matrix, coefficients of pencils. Takes and gives nalgebra matrices of fixed size;
+//! only [`Dense`] allocates, whose size is known when a model is read.
 
 mod cofactors;
 mod dense;

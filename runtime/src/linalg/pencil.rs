@@ -5,22 +5,22 @@ use crate::Real;
 use nalgebra::SMatrix;
 
 /// Coefficients of `det(ν + M + λ S)` in which `M` occurs: entry `(j - 1, i)` is the coefficient of
-/// `ν^i λ^(N - j - i)` of degree `j` in `M`; entries with `j + i > N` are zero. By the recursion of
-/// Faddeev and Le Verrier, whose rounding grows with the size: use it for a few rows.
+/// `ν^i λ^(N - j - i)` of degree `j` in `M`; entries with `j + i > N` are zero. Uses the recursion of Faddeev and
+/// Le Verrier, whose rounding error grows with the size: call it for matrices of a few rows.
 #[must_use]
 pub fn pencil_coefficients<T: Real, const N: usize>(
     m: &SMatrix<T, N, N>,
     s: &SMatrix<T, N, N>,
 ) -> SMatrix<T, N, N> {
     let mut out = SMatrix::zeros();
-    // The adjugate's parts of degree j in M, from the identity on.
+    // The coefficients of the adjugate of degree j in M, starting with the identity.
     let mut parts = [SMatrix::<T, N, N>::zeros(); N];
     if let Some(first) = parts.first_mut() {
         *first = SMatrix::identity();
     }
     for k in 1..=N {
         let sign = if k % 2 == 0 { T::one() } else { -T::one() };
-        // From the highest degree down: each part needs itself and the one below.
+        // From the highest degree down: each coefficient needs itself and the next lower one.
         for j in (0..=k).rev() {
             let own = parts.get(j).map_or_else(SMatrix::zeros, |p| s * p);
             let product = match j.checked_sub(1).and_then(|i| parts.get(i)) {
@@ -91,7 +91,7 @@ mod tests {
         assert_eq!(even.len(), even_count(5));
         for i in 0..5 {
             for j in 0..5 {
-                // The coefficients of the others are of order one.
+                // The other coefficients are of order one.
                 let zero = c[(i, j)].abs() < 1e-13;
                 assert_eq!(zero, !even.contains(&(i, j)), "({i}, {j}): {}", c[(i, j)]);
             }

@@ -1,10 +1,10 @@
-//! Products of small square matrices, and one Newton step towards an orthogonal one.
-//! Takes matrices of a size known to the compiler; gives matrices. Loops run down columns, so that they vectorise.
+//! Products of small square matrices, and one Newton step towards an orthogonal one. Takes matrices whose size is
+//! known at compile time; gives matrices. Loops run along columns, so that they vectorise.
 
 use crate::Real;
 use nalgebra::{ArrayStorage, SMatrix};
 
-/// The product, column by column: short loops of a length known to the compiler.
+/// The product, column by column: short loops whose length is known at compile time.
 #[inline(always)]
 pub fn product<T: Real, const N: usize>(
     a: &SMatrix<T, N, N>,

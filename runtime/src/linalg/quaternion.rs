@@ -39,14 +39,14 @@ fn nearest<T: Real>(a: &Matrix4<T>) -> [T; 4] {
     .map(|x| x * quarter)
 }
 
-/// The real part of a quaternion's matrix, `tr(A)/4`; for any other matrix, of the nearest quaternion.
+/// The real part of a quaternion's matrix, `tr(A)/4`; for any other matrix, the real part of the nearest quaternion.
 #[inline]
 #[must_use]
 pub fn quaternion_real<T: Real>(a: &Matrix4<T>) -> T {
     nearest(a)[0]
 }
 
-/// The imaginary part of a quaternion's matrix; for any other matrix, of the nearest quaternion.
+/// The imaginary part of a quaternion's matrix; for any other matrix, the imaginary part of the nearest quaternion.
 #[inline]
 #[must_use]
 pub fn quaternion_imaginary<T: Real>(a: &Matrix4<T>) -> Vector3<T> {

@@ -5,8 +5,8 @@ use nalgebra::SMatrix;
 
 /// The smallest singular value over the largest, between 0 and 1; NaN when an entry is.
 ///
-/// By one-sided Jacobi rotations, which find small singular values to their own rounding where the
-/// eigenvalues of `A^T A` would lose all below `1e-8` of the largest.
+/// One-sided Jacobi rotations give small singular values with full relative precision; the eigenvalues of `A^T A`
+/// would lose all values below `1e-8` of the largest.
 pub fn singular_ratio<const N: usize>(a: &SMatrix<f64, N, N>) -> f64 {
     ratio(&mut a.data.0.clone())
 }
@@ -21,7 +21,7 @@ fn ratio<C: AsRef<[f64]> + AsMut<[f64]> + Clone>(columns: &mut [C]) -> f64 {
     if !entries().all(|x| x.is_finite()) {
         return f64::NAN;
     }
-    // A scale of one keeps squares from overflowing.
+    // Scaling to size one prevents overflow of squares.
     let largest = entries().fold(0.0, |m: f64, x| m.max(x.abs()));
     if largest == 0.0 {
         return 0.0;
@@ -78,7 +78,7 @@ mod tests {
             let a = left
                 * Matrix3::from_diagonal(&Vector3::new(3.0, 3.0 * ratio, 3.0 * ratio.sqrt()))
                 * right;
-            // The entries themselves are rounded: two frames of nine each, and six products.
+            // The entries themselves are rounded: two frames of nine entries each, and six products.
             let off = (singular_ratio(&a) - ratio).abs();
             assert!(off <= 16.0 * f64::EPSILON, "{ratio:e}: {off:e}");
         }

@@ -69,7 +69,7 @@ impl<T: Real> Attitude<T> {
     }
 }
 
-/// The relative quaternion `q* p`: the second frame seen from the first.
+/// The relative quaternion `q* p`: the second frame relative to the first.
 #[inline(always)]
 pub fn between<T: Real>(from: &UnitQuaternion<T>, to: &UnitQuaternion<T>) -> UnitQuaternion<T> {
     from.to(to)

@@ -113,8 +113,8 @@ pub(super) struct Blocks<T> {
     sites: usize,
     /// Whether the first and the last site are also neighbours.
     closed: bool,
-    /// The diagonal block of each site. After factorisation: what remains of it once the previous sites are eliminated,
-    /// inverted or factored.
+    /// The diagonal block of each site. After factorisation: the remainder of the block after the previous sites are
+    /// eliminated, inverted or factored.
     own: Vec<T>,
     /// The block that couples each site to the previous site.
     before: Vec<T>,

@@ -33,7 +33,7 @@ impl fmt::Display for Place {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LineError {
-    /// Too few sites, or more than can be counted.
+    /// Too few sites, or more sites than an index can count.
     Count {
         /// The model's name for the number of sites.
         count: &'static str,

@@ -57,7 +57,7 @@ impl fmt::Display for NoRoot {
         write!(
             f,
             "the equation of the step has no solution connected to h = 0: continuation reached {percent:.1} percent of the \
-             momentum, where the derivative by the velocity becomes singular, not finite, or changes too fast; reduce the \
+             momentum, where the derivative with respect to the velocity becomes singular, not finite, or changes too fast; reduce the \
              step size, or check the parameters of kinetic terms"
         )
     }

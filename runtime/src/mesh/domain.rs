@@ -8,7 +8,7 @@ use crate::Real;
 pub enum Wall {
     /// The direction is periodic.
     Periodic,
-    /// A wall at either end, which reflects.
+    /// Reflecting walls at both ends.
     Solid,
 }
 

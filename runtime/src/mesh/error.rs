@@ -26,7 +26,8 @@ pub enum MeshError {
         /// The other.
         second: usize,
     },
-    /// Three neighbours are so nearly on a line, for their distances, that rounding decides the shape of their cells.
+    /// Three neighbours are so nearly collinear, relative to their distances, that rounding decides the shape of
+    /// their cells.
     Flat {
         /// They.
         sites: [usize; 3],
@@ -57,7 +58,7 @@ pub enum MeshError {
 }
 
 impl MeshError {
-    /// Whether a list has one value for each of so many sites.
+    /// Whether a list has this number of values, one for each site.
     pub(super) fn unless_of_length<V>(list: &[V], sites: usize) -> Result<(), Self> {
         match list.len() {
             given if given == sites => Ok(()),

@@ -17,7 +17,7 @@ pub struct Setting<const D: usize> {
 }
 
 impl<const D: usize> Setting<D> {
-    /// Lengths of a cell of the grid along each direction; without a grid, of the average box per particle.
+    /// Side lengths of a grid cell along each direction; without a grid, of the mean box per particle.
     pub fn cell(&self) -> [f64; D] {
         let lengths = self.domain.lengths;
         match self.grid {
@@ -37,20 +37,20 @@ impl<const D: usize> Setting<D> {
     }
 }
 
-/// A function of the values of one argument at all of its sites, with values at sites of its own: an area of each
-/// cell of a mesh, a depth on a grid. Its other arguments are constant in time.
+/// A function of the values of one argument at all of its sites, with values at its own sites: an area of each cell
+/// of a mesh, a depth on a grid. Its other arguments are constant in time.
 ///
 /// Dot products and sums run in an order that is fixed by the numbers of sites: no result depends on the number of
 /// threads.
 pub trait Functional<T: Real, const D: usize>: Clone + Send + Sync + Sized {
-    /// Value of the argument at one of its sites: of a field of particles `T` for `D = 1` and
-    /// `nalgebra::SVector<T, D>` otherwise, not wrapped around the domain; `T` of another functional.
+    /// Value of the argument at one of its sites: for a field of particles `T` if `D = 1`, otherwise
+    /// `nalgebra::SVector<T, D>`, not wrapped around the domain; for another functional `T`.
     type Argument: Copy + Send + Sync;
-    /// Its other arguments, in their order, as a tuple: `&[T]` with one value a site, or `T`; of one argument
-    /// `(T,)`, of none `()`.
+    /// Its other arguments as a tuple, in their order: `&[T]` with one value per site, or `T`; for a single argument
+    /// `(T,)`, for none `()`.
     type Data<'a>;
 
-    /// Makes its workspace.
+    /// Creates its workspace.
     ///
     /// # Errors
     /// Names the invalid argument.

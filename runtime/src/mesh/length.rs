@@ -1,4 +1,4 @@
-//! The admissible smoothing lengths of a depth: from zero to a hundred domains. A longer one leaves only the mean,
+//! The admissible smoothing lengths of a depth: from zero to a hundred domains. A larger value leaves only the mean,
 //! and rounding of its square, compared with the square of a cell, would change the mass.
 
 use super::Domain;
@@ -43,7 +43,7 @@ pub(super) fn check_length<T: Real, const D: usize>(
             Problem::AssumptionFails {
                 text: "alpha <= 100 L, with L the longest side of the domain",
             },
-            "give a shorter length: smoothed over more than the domain, the depth is its mean",
+            "give a shorter length: smoothing over this length leaves only the mean of the depth",
         );
     }
     Ok(())

@@ -1,5 +1,5 @@
-//! Functions of all sites at once, which models take by name (`mesh A: Real at a = voronoi_area(X);`): what they
-//! are to a stepper, the domains that their particles live in, and what can go wrong.
+//! Functions of all sites at once, which models use by name (`mesh A: Real at a = voronoi_area(X);`): their interface
+//! for steppers, the domains of their particles, and their errors.
 
 mod domain;
 mod error;

@@ -1,5 +1,5 @@
-//! The trajectory as CSV: a header, then one line per sample.
-//! Takes the rows of a run; writes numbers in the shortest form that reads back to the same f64.
+//! The trajectory as CSV: a header, then one line per sample. Takes the rows of a run; writes numbers in the shortest
+//! form that parses to the same f64.
 
 use super::{Rows, names};
 use crate::card::Card;

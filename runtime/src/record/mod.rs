@@ -88,7 +88,7 @@ impl Record {
         }
     }
 
-    /// How many numbers a record of `steps` steps holds when every `every`-th node is kept.
+    /// The number of values in a record of `steps` steps if every `every`-th node is recorded.
     #[must_use]
     pub fn size(card: &Card, steps: u64, every: u64) -> u64 {
         let row = 2 + card.observable_count() + card.invariant_count();
@@ -97,7 +97,7 @@ impl Record {
             .saturating_mul(row as u64)
     }
 
-    /// Drops samples at the end, down to the last node that is wanted.
+    /// Drops samples at the end, down to the last requested node.
     pub fn keep(&mut self, wanted: impl Fn(u64) -> bool) {
         while self.nodes.last().is_some_and(|node| !wanted(*node)) {
             self.nodes.pop();
@@ -119,13 +119,13 @@ impl Observer for Record {
     }
 }
 
-/// Samples that are written row by row, wherever they are kept.
+/// Samples that are written row by row, from any storage.
 pub trait Rows {
     /// How many.
     fn count(&self) -> u64;
 
-    /// Shows one row after the other, each as its words: the node, then the bits of all numbers (time, observables,
-    /// invariants).
+    /// Calls a function with one row after the other, each as words: the node, then the bits of all numbers (time,
+    /// observables, invariants).
     ///
     /// # Errors
     /// Errors of `show`, and of the storage of the rows.

@@ -3,7 +3,7 @@
 
 use crate::card::{Card, Field, Invariant};
 
-/// Name of an invariant's array. The prefix keeps it apart from an observable of the same name.
+/// Name of an invariant's array. The prefix distinguishes it from an observable of the same name.
 #[must_use]
 pub fn invariant(invariant: &Invariant) -> String {
     format!("invariant_{}", invariant.name)

@@ -17,12 +17,12 @@ pub struct Array {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Entries {
-    /// Words of every row, one range after the other; whether they are counts.
+    /// The words of every row in these ranges, in order; `counts` tells whether they are integers.
     Columns {
         columns: Vec<Range<usize>>,
         counts: bool,
     },
-    /// Numbers of their own, the same whatever the rows.
+    /// Numbers that do not come from rows.
     Numbers(Vec<u64>),
 }
 
@@ -33,13 +33,14 @@ impl Array {
         &self.name
     }
 
-    /// How many entries it has along each index.
+    /// Its length along each index.
     #[must_use]
     pub fn shape(&self) -> &[usize] {
         &self.shape
     }
 
-    /// The words of a row that it takes, one range after the other; as an error the counts that no row holds.
+    /// The ranges of words that it takes from a row; for an array that takes nothing from rows, its numbers as the
+    /// error.
     ///
     /// # Errors
     /// The counts of an array that takes nothing of the rows.
@@ -50,7 +51,7 @@ impl Array {
         }
     }
 
-    /// An array of `samples` times `shape` numbers: words `columns` of every row, one range after the other.
+    /// An array of `samples` times `shape` numbers: the words `columns` of every row, range by range.
     #[must_use]
     pub fn of_columns(
         name: &str,
@@ -71,7 +72,7 @@ impl Array {
         }
     }
 
-    /// The array of the nodes: the first word of every row, a count.
+    /// The array of the nodes: the first word of every row, an integer.
     #[must_use]
     pub fn of_nodes(name: &str, samples: u64) -> Self {
         let mut array = Self::of_columns(name, samples, &[], std::iter::once(0..1).collect());
@@ -92,7 +93,7 @@ impl Array {
     }
 }
 
-/// The shape of one value: none of a number, the rows of a vector, rows and columns of a matrix.
+/// The shape of one value: empty for a number, the rows of a vector, the rows and columns of a matrix.
 #[must_use]
 fn shape(rows: usize, cols: usize) -> Vec<usize> {
     match (rows, cols) {
@@ -143,7 +144,7 @@ impl Array {
             Entries::Columns { counts: false, .. } => "<f8",
             Entries::Columns { .. } | Entries::Numbers(_) => "<u8",
         };
-        // A tuple of one needs its comma; more may have it.
+        // A tuple with one entry needs a trailing comma; longer tuples may have one.
         let shape: String = self.shape.iter().map(|n| format!("{n}, ")).collect();
         let mut text = format!(
             "{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}), }}",
@@ -186,7 +187,7 @@ fn length(bytes: usize) -> u16 {
     u16::try_from(bytes).unwrap_or(u16::MAX)
 }
 
-/// A member written, as the directory at the end of the zip repeats it.
+/// A written member, for the directory at the end of the zip.
 struct Member {
     name: String,
     crc: u32,
@@ -225,7 +226,7 @@ pub fn write(file: &mut (impl Write + Seek), rows: &dyn Rows, arrays: &[Array]) 
         let header = array.header();
         let mut member = Member {
             name: format!("{}.npy", array.name),
-            // Known when the data are written.
+            // Set when the data are written.
             crc: 0,
             size: u32::try_from(header.len() + array.size()).map_err(too_large)?,
             offset: u32::try_from(offset).map_err(too_large)?,

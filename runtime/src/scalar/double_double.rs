@@ -308,8 +308,8 @@ impl Real for DoubleDouble {
     }
 
     fn ln(self) -> Self {
-        // One Newton step for exp(y) = x from the 53 bits of the library function, twice so that
-        // arguments near 1, where the logarithm cancels, are as good.
+        // One Newton step for exp(y) = x from the 53 bits of the library function. It is taken twice, so that
+        // arguments near 1, where the logarithm cancels, are equally accurate.
         let mut y = Self::from_f64(self.high.ln());
         if y.is_finite() {
             for _ in 0..2 {
@@ -332,7 +332,7 @@ impl Real for DoubleDouble {
             let growing = self.exp();
             return (growing - Self::one() / growing).scaled(0.5);
         }
-        // The exponentials would cancel: 0.5^31 / 31! is below 1e-43.
+        // The exponentials would cancel, so a series is used: 0.5^31 / 31! is below 1e-43.
         let square = self * self;
         let (mut sum, mut term) = (self, self);
         for k in 1..=15_i32 {

@@ -1,14 +1,14 @@
 //! One lane of a value that consists of scalars, read in place.
 //! Takes a value over lanes and the number of a lane; gives the value over plain numbers.
 //!
-//! Loops over the lanes that do the arithmetic of plain numbers are what compilers vectorise best:
-//! however long, they cost little to compile and fill the registers of each instruction set.
+//! Loops over the lanes with the arithmetic of plain numbers vectorise best: even if they are long, they compile fast
+//! and fill the registers of each instruction set.
 
 use super::Real;
 use nalgebra::{ArrayStorage, SMatrix};
 use num_traits::Zero;
 
-/// A value that consists of scalars and can be read lane by lane. The result is the same as of
+/// A value that consists of scalars and can be read lane by lane. The result equals the result of
 /// [`lane`](super::lane), but only the used parts are copied, for loops of steps.
 pub trait InLanes: Copy {
     /// This type over the scalar of one lane.
@@ -62,7 +62,7 @@ impl<T: Real, const R: usize, const C: usize> InLanes for SMatrix<T, R, C> {
     }
 }
 
-/// Implements [`InLanes`] for a type of the runtime, given its fields and those that all lanes share.
+/// Implements [`InLanes`] for a type of the runtime, given its fields and the fields that all lanes share.
 macro_rules! in_lanes {
     ($Type:ident { $($field:tt),+ $(; $($shared:ident),+)? }) => {
         impl<T: $crate::Real> $crate::scalar::InLanes for $Type<T> {

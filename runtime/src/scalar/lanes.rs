@@ -15,7 +15,7 @@ use num_traits::{One, Zero};
 pub struct Lanes<const N: usize>(pub [f64; N]);
 
 impl<const N: usize> PartialEq for Lanes<N> {
-    /// Looks at all lanes, without a branch for each.
+    /// Tests all lanes without a branch for each.
     #[inline(always)]
     fn eq(&self, other: &Self) -> bool {
         let pairs = self.0.iter().zip(&other.0);

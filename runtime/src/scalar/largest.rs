@@ -8,18 +8,18 @@ use super::Real;
 #[inline(always)]
 #[must_use]
 pub fn larger(a: f64, b: f64) -> f64 {
-    // With a NaN on the left no comparison holds, and it stays.
+    // If `a` is NaN, both tests are false and the result is `a`.
     if b > a || b.is_nan() { b } else { a }
 }
 
-/// The largest absolute value, zero of none; NaN if any is.
+/// The largest absolute value, zero for an empty list; NaN if any value is NaN.
 #[inline]
 #[must_use]
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().map(f64::abs).fold(0.0, larger)
 }
 
-/// The greater of two numbers in each lane, by their real parts; NaN if the second is.
+/// The greater of two numbers in each lane, by their real parts; NaN if the second number is NaN.
 #[inline]
 #[must_use]
 pub fn greater<T: Real>(a: T, b: T) -> T {

@@ -1,12 +1,12 @@
-//! Types made of scalars, over any scalar: parameters, states and their parts. Takes a value over
-//! one scalar and a function of scalars; gives the same value over another: the lanes gathered from
-//! several bodies, or one body out of the lanes.
+//! Types that consist of scalars, over any scalar: parameters, states and their parts. Takes a value over one scalar
+//! and a function of scalars; gives the value over another scalar: lanes collected from several bodies, or one body
+//! extracted from the lanes.
 
 use super::{Lanes, Real};
 use core::array::from_fn;
 use nalgebra::SMatrix;
 
-/// A type whose only data that differ from body to body are scalars.
+/// A type in which only scalars differ between bodies.
 ///
 /// The emitted parameters, initial data and states implement it, field by field.
 pub trait OfScalars: Copy + core::fmt::Debug + Send + Sync {
@@ -16,8 +16,8 @@ pub trait OfScalars: Copy + core::fmt::Debug + Send + Sync {
     /// This type over another scalar.
     type Over<U: Real>: OfScalars<Scalar = U, Over<Self::Scalar> = Self>;
 
-    /// Every scalar replaced by its image, always in the same order. Nothing is checked: the result
-    /// is what its type promises (a unit quaternion, say) as far as `change` keeps it so.
+    /// Replaces every scalar by its image, always in the same order. Nothing is checked: the result satisfies the
+    /// conditions of its type (for example a unit quaternion) only if `change` preserves them.
     fn over<U: Real>(&self, change: &mut impl FnMut(Self::Scalar) -> U) -> Self::Over<U>;
 }
 
@@ -81,7 +81,7 @@ where
         list
     });
     let mut place = 0;
-    // Any body shows where the scalars belong.
+    // Any body gives the positions of the scalars.
     body(0).over(&mut |_| {
         let at = |list: &Vec<f64>| list.get(place).copied().unwrap_or(f64::NAN);
         let lanes = Lanes(lists.each_ref().map(at));
@@ -128,7 +128,7 @@ impl<T: Real, const K: usize> OfScalars for [T; K] {
     }
 }
 
-/// Several values, one inside the other: `(a, (b, (c, [])))`.
+/// Several values as nested pairs: `(a, (b, (c, [])))`.
 impl<A: OfScalars, B: OfScalars<Scalar = A::Scalar>> OfScalars for (A, B) {
     type Scalar = A::Scalar;
     type Over<U: Real> = (A::Over<U>, B::Over<U>);

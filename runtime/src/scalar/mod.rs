@@ -1,5 +1,5 @@
-//! The scalar a stepper runs on: plain `f64`, SIMD lanes, dual numbers or double-double.
-//! Takes nothing; gives the trait [`Real`] and its implementations, one file each.
+//! The scalar a stepper runs on: plain `f64`, SIMD lanes, dual numbers or double-double. The trait [`Real`] and its
+//! implementations, one file each.
 
 mod double;
 mod double_double;
@@ -51,13 +51,13 @@ pub trait Real:
     + Zero
     + One
 {
-    /// The type of one lane: `f64` for types with several lanes, the type itself for types without.
+    /// The type of one lane: `f64` for types with several lanes, the type itself otherwise.
     type One: Real<One = Self::One>;
 
     /// Unit roundoff: the largest relative error of one rounded operation is about this.
     const EPSILON: f64;
 
-    /// How many orders of derivatives a value carries besides its real part (0 for plain numbers).
+    /// The number of orders of derivatives that a value has besides its real part (0 for plain numbers).
     ///
     /// An iteration that stops on the real part must be followed by this many more Newton steps,
     /// each of which makes one more order of derivatives exact.
@@ -106,7 +106,7 @@ pub trait Real:
         self.greatest() <= 0.0
     }
 
-    /// Whether `least() > other.least()`; false if one of both is NaN.
+    /// Whether `least() > other.least()`; false if either is NaN.
     #[inline(always)]
     fn exceeds(self, other: Self) -> bool {
         self.least() > other.least()
@@ -147,8 +147,7 @@ pub trait Real:
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;
 
-    /// -1, 0 or 1 by the sign of the real part in each lane, without derivatives; NaN where it is not
-    /// finite.
+    /// -1, 0 or 1 by the sign of the real part in each lane, without derivatives; NaN if it is not finite.
     #[inline]
     fn sign(self) -> Self {
         let one = Self::one();
@@ -187,8 +186,8 @@ pub trait Real:
 
     /// Rational power `self^(num/den)` of a positive number (any number when `den` is 1).
     ///
-    /// Integer and half-integer exponents use multiplications and one square root only, so that
-    /// they are exact to a few units of rounding. `den = 0` gives NaN.
+    /// Integer and half-integer exponents use only multiplications and one square root, so that they are exact to a
+    /// few roundings. `den = 0` gives NaN.
     #[inline]
     fn powr(self, num: i64, den: i64) -> Self {
         let (num, den) = lowest_terms(num, den);
@@ -200,8 +199,9 @@ pub trait Real:
         }
     }
 
-    /// A power of two near `1 / sqrt(|x|)`, lane by lane, without derivatives; 1 if `x` is zero, subnormal or not finite.
-    /// Multiplied by the powers of the diagonal, rows and columns of a matrix have one size, whatever their units.
+    /// A power of two near `1 / sqrt(|x|)`, lane by lane, without derivatives; 1 if `x` is zero, subnormal or not
+    /// finite. Multiplied by the powers of its diagonal, the rows and columns of a matrix have equal size in any
+    /// units.
     fn balance(self) -> Self {
         let mut scale = Self::one();
         for lane in 0..Self::LANES {

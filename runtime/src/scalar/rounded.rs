@@ -1,5 +1,5 @@
-//! Numbers with a bound on their rounding error. Takes numbers, as they are or rounded once; gives the running error
-//! bound of everything computed from them (Wilkinson).
+//! Numbers with a bound on their rounding error. Takes numbers, exact or rounded once; gives the running error bound
+//! of everything computed from them (Wilkinson).
 
 use super::Real;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -41,7 +41,7 @@ impl Rounded {
         self.error
     }
 
-    /// Whether it is zero and nothing else.
+    /// Whether it is exactly zero.
     #[inline(always)]
     fn is_nothing(&self) -> bool {
         self.value == 0.0 && self.error == 0.0
@@ -66,8 +66,8 @@ impl Rounded {
         }
     }
 
-    /// A function of the number by its value and slope there and a bound of its second derivative within the bounds;
-    /// `steps` roundings are made in it.
+    /// A function of the number, given its value and slope there and a bound of its second derivative within the
+    /// error bounds; `steps` counts its roundings.
     #[inline]
     fn through(self, value: f64, slope: f64, bend: f64, steps: f64) -> Self {
         Self {
@@ -218,7 +218,7 @@ impl Real for Rounded {
         high
     }
 
-    /// If the sign is not known, the result covers both cases: the interval from 0 to `then`.
+    /// If the sign is unknown, the result covers both cases: the interval from 0 to `then`.
     fn where_positive(self, then: Self) -> Self {
         let [low, high] = self.ends();
         if low > 0.0 {
@@ -265,7 +265,8 @@ impl Real for Rounded {
 
     fn sin(self) -> Self {
         let (sin, cos) = self.value.sin_cos();
-        // The argument's own rounding is in its bound; near a zero of the sine the value is small, not its error.
+        // The bound contains the rounding of the argument; near a zero of the sine the value is small, but its error
+        // is not.
         self.through(sin, cos, 1.0, 2.0)
     }
 
@@ -290,7 +291,7 @@ impl Real for Rounded {
         self.through(value, 1.0 - value * value, 0.77, 2.0)
     }
 
-    /// Whether bounds could be given.
+    /// Whether a bound exists.
     fn is_finite(self) -> bool {
         self.magnitude().is_finite()
     }

@@ -1,5 +1,5 @@
-//! The largest step that succeeds instead of one that failed.
-//! Takes a way to try steps; gives the step, by halving and bisection.
+//! The largest step that succeeds instead of one that failed. Takes a function that tries steps; gives the step, by
+//! halving and bisection.
 
 use core::cell::Cell;
 
@@ -43,18 +43,18 @@ const RETURNS: usize = 8;
 
 /// The largest step not beyond `h` whose ratio is at most 1, by bisection.
 ///
-/// `solvable` gives the bound ratio at a trial step, or `None` where it cannot be evaluated.
-/// Torques that depend on the step require a search. The result is slightly (1e-12) inside the
-/// bound, so that the solver accepts it. Shorter steps are tried too, so that the result is not an
-/// isolated success beyond steps that fail. It is 0 if no step above `h / 2^380` succeeds. It is
-/// also 0 within a trial of another search, which only needs to know whether the trial succeeds.
+/// `solvable` gives the ratio to the bound at a trial step, or `None` if it cannot be evaluated. Torques that depend
+/// on the step require a search. The result is slightly (1e-12) inside the bound, so that the solver accepts it.
+/// Shorter steps are tried too, so that the result is not an isolated success among failing steps. It is 0 if no step
+/// above `h / 2^380` succeeds. It is also 0 within a trial of another search, which only needs to know whether the
+/// trial succeeds.
 #[must_use]
 pub fn largest_step(h: f64, solvable: impl Fn(f64) -> Option<f64>) -> f64 {
     search(h, TO_ROUNDING, &solvable)
 }
 
-/// A share of a step that a `dear` trial confirms: the largest share found with `cheap` trials, less a
-/// millionth or more. If no share down to 0.6 of it is confirmed, the search uses `dear` trials only.
+/// The fraction of a step that a `dear` trial confirms: the largest fraction found with `cheap` trials, minus a
+/// millionth or more. If no fraction down to 0.6 of it is confirmed, the search uses `dear` trials only.
 pub(crate) fn confirmed_step(
     cheap: &dyn Fn(f64) -> Option<f64>,
     dear: &dyn Fn(f64) -> Option<f64>,

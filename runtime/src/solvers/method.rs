@@ -19,7 +19,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// All of them, in the order in which they are offered.
+    /// All solvers, in the order in which they are offered.
     pub const ALL: [Method; 5] = [
         Method::Kappa,
         Method::LieNewton,
@@ -43,7 +43,7 @@ impl Method {
     /// All names, in the same order.
     pub const NAMES: [&'static str; 5] = ["kappa", "lie-newton", "davenport", "sign", "schur"];
 
-    /// All names, for factors that would need a preparation in each step; the first needs none.
+    /// All names, with the solver that needs no preparation first, for factors that change in each step.
     pub const DAVENPORT_FIRST: [&'static str; 5] =
         ["davenport", "kappa", "lie-newton", "sign", "schur"];
 
@@ -75,7 +75,7 @@ impl fmt::Display for Method {
     }
 }
 
-/// A name that is none of [`Method::ALL`].
+/// A name that is not in [`Method::ALL`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoSuchMethod;
 

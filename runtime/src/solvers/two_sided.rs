@@ -1,6 +1,6 @@
 //! The linear equation of a step: `L (Ω - Id) R = M` on GL(n), `L ΔQ R Q^T = M` with constant factors, and
-//! `L ΔX R = P` for a field. It is solved by small systems for `L` and `R` instead of one in all entries. Takes the
-//! factors and the known side; gives the velocity.
+//! `L ΔX R = P` for a field. It is solved by small systems for `L` and `R` instead of one system for all entries.
+//! Takes the factors and the known side; gives the velocity.
 
 use crate::Real;
 use crate::groups::{Additive, Linear};

@@ -1,13 +1,13 @@
-//! Checks of the initial data of models with constraints: the configuration must satisfy them, and its
-//! momentum must be tangent to them.
-//! Takes the constraint as the model writes it, with numbers; gives nothing, or an error with them.
+//! Checks of the initial data of models with constraints: the configuration must satisfy them, and its momentum must
+//! be tangent to them. Takes the constraint as the model states it, with numbers; gives an error with these numbers
+//! if a check fails.
 
 use crate::{ParameterError, Problem, Real};
 
 /// The first step solves the constraint to rounding: data typed with ten digits are on it.
 const OFF: f64 = 1e-9;
 
-/// Constraint forces take what is not tangent: data typed with eight digits are tangent.
+/// The constraint forces absorb a small normal part: data typed with eight digits count as tangent.
 const ACROSS: f64 = 1e-7;
 
 /// The initial configuration satisfies a constraint.
@@ -35,8 +35,8 @@ pub fn on_constraint<T: Real>(
     })
 }
 
-/// The initial momentum is tangent to a constraint. `impulse` is the multiplier that the projection found,
-/// `taken` the size of the part that it removes from a momentum of size `whole`.
+/// The initial momentum is tangent to a constraint. `impulse` is the multiplier that the projection found, `taken`
+/// the size of the removed part of a momentum of size `whole`.
 ///
 /// # Errors
 /// If the projection removes more than rounding, or does not determine the multiplier.
@@ -56,7 +56,7 @@ pub fn along_constraint<T: Real>(
         });
     }
     let (taken, whole) = (taken.magnitude(), whole.magnitude());
-    // A constraint with the multiplier zero removes nothing: the error belongs to another constraint.
+    // A constraint with multiplier zero removes nothing: the error then belongs to another constraint.
     if taken <= ACROSS * whole || impulse.magnitude() == 0.0 {
         return Ok(());
     }

@@ -1,5 +1,5 @@
-//! Checks of initial data by their types: elements of groups and momenta are what they are by construction, and may
-//! still hold numbers that are not finite.
+//! Checks of initial data by their types: elements of groups and momenta are valid by construction, but may still
+//! contain numbers that are not finite.
 
 use super::finite;
 use crate::groups::{
@@ -11,7 +11,7 @@ use crate::{ParameterError, Real};
 
 /// An element or a momentum that a trajectory starts from.
 pub trait Initial {
-    /// Every number of it is finite, as [`finite`].
+    /// Every number of it is finite, see [`finite`].
     ///
     /// # Errors
     /// Names the first number that is not.

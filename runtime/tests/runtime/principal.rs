@@ -128,7 +128,8 @@ fn judge<J: Judged>(name: &str, unit: &DVector<f64>) {
         }
     }
     println!("{name}: {tally:?}");
-    // Never another root. Close to the edge of the domain, a proof occasionally fails for a solvable step.
+    // The result is never another root. Close to the edge of the domain, a proof occasionally fails for a solvable
+    // step.
     assert_eq!(tally.other, 0, "{name}");
     assert!(tally.needless * 100 <= problems(), "{name}: {tally:?}");
     // Both outcomes occur, and at least a third of the problems count: many problems of the ellipsoid leave its domain.

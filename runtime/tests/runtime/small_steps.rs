@@ -20,8 +20,8 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// The same, written otherwise: by moved points, by a number less the trace, in space, by the real part
-    /// of a quaternion, for the rotation of a rigid motion.
+    /// The same in other notation: by moved points, by a number minus the trace, in space, by the real part of a
+    /// quaternion, for the rotation of a rigid motion.
     model Quartics {
         param J: Sym<3>;
         param k: Real;

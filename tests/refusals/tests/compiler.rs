@@ -1,12 +1,12 @@
-//! Wrong models and what the compiler says of them: one fault a file of `tests/ui/`, whose `.stderr` holds the messages. A few
-//! are judged here, all by the engine alone in `refusals` of `derivation`. To write messages anew:
-//! `TRYBUILD=overwrite cargo test --profile quick -p clebsch-refusals --test compiler`.
+//! Wrong models and the messages of the compiler: one fault per file of `tests/ui/`, whose `.stderr` contains the
+//! messages. A few run here; `refusals` of `derivation` tests all of them with the engine alone. To write messages
+//! anew: `TRYBUILD=overwrite cargo test --profile quick -p clebsch-refusals --test compiler`.
 
-/// Where the faults are.
+/// The folder of the faults.
 const FOLDER: &str = "tests/ui";
 
-/// One fault for each way in which a message reaches the compiler: several at once, a refusal of the emitter, names that
-/// other code uses, warnings, a range of tokens.
+/// One fault for each way in which a message reaches the compiler: several at once, a rejection by the emitter, names
+/// that other code uses, warnings, a range of tokens.
 const COMPILED: [&str; 5] = [
     "several_faults",
     "group_too_large",

@@ -1,5 +1,5 @@
-//! Citations of the gallery: the derivation prints every entry of a model's citation table, at equations of the model, and prints
-//! nothing else. Snapshots and `generated/` show at which equation an entry appears.
+//! Citations of the gallery: the derivation prints every entry of a model's citation table, at equations of the
+//! model, and prints no other citations. Snapshots and `generated/` show at which equation an entry appears.
 
 use clebsch_core::document::{Citations, printed_telling};
 use clebsch_core::print::Format;

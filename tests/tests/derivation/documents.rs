@@ -1,6 +1,6 @@
-//! What the documents show is what the programs do: the models of the pages about the language and of the first page derive, the
-//! extract of a derivation is part of what is printed, and the figures equal, byte for byte, the ones that the command
-//! writes.
+//! The documents show what the programs do. The models on the language pages and on the first page derive. The
+//! extract of a derivation is part of the printed derivation, and the figures equal the figures that the command
+//! writes, byte for byte.
 
 use clebsch_cli::gallery::Gallery;
 use clebsch_cli::{Streams, execute};
@@ -32,7 +32,7 @@ fn every_model_of_the_language_pages_derives() {
     }
 }
 
-/// Links between the pages, which rustdoc reads too, have their targets in the same folder.
+/// Links between the pages, which rustdoc also resolves, have their targets in the same folder.
 #[test]
 fn the_language_pages_link_to_each_other() {
     for name in ["tutorial", "language", "limits"] {
@@ -52,12 +52,12 @@ fn the_language_pages_link_to_each_other() {
     }
 }
 
-/// Words and signs without the breaks between lines, which depend on what stands before.
+/// The text without line breaks, which depend on the preceding words.
 fn flat(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The first block of a kind that follows these words.
+/// The first block of a kind after these words.
 fn block_after<'a>(page: &'a str, words: &str, kind: &str) -> &'a str {
     let rest = page.split(words).nth(1).expect("the words");
     let block = rest.split(&format!("```{kind}\n")).nth(1).expect("a block");
@@ -91,7 +91,7 @@ fn the_extract_on_the_first_page_is_what_is_printed() {
             "not in the derivation any more: {equation}"
         );
         assert!(shown.contains(&flat(equation)), "{equation}");
-        // A changed number or sign is noticed.
+        // A changed number or sign is detected.
         assert!(!printed.contains(&flat(&equation.replace("= ", "= -"))));
     }
     let refused = block_after(&page, "If a model is wrong", "text");

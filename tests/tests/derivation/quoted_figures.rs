@@ -11,7 +11,7 @@ struct Place {
     column: &'static str,
 }
 
-const PEERS: &str = "## The free body beside other methods";
+const PEERS: &str = "## The free body compared with other methods";
 
 const fn place(row: &'static str, column: &'static str) -> Place {
     Place {

@@ -11,7 +11,7 @@ use kinds::{judge, judge_mutated};
 use probe::probe_all;
 use std::ops::Range;
 
-/// The inputs after those of `main.rs`; `FUZZ_INPUTS=100000` requests a hundred thousand of each kind.
+/// The inputs that follow the inputs of `main.rs`; `FUZZ_INPUTS=100000` requests a hundred thousand of each kind.
 fn inputs() -> Range<u64> {
     FUZZED..asked_for("FUZZ_INPUTS", FUZZED_LONG)
 }

@@ -320,7 +320,8 @@ pub fn mutate(source: &mut Source, models: &[Vec<String>]) -> String {
             .cloned();
         match source.below(18) {
             13..=17 => {
-                // Replaces the token with another of the same kind from the same model; many results remain valid models.
+                // Replaces the token with another of the same kind from the same model; many results are still valid
+                // models.
                 let kind = kind_of(&tokens[here]);
                 let alike: Vec<String> = tokens
                     .iter()

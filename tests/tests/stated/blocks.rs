@@ -47,7 +47,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A body stated in space, one whose kinetic energy is quartic, and a pair with a joint.
+    /// A body stated in space, a body whose kinetic energy is quartic, and two bodies with a joint.
     model Kinds {
         param J: Sym<3>;
         param a, b: Vec<3>;
@@ -68,7 +68,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// Two bodies, one beside the edge of what its potential is defined on.
+    /// Two bodies, one near the boundary of the domain of its potential.
     model Brink {
         param J: Sym<3>;
         param a, z: Vec<3>;
@@ -414,7 +414,7 @@ fn the_edge_of_a_domain_is_met_once() {
     for gap in [1e-2, 1e-4, 1e-6] {
         let mut initial = at(edge - gap);
         initial.body_momentum_R = BodyMomentum(Vector3::x());
-        // So weak that only the edge of its domain matters.
+        // So weak that only the boundary of the domain matters.
         let model = model(1e-30, 0.5);
         let error = model.start(initial, 0.2).expect_err("over the edge");
         let StartError::Refused(StepCause::Contact(contact)) = error else {

@@ -244,7 +244,7 @@ fn order_two() {
 }
 
 clebsch::model! {
-    /// The same body with what is assumed of its factor.
+    /// The same body with assumptions about its factor.
     model Assumed {
         dim n in 3..=4;
         param C: Mat<n>;

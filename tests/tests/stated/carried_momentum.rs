@@ -30,7 +30,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// The same bodies seen from themselves.
+    /// The same bodies in the body frame.
     model PairInBodies {
         param J1, J2: Sym<3>;
         param d1, d2: Vec<3>;
@@ -46,7 +46,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// The same bodies stated by their attitudes, the second one with a spring as well.
+    /// The same bodies stated by their attitudes; the second body also has a spring.
     model PairUnreduced {
         param J1, J2: Sym<3>;
         param d1, d2: Vec<3>;
@@ -89,7 +89,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A tensor constant in space, and the side of space: what is conserved is the body momentum.
+    /// A tensor that is constant in space, with a spatial velocity: the body momentum is conserved.
     model ConstantInSpace {
         param J: Sym<3>;
         group A: SO<3> velocity a;
@@ -99,7 +99,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// The same motion stated from the body, which carries the tensor.
+    /// The same motion in the body frame, where the tensor is advected.
     model CarriedByBody {
         group A: SO<3> velocity a;
         advected J: Sym<3>;
@@ -110,7 +110,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A body by quaternions and one by rotations, whose angular velocities are coupled in space.
+    /// A body with a quaternion and a body with a rotation, whose angular velocities are coupled in space.
     model MixedPair {
         param J, S: Sym<3>;
         param e: Real;

@@ -7,7 +7,7 @@ use clebsch::{BodyImpulse, BodyMomentum, RigidMotion, Rotation};
 use clebsch_oracle::physics::measure::worse;
 
 clebsch::model! {
-    /// A body in a uniform field and in one with a gradient, of which it is told what they are in space.
+    /// A body in a uniform field and in a field with a gradient, both given in space.
     model FieldsDefined {
         param J: Sym<3>;
         param K: Sym<3>;
@@ -25,7 +25,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// The same, told what is seen from the body at node 0.
+    /// The same fields, given in the body frame at node 0.
     model FieldsGiven {
         param J: Sym<3>;
         param K: Sym<3>;
@@ -41,7 +41,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// Two bodies drawn to a common orientation, which either sees from itself.
+    /// Two bodies with a coupling towards a common orientation, relative to either body.
     model PairDefined {
         param J1, J2: Sym<3>;
         param C: Mat<3>;
@@ -56,7 +56,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// The same, told how one sees the other at node 0.
+    /// The same, with the initial orientation of one body relative to the other.
     model PairGiven {
         param J1, J2: Sym<3>;
         param C: Mat<3>;
@@ -71,7 +71,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A body with weight in a fluid at rest, told where the plane of height 0 is in space.
+    /// A body with weight in a fluid at rest, with the plane of height 0 given in space.
     model SinkingDefined {
         param J, M: Sym<3>;
         param b, Z: Vec<4>;
@@ -85,7 +85,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// The same, told how the body sees that plane at node 0.
+    /// The same, with the plane given in the body frame at node 0.
     model SinkingGiven {
         param J, M: Sym<3>;
         param b: Vec<4>;

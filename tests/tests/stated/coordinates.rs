@@ -1,4 +1,5 @@
-//! Space described by scalar coordinates and shorter vectors: clebsch finds its rotations, and the steps conserve their momenta.
+//! Space described by scalar coordinates and shorter vectors: clebsch finds its rotations, and the steps conserve
+//! their momenta.
 
 use clebsch::nalgebra::{Vector1, Vector2, Vector3};
 use clebsch::{Additive, FieldMomentum};

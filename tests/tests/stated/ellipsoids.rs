@@ -9,7 +9,7 @@ use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::square::Square;
 
 clebsch::model! {
-    /// Stored energy of the stretch seen from the reference.
+    /// Stored energy of the stretch in the reference frame.
     model Convective {
         dim n in 2..=4;
         param C0, I0: Sym<n>;

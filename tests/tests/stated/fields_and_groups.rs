@@ -52,7 +52,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// The same by its attitude and its place.
+    /// The same, stated by its attitude and its position.
     model Split {
         param J, M: Sym<3>;
         param D: Mat<3>;

@@ -31,7 +31,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A free body under another name and sign.
+    /// A free body with another name and sign.
     model Tumbler {
         scale -h;
         param P: Sym<3>;

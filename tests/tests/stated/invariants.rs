@@ -5,7 +5,7 @@ use clebsch::card::{Card, Conserved, Settings};
 use clebsch_oracle::physics::measure::worse;
 
 clebsch::model! {
-    /// Lagrange's top by what is assumed of its parameters.
+    /// Lagrange's top, stated by assumptions on its parameters.
     model LagrangeTop {
         param J: Sym<3>;
         param gU, z: Vec<3>;
@@ -38,7 +38,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// Two bodies seen from space whose axes attract each other.
+    /// Two bodies in the space frame whose axes attract each other.
     model AttractingPair {
         param w: Real;
         group A: SO<3> velocity a;
@@ -69,7 +69,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// The same in four dimensions, seen from space.
+    /// The same in four dimensions, in the space frame.
     model FreeBodyInSpace {
         param C: Sym<4>;
         group Λ: SO<4> velocity ω;

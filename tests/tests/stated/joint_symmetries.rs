@@ -5,7 +5,7 @@
 use clebsch::card::{Card, Conserved, Settings, Trajectory};
 
 clebsch::model! {
-    /// A quaternion and a rotation in gravity, coupled by their axes; each with its own vertical.
+    /// A quaternion and a rotation in gravity, with coupled axes; each has its own vertical.
     model TwoVerticals {
         param I, J: Sym<3>;
         param a, b, y, z, d, e: Vec<3>;
@@ -48,7 +48,7 @@ clebsch::model! {
     }
 }
 clebsch::model! {
-    /// Two isotropic bodies whose potential sees how one is turned against the other from space.
+    /// Two isotropic bodies whose potential depends on their relative rotation in space.
     model Isotropic {
         param c, d: Real;
         param A: Mat<3>;
@@ -60,7 +60,7 @@ clebsch::model! {
     }
 }
 clebsch::model! {
-    /// What depends on the angle of a turn alone.
+    /// A potential that depends only on the angle of a rotation.
     model Angle {
         param c, k: Real;
         group Λ: SO<3> velocity Ω;
@@ -81,7 +81,7 @@ clebsch::model! {
     }
 }
 clebsch::model! {
-    /// An affine body whose potential holds one entry of its configuration.
+    /// An affine body whose potential contains one entry of its configuration.
     model Affine {
         param I0: Sym<3>;
         param a, b: Vec<3>;

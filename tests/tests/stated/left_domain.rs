@@ -22,7 +22,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// The free ellipsoid seen from its reference.
+    /// The free ellipsoid in the reference frame.
     model EllipsoidInBody {
         param I: Sym<3>;
         group Q: GL<3> velocity V;
@@ -248,7 +248,7 @@ fn a_motion_that_turns_back_before_it_is_not_stopped() {
 }
 
 clebsch::model! {
-    /// An elastic body with a volume that it keeps.
+    /// An elastic body with constant volume.
     model ElasticAtRest {
         param s: Real;
         group Q: GL<3> velocity V;

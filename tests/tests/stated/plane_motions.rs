@@ -12,8 +12,8 @@ use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 
 clebsch::model! {
-    /// Terms of the oracle, seen from the body: second moments about its origin, a potential, and what is
-    /// linear in the velocity.
+    /// Terms of the oracle in the body frame: second moments about its origin, a potential, and a term linear in the
+    /// velocity.
     model BodySum {
         param a5, a14, a15, a19: Real;
         param A: Mat<2>;
@@ -51,7 +51,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A body of the plane with its weight at an arm, stated by places.
+    /// A body in the plane whose weight has a lever arm, stated by positions.
     model Sledge {
         param J: Sym<2>;                    // second moments about the body's origin
         param m: Real;

@@ -14,7 +14,7 @@ use clebsch_oracle::printed::{Value, quaternion};
 use reading::{ROUNDING, evaluated, printed};
 
 clebsch::model! {
-    /// Body with a rotor, in gravity whose sign stands in the parameters.
+    /// A body with a rotor, in gravity whose sign is in the parameters.
     model Gyrostat {
         param J: Sym<3>;
         param l, a, z: Vec<3>;
@@ -39,7 +39,7 @@ clebsch::model! {
     }
 }
 clebsch::model! {
-    /// A rigid motion whose linear part does not stand still.
+    /// A rigid motion whose linear part moves.
     model DriftingBody {
         param J, M: Sym<3>;
         param l, p: Vec<3>;

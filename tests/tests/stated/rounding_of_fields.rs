@@ -17,7 +17,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// Three masses: each pair has another spring.
+    /// Three masses with a different spring for each pair.
     model Three {
         param k, l: Real;
         field X, Y, Z: Vec<3>;

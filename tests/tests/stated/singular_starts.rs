@@ -62,7 +62,7 @@ fn a_start_where_nothing_is_defined_is_refused_for_that() {
 }
 
 clebsch::model! {
-    /// A number whose potential holds the step itself, which is named.
+    /// A number whose potential contains the step size, which has a name.
     model Stepped {
         time k step tau;
         param m: Real;

@@ -38,7 +38,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// Body of any dimension seen from space, its inertia carried along.
+    /// A body of any dimension in the space frame, with advected inertia.
     model SpatialN {
         dim n in 3..=4;
         param K: Sym<n>;
@@ -90,7 +90,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A rotation in space and one in four dimensions, tied by nothing but the solve.
+    /// A rotation in space and a rotation in four dimensions, coupled only by the solver.
     model Pair {
         param J: Sym<3>;
         param K: Sym<4>;

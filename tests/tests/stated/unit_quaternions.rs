@@ -23,7 +23,7 @@ use clebsch_oracle::oracle::square::Square;
 use clebsch_oracle::physics::measure::worse;
 
 clebsch::model! {
-    /// A top, seen from the body; its inertia has axes of its own.
+    /// A top in the body frame; its inertia has other axes.
     model QuaternionTop {
         param a0, b, a13, a14: Real;
         param S: Sym<3>;
@@ -37,7 +37,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// The same seen from space: body and lever are carried.
+    /// The same in the space frame: body and lever arm are advected.
     model QuaternionTopSpatial {
         param a0, b, a13, a14: Real;
         param z: Vec<3>;

@@ -49,7 +49,7 @@ const SLOW: (u32, usize) = (500, 25);
 /// Prints the tables.
 pub fn tables() {
     println!(
-        "h = {H}; {} blocks of {STEPS} steps each way ({} of {} for the solvers by name), interleaved with the generated stepper",
+        "h = {H}; {} blocks of {STEPS} steps for each method ({} of {} for the solvers by name), interleaved with the generated stepper",
         2 * QUADRUPLES,
         2 * SLOW.1,
         SLOW.0
@@ -67,7 +67,7 @@ pub fn tables() {
 /// The table of one body.
 struct Table {
     start: Start,
-    /// Time of the hand-written step over that of the generated step.
+    /// Time of the hand-written step, divided by the time of the generated step.
     by_hand: f64,
 }
 

@@ -25,7 +25,7 @@ pub struct Run {
     pub setting: String,
     /// Number of trajectories in lanes.
     pub lanes: usize,
-    /// The end time, the multiple of the step size closest to that of the problem.
+    /// The end time: the multiple of the step size that is closest to the end time of the problem.
     pub time: DoubleDouble,
     /// Runs it.
     pub make: Box<dyn Fn() -> End>,

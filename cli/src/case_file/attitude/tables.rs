@@ -11,7 +11,7 @@ use toml::de::{DeTable, DeValue};
 /// Two unit directions are opposite if the length of their sum is at most this.
 const OPPOSITE: f64 = 1e-9;
 
-/// The tables that state a rotation: the keys of each.
+/// The tables that describe a rotation: the keys of each.
 const TABLES: [&[&str]; 5] = [
     &["axis", "angle"],
     &["euler", "angles"],
@@ -91,7 +91,7 @@ fn direction(key: &str, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Vector3
     }
 }
 
-/// The turn by an angle about a unit vector, by the right hand.
+/// The right-handed rotation by an angle about a unit vector.
 fn about(axis: Vector3<f64>, angle: f64) -> Matrix3<f64> {
     let (sine, cosine) = sine_and_cosine(angle);
     let hat = axis.cross_matrix();
@@ -107,13 +107,14 @@ pub(super) fn sine_and_cosine(angle: f64) -> (f64, f64) {
     (exact(sine), exact(cosine))
 }
 
-/// The product of turns about coordinate axes in the order of the letters.
+/// The product of rotations about coordinate axes, in the order of the letters.
 fn euler(
     axes: &DeValue<'_>,
     angles: &DeValue<'_>,
     of: &Numbers<'_>,
 ) -> Result<Matrix3<f64>, String> {
-    let wrong = "euler: expected three axes, neighbours different, such as \"zxz\" or \"zyx\"";
+    let wrong =
+        "euler: expected three axes, each different from its neighbour, such as \"zxz\" or \"zyx\"";
     let letters = axes.as_str().ok_or(wrong)?.to_lowercase();
     let axes: Option<Vec<usize>> = letters.chars().map(|c| "xyz".find(c)).collect();
     let axes = axes.ok_or(wrong)?;

@@ -68,7 +68,7 @@ impl Reader<'_> {
         }
         let mut each = Vec::new();
         for name in data.names() {
-            // A name that already has a value keeps it.
+            // A name that already has a value keeps this value.
             if let Some(mesh) = self.mesh(&name)
                 && self.number(q, &name, 0).is_none()
             {

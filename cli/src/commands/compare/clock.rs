@@ -8,7 +8,7 @@ use std::time::Instant;
 
 const BLOCKS: usize = 5;
 
-/// Steps of a block: some 20 microseconds at least, far above the resolution of the clock.
+/// Steps of a block: at least about 20 microseconds, far above the resolution of the clock.
 const STEPS: u64 = 2_000;
 
 /// The generated stepper; `None` if it does not complete the steps.

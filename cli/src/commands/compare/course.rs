@@ -1,6 +1,5 @@
-//! The runs that are compared: the results of each method at the same nodes.
-//! Takes a plan; gives records of observables and invariants. For other methods, the model itself computes them
-//! from the state of the method.
+//! The runs that are compared: the results of each method at the same nodes. Takes a plan; gives records of
+//! observables and invariants. For other methods, the model computes them from the state of the method.
 
 use crate::plan::Plan;
 use crate::terminal::failure::Failure;
@@ -19,7 +18,7 @@ const PARTS: [u32; 6] = [1, 2, 3, 4, 6, 8];
 pub(crate) struct Course {
     /// The samples. There are fewer than requested if the method stopped.
     pub record: Record,
-    /// The node that was not reached, and why.
+    /// The node that was not reached, and the reason.
     pub stopped: Option<(u64, String)>,
 }
 
@@ -68,7 +67,7 @@ pub(crate) fn up_to_stop(
     Ok((course, summary.drifts.iter().map(|d| d.scale).collect()))
 }
 
-/// Another method's course.
+/// The course of another method.
 pub(crate) fn other(card: &Card, plan: &Plan, offer: &Offer) -> Course {
     let mut course = Course {
         record: empty(card),
@@ -108,9 +107,9 @@ fn follow(
     Ok(())
 }
 
-/// A reference for any model: the generated stepper with smaller and smaller step sizes, extrapolated to step
-/// size zero (Richardson; Neville's scheme). It measures the error of the step, not of the equations. Gives the
-/// run and the change due to the smallest step size, relative to the largest component of each observable.
+/// A reference for any model: the generated stepper with smaller and smaller step sizes, extrapolated to step size
+/// zero (Richardson; Neville's scheme). It measures the error of the step, not of the equations. Returns the run and
+/// the change due to the smallest step size, relative to the largest component of each observable.
 ///
 /// # Errors
 /// Failed: a run with a smaller step size is not completed.

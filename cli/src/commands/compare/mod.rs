@@ -36,7 +36,7 @@ const FILES: [&str; 3] = ["comparison.csv", "comparison.json", "comparison.svg"]
 pub(crate) struct Comparison {
     /// The reference for the errors, and its accuracy as far as it is known.
     pub reference: String,
-    /// How the model's own stepper came about.
+    /// How the model's own stepper was obtained.
     pub made: StepperOrigin,
     /// The model's own stepper first, the reference last.
     pub scores: Vec<Score>,
@@ -104,7 +104,7 @@ pub fn compare(
     Ok(code)
 }
 
-/// How the stepper of a model came about.
+/// How the stepper of a model was obtained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StepperOrigin {
     /// It was generated as Rust and compiled.
@@ -133,7 +133,8 @@ pub(crate) fn against_all(
     made: StepperOrigin,
     progress: bool,
 ) -> Result<Comparison, Failure> {
-    // Other methods implement the equations of the gallery. A different model with the same name has none.
+    // Other methods implement the equations of the gallery. A different model with the same name does not have such
+    // methods.
     let shipped = clebsch_models::find(card.kebab);
     let offers = match shipped.is_some_and(|e| e.card.fingerprint == card.fingerprint) {
         true => offers(card.kebab),

@@ -48,7 +48,7 @@ pub(crate) struct Score {
     pub drifts: Vec<Curve>,
     /// Time per step.
     pub nanoseconds: Option<f64>,
-    /// The node that was not reached, and why.
+    /// The node that was not reached, and the reason.
     pub stopped: Option<(u64, String)>,
 }
 

@@ -20,7 +20,7 @@ pub(super) struct Level {
     pub steps: u64,
     /// The error of each quantity, relative to its largest size.
     pub errors: Vec<f64>,
-    /// The order between the previous step size and this one. `None` for the first step size, and if the errors
+    /// The order between the previous step size and this step size. `None` for the first step size, and if the errors
     /// are rounding.
     pub orders: Vec<Option<f64>>,
 }
@@ -32,8 +32,8 @@ pub(super) struct Measured {
     pub names: Vec<&'static str>,
     /// The largest step size first.
     pub levels: Vec<Level>,
-    /// The order of each quantity: the slope of a line fitted to the logarithms of its errors. `None` if fewer
-    /// than two errors exceed rounding.
+    /// The order of each quantity: the slope of a line fitted to the logarithms of its errors. `None` if fewer than
+    /// two errors exceed rounding.
     pub fitted: Vec<Option<f64>>,
 }
 
@@ -215,7 +215,7 @@ mod tests {
             .is_settled(0)
         };
         assert!(of(&[0.5, 1.9, 1.95, 2.0]));
-        // Steps that are too long: the orders of a model that reaches 2 later.
+        // The steps are too long: these orders belong to a model that reaches order 2 later.
         assert!(!of(&[0.9, 0.58, 0.56]));
         assert!(!of(&[2.0, 2.0]));
     }

@@ -101,7 +101,7 @@ fn lower(done: &Measured, order: u32) -> Option<String> {
     let unsettled = all()
         .enumerate()
         .any(|(at, (_, fitted))| is_lower(fitted) && !settles(at));
-    // Another quantity that converges as the step does shows that the motion itself does.
+    // If another quantity converges with the order of the step, the motion itself does too.
     let as_the_step = all().find(|(_, fitted)| fitted.is_some() && !is_lower(fitted));
     let cause = match as_the_step {
         _ if unsettled => format!(

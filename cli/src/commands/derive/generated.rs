@@ -34,7 +34,7 @@ pub fn files(d: &Derivation, citations: Citations) -> Result<Vec<(String, String
     ])
 }
 
-/// The emitted module as a file of its own, formatted, without the derivation in its documentation.
+/// The emitted module as a separate file, formatted, without the derivation in its documentation.
 ///
 /// # Errors
 /// The reason why no stepper is emitted for the model.

@@ -114,10 +114,9 @@ fn format(matches: &ArgMatches) -> Result<&str, Failure> {
 /// The largest width of plain text on a wider terminal.
 const PAGE: usize = 100;
 
-/// The derivation of the model text `source`, from the file or model `name`, with its citations and the
-/// requested proofs. `format` is text, latex, markdown, rust or json, or the ending of such a file. Lines of
-/// plain text have at most `width` letters. The second value contains the warnings, with line, column and
-/// caret.
+/// The derivation of the model text `source`, from the file or model `name`, with its citations and the requested
+/// proofs. `format` is text, latex, markdown, rust or json, or the ending of such a file. Lines of plain text have at
+/// most `width` characters. The second value contains the warnings, with line, column and caret.
 pub(crate) fn derived(
     name: &str,
     source: &str,
@@ -253,7 +252,8 @@ fn write_all(gallery: &Gallery, folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes a temporary file and renames it, so that a reader sees either the old or the new file whole.
+/// Writes a temporary file and renames it, so that a reader sees either the complete old file or the complete new
+/// file.
 fn replace_file(folder: &Path, file: &str, contents: &str) -> Result<(), Failure> {
     let (partial, target) = (folder.join(format!(".{file}.partial")), folder.join(file));
     std::fs::write(&partial, contents)

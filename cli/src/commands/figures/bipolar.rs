@@ -20,7 +20,7 @@ const STEPS: u64 = 500;
 
 /// The quantities of the bipolar form that are drawn, at every node.
 struct Bipolar {
-    /// Stretches, each followed through those equal to it.
+    /// Stretches, each continued through points where stretches are equal.
     stretches: [Series; 3],
     /// Their product.
     volume: Series,
@@ -66,8 +66,8 @@ impl Bipolar {
     }
 }
 
-/// The kinetic energy of a step of (3.55) times its square: rotations of both ends of the stretches, at their start, and how these
-/// change.
+/// The kinetic energy of a step of (3.55) times the squared step: the rotations at both ends of the stretches, their
+/// initial values, and their changes.
 fn kinetic([omega, w]: [Matrix3<f64>; 2], start: &Vector3<f64>, end: &Vector3<f64>) -> f64 {
     let d = Matrix3::from_diagonal(start);
     let [left, right] = [omega, w].map(|turn| turn - Matrix3::identity());

@@ -252,7 +252,7 @@ pub(super) fn coupled_difference(gallery: &Gallery) -> Result<String, Failure> {
             vec![line("", 0, difference(&of(&own), &of(&ode45)))],
         ));
     }
-    // Equal bodies in equal states stay equal until rounding has grown, since the motion is unstable.
+    // Equal bodies in equal states stay equal until rounding errors have grown, since the motion is unstable.
     let apart = |record: &Record| {
         let one = pair.components(record, "body_momentum_Lambda1");
         let two = pair.components(record, "body_momentum_Lambda2");

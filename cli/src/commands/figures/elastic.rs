@@ -1,6 +1,5 @@
-//! Figures 3.1 to 3.3: the pulsating body of the thesis's section 3.2, by its placement, from a model file.
-//! Takes nothing from the gallery; gives SVG of stretches and volume, momenta along the stretches, energy and
-//! invariants.
+//! Figures 3.1 to 3.3: the pulsating body of the thesis's section 3.2, by its placement, from a model file. Gives SVG
+//! of stretches and volume, momenta along the stretches, energy and invariants.
 
 use super::bipolar;
 use super::sheet::{Series, Subject, change, dashed, line, magnitudes, norm, panel, sheet};
@@ -249,7 +248,7 @@ mod tests {
     }
 
     /// Ranges over ten thousand steps of the same data, computed by another program. The motion is not regular:
-    /// rounding affects the last digits of extremes that are reached late.
+    /// rounding affects the last digits of extremes that occur late.
     #[test]
     fn ranges_are_those_of_the_reference_run() {
         let gallery = with_files(&Gallery::default()).expect("is read");

@@ -59,7 +59,7 @@ fn taking(from: &Vector, to: &Vector) -> Quaternion {
     let [x, y, z] = cross(from, to);
     let w = 1.0 + dot(from, to);
     if w < 1e-12 {
-        // Opposite vectors: half a turn about any normal.
+        // Opposite vectors: a half turn about any normal.
         let [[a, b, c], _] = frame(from);
         return Quaternion([0.0, a, b, c]);
     }

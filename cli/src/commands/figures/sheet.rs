@@ -34,7 +34,7 @@ impl<'a> Subject<'a> {
         Ok(Self { entry, case })
     }
 
-    /// This model with the data of another case.
+    /// The same model with the data of another case.
     pub fn with<'b>(&self, case: &'b Case) -> Subject<'b>
     where
         'a: 'b,
@@ -213,7 +213,7 @@ pub(super) fn line(label: &str, index: usize, values: Series) -> Line<'_> {
     }
 }
 
-/// A dashed line, for a curve that may coincide with another.
+/// A dashed line, for a curve that may coincide with another curve.
 pub(super) fn dashed(label: &str, index: usize, values: Series) -> Line<'_> {
     Line {
         label,
@@ -247,7 +247,7 @@ pub(super) fn panel(caption: &str, y_label: &str, lines: Vec<Line<'_>>) -> Panel
     }
 }
 
-/// A panel of magnitudes with a logarithmic axis; each point the largest of a stretch of time.
+/// A panel of magnitudes with a logarithmic axis; each point is the largest value in an interval of time.
 pub(super) fn magnitudes(caption: &str, y_label: &str, lines: Vec<Line<'_>>) -> Panel {
     let curves: Vec<Curve> = lines
         .into_iter()

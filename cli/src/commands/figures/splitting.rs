@@ -179,7 +179,7 @@ pub(super) fn time_against_steps(gallery: &Gallery) -> Result<String, Failure> {
     let mut draw = |label: &str, index: usize, time: &dyn Fn(u64) -> Result<f64, Failure>| {
         let mut points = Vec::new();
         for count in &counts {
-            // The minimum of three times, since other load only adds time.
+            // The minimum of three measurements, since other load only adds time.
             let mut least = f64::INFINITY;
             for _ in 0..3 {
                 least = least.min(time(*count)?);

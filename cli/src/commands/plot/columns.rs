@@ -31,8 +31,8 @@ pub(super) struct Series {
     pub of: String,
     /// Its numbers, one per sample. A multiplier is undefined at node 0, before any step.
     pub values: Vec<f64>,
-    /// The largest number of the array over all samples, or the scale of the invariant. Numbers far below it
-    /// may be rounding.
+    /// The largest number of the array over all samples, or the scale of the invariant. Numbers far below it may be
+    /// rounding errors.
     pub size: f64,
 }
 
@@ -101,7 +101,7 @@ impl Columns {
         each.collect()
     }
 
-    /// The samples from one time to another.
+    /// The samples between two times.
     ///
     /// # Errors
     /// Usage: the range contains fewer than two samples.
@@ -213,7 +213,8 @@ impl Columns {
         Some([&[*samples], rest].concat())
     }
 
-    /// The site in a column's name that an end gives: it is a parameter of the run, and no column.
+    /// The site in the name of a column whose value an end condition prescribes: it is a parameter of the run, not a
+    /// column.
     fn prescribed<'a>(&self, head: &str, component: &'a str) -> Option<&'a str> {
         let mut parts = component.split(['.', '_']).filter(|part| !part.is_empty());
         let site = parts.next()?;
@@ -290,7 +291,7 @@ impl Columns {
         })
     }
 
-    /// The sites of an array, in its order. Sites with a value given at an end are omitted.
+    /// The sites of an array, in its order. Sites with a prescribed value are omitted.
     fn sites(&self, array: &str, inner: &[usize]) -> Vec<usize> {
         let count = inner.first().copied().unwrap_or(0);
         let stated = self.archive.array(&format!("sites_of_{array}")).ok();
@@ -388,7 +389,7 @@ mod tests {
             ("_2.y", &[5, 3], whole, Some(7)),
             ("_2_2", &[5, 3], whole, Some(7)),
             ("_1.12", &[5, 2, 2], whole, Some(5)),
-            // The first site is given by an end.
+            // The value at the first site is prescribed.
             ("_0", &[5], later, None),
             ("_5", &[5], later, Some(4)),
             ("_2.y", &[5, 3], later, Some(4)),

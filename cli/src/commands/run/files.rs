@@ -1,5 +1,5 @@
-//! The files of a run: samples, pictures, the page and run.json. Takes a run; gives the names of the files. Nothing in them depends on
-//! the time of day.
+//! The files of a run: samples, pictures, the page and run.json. Takes a run; gives the names of the files. Their
+//! contents do not depend on the time of day.
 
 use super::pdf;
 use crate::output::samples::{self, Rows};

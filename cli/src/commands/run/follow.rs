@@ -1,6 +1,5 @@
-//! The loop of a run: steps in batches, and between them signals, checkpoints and the progress bar.
-//! Takes a trajectory and its observations; gives how the run ended. The size of the batches does not affect
-//! the result.
+//! The loop of a run: steps in batches, and between them signals, checkpoints and the progress bar. Takes a
+//! trajectory and its observations; gives the end of the run. The size of the batches does not affect the result.
 
 use crate::output::samples::Stream;
 use crate::output::{SignalListener, Staging};
@@ -18,9 +17,9 @@ use std::time::{Duration, Instant};
 /// The duration of a batch of steps.
 const AT_A_TIME: Duration = Duration::from_millis(50);
 
-/// How a run ended.
+/// The end of a run.
 pub(crate) enum End {
-    /// All steps are made.
+    /// All steps are complete.
     Whole,
     /// A step failed, or a number after it is not finite.
     Stopped(RunError),
@@ -28,7 +27,7 @@ pub(crate) enum End {
     Interrupted(u8),
 }
 
-/// A run on its way.
+/// A run in progress.
 pub(crate) struct Run<'a> {
     /// The motion.
     pub(crate) trajectory: &'a mut dyn Trajectory,
@@ -46,14 +45,14 @@ pub(crate) struct RunOutput<'a> {
     pub(crate) staging: &'a mut Staging,
     /// Its samples.
     pub(crate) stream: Stream,
-    /// Which run it is.
+    /// The identity of the run.
     pub(crate) identity: Identity,
     /// Seconds between checkpoints.
     pub(crate) seconds: f64,
 }
 
 impl Run<'_> {
-    /// Puts a checkpoint into trajectory and watch, started anew.
+    /// Restores a checkpoint into a newly started trajectory and its watch.
     ///
     /// # Errors
     /// Usage: it does not fit them.
@@ -74,7 +73,7 @@ impl Run<'_> {
         }
     }
 
-    /// Makes the remaining steps.
+    /// Takes the remaining steps.
     ///
     /// # Errors
     /// Failed: samples or checkpoints cannot be written. The run can be resumed from the last checkpoint that
@@ -123,7 +122,7 @@ impl Run<'_> {
             let asked = listening.stop_signal().filter(|_| !over);
             if let Some(kept) = &mut kept {
                 let due = last_checkpoint.elapsed().as_secs_f64() >= kept.seconds;
-                // Also at the end, since writing the files may take long and be interrupted.
+                // Also at the end, since writing the files may take long and may be interrupted.
                 let at_the_end = over && begun.elapsed() > AT_A_TIME;
                 if due || asked.is_some() || at_the_end {
                     self.checkpoint(kept)?;
@@ -189,7 +188,7 @@ impl RunOutput<'_> {
     }
 }
 
-/// The rows of the samples, if they are kept.
+/// The rows of the samples, if they are stored.
 struct Samples<'a>(Option<&'a mut Stream>);
 
 impl Observer for Samples<'_> {

@@ -1,8 +1,8 @@
-//! Standard output of a run, whose reader may disconnect.
+//! Standard output of a run, whose reader may close it.
 
 use std::io::{self, Write};
 
-/// Standard output of a run whose results are written to files: they are worth the work when nobody reads it.
+/// Standard output of a run. If the results are written to files, the run continues without a reader.
 pub(super) struct Listener<'a, 'b> {
     pub out: &'a mut (dyn Write + 'b),
     pub may_go: bool,

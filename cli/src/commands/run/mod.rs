@@ -37,7 +37,8 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use summary::Verbosity;
 
-/// Steps whose every node is kept for the plots: all the swings there is room for, of 150 steps each.
+/// Steps of which every node is stored for the plots: enough for the largest number of drawn oscillations, with 150
+/// steps each.
 const OPENING: u64 = 10_000;
 
 /// The largest number of values in these samples, a quarter of a gigabyte. For a fluid this limits the number
@@ -49,8 +50,8 @@ const OPENING_NUMBERS: u64 = 1 << 25;
 /// shown and written, marked as stopped.
 ///
 /// # Errors
-/// Usage: the request is wrong. Failed: the solver fails in the first step, or a file cannot be written.
-/// Nothing is left behind.
+/// Usage: the request is wrong. Failed: the solver fails in the first step, or a file cannot be written. No folder
+/// remains.
 pub fn run(
     gallery: &Gallery,
     matches: &ArgMatches,
@@ -210,7 +211,7 @@ pub fn run(
         let write = |files: &mut Vec<String>| {
             let rows = stream.into_rows();
             let rows = rows.map_err(|error| cannot(&staging, &error))?;
-            // Who has interrupted a run waits for its end, not for its beginning.
+            // A user who has interrupted a run should not have to wait for the opening.
             let opening = match end {
                 End::Interrupted(_) => None,
                 _ => opening(card, &plan, summary.steps)?,
@@ -347,7 +348,7 @@ fn interrupted(signal: u8) -> String {
     format!("interrupted by {by}; if the run has --out, resume it with --resume")
 }
 
-/// The beginning of the run once more with every node kept, when the record is sparser than that.
+/// Repeats the first part of the run with every node stored, if the record is sparser.
 fn opening(card: &Card, plan: &Plan, made: u64) -> Result<Option<Record>, Failure> {
     if plan.every == 1 {
         return Ok(None);

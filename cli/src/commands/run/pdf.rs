@@ -10,7 +10,7 @@ pub(super) fn pdf(_: &str) -> Option<Result<Vec<u8>, String>> {
     None
 }
 
-/// Families that have Greek letters and mathematical signs, the first that is there is taken.
+/// Families with Greek letters and mathematical signs; the first installed family is used.
 #[cfg(feature = "pdf")]
 const FAMILIES: [&str; 6] = [
     "Helvetica",
@@ -53,7 +53,7 @@ fn set(svg: &str) -> Result<Vec<u8>, String> {
     };
     fonts.set_sans_serif_family(family);
     let tree = usvg::Tree::from_str(svg, &options).map_err(|e| e.to_string())?;
-    // As many pixels an inch as SVG has: a column of 86 mm stays one.
+    // The resolution of SVG in pixels per inch: a column of 86 mm keeps its width.
     let page = PageOptions { dpi: 96.0 };
     svg2pdf::to_pdf(&tree, ConversionOptions::default(), page).map_err(|e| e.to_string())
 }

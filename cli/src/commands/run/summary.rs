@@ -26,7 +26,7 @@ pub(crate) enum Verbosity {
     All,
 }
 
-/// Prints the case, and for [`Verbosity::All`] also the derivation and the `way` in which steps are made.
+/// Prints the case; for [`Verbosity::All`] also the derivation and the method (`way`) that takes steps.
 ///
 /// # Errors
 /// As for writing.
@@ -82,7 +82,7 @@ pub(crate) fn title(
     Ok(())
 }
 
-/// How well the steps are solved, and whether all steps were made.
+/// How accurately the steps are solved, and whether all steps were taken.
 pub(crate) fn below_the_table(run: &Finished<'_>, made: u64) -> Vec<String> {
     let stopped = run.stopped.as_ref().map(|stopped| {
         let time = number::plain(stopped.time);

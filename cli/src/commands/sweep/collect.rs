@@ -156,7 +156,7 @@ pub(crate) fn collect(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result
     super::tell(&object, &tally, target, matches.get_flag("json"), streams)
 }
 
-/// The words of a line: the numbers are written so that they read back to the last bit.
+/// The words of a line: the numbers are written so that they parse to the same bits.
 fn row(line: &str, point: u64) -> Option<Vec<u64>> {
     let mut cells = line.split(',');
     if cells.next()?.parse() != Ok(point) {

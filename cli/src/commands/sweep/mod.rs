@@ -1,7 +1,6 @@
-//! `clebsch sweep`: runs a case at every point of a grid of parameters, initial values and step sizes, on all
-//! cores.
-//! Takes the gallery and the options; gives one table with a row per point. A row depends only on its point.
-//! The number of cores, restarts, and a division into parts do not change a bit of it.
+//! `clebsch sweep`: runs a case at every point of a grid of parameters, initial values and step sizes, on all cores.
+//! Takes the gallery and the options; gives one table with a row per point. A row depends only on its point. The
+//! result is bitwise independent of the number of cores, of restarts, and of a division into parts.
 
 mod collect;
 mod points;
@@ -38,8 +37,8 @@ struct Sweep<'a> {
     plan: &'a Plan,
     axes: &'a [Axis],
     columns: &'a Columns,
-    /// The case and the arguments from which each point is read again, if expressions of the case contain a
-    /// varied quantity.
+    /// The case and the arguments from which the case is read again at each point, if expressions of the case contain
+    /// a varied quantity.
     again: Option<(&'a Resolved<'a>, &'a ArgMatches)>,
 }
 

@@ -10,7 +10,7 @@ use std::path::Path;
 /// The file.
 pub(super) struct Points {
     file: File,
-    /// Words in a row, the checksum at its end included.
+    /// Words in a row, including the checksum at its end.
     width: usize,
     count: u64,
 }
@@ -25,7 +25,7 @@ fn sum(words: &[u64]) -> u64 {
 }
 
 impl Points {
-    /// Opens the file in a folder, or makes it, for `count` rows of `width` words plus the checksum.
+    /// Opens the file in a folder, or creates it, for `count` rows of `width` words plus the checksum.
     pub(super) fn open(folder: &Path, width: usize, count: u64) -> io::Result<Self> {
         let path = folder.join(samples::NAME);
         let options = &mut OpenOptions::new();

@@ -72,7 +72,7 @@ impl Sweep<'_> {
         }
         let mut put = |x: f64| {
             if let Some(slot) = slots.next() {
-                // One NaN in all rows, so that they do not depend on how it came about.
+                // The same NaN in all rows, so that rows do not depend on its origin.
                 *slot = if x.is_nan() { f64::NAN } else { x }.to_bits();
             }
         };

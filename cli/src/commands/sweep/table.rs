@@ -1,6 +1,5 @@
-//! The table of a sweep: its columns, and its files from the rows on disk.
-//! Takes a card and the names that are varied; gives sweep.csv, sweep.npz and sweep.json, whose bytes do not depend on how
-//! the points were divided.
+//! The table of a sweep: its columns, and its files from the rows on disk. Takes a card and the varied names; gives
+//! sweep.csv, sweep.npz and sweep.json, whose bytes do not depend on how the points were divided.
 
 use super::vary::Axis;
 use crate::output::samples::Rows;
@@ -21,7 +20,7 @@ pub(super) const FILES: [&str; 6] = [
     crate::trajectory::checkpoint::UNFINISHED,
 ];
 
-/// A point whose steps are all made.
+/// A point at which all steps were taken.
 pub(super) const DONE: f64 = 0.0;
 /// One that stopped before.
 pub(super) const STOPPED: f64 = 1.0;
@@ -64,7 +63,7 @@ impl Columns {
     }
 }
 
-/// How many points ended how.
+/// The number of points for each status.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tally {
     pub(super) done: u64,
@@ -115,7 +114,7 @@ impl Tally {
     }
 }
 
-/// Writes the table in both forms; gives how the points ended.
+/// Writes the table in both forms; returns the number of points for each status.
 pub(super) fn write(staging: &Staging, columns: &Columns, rows: &Rows) -> Result<Tally, Failure> {
     let [csv, npz, ..] = FILES;
     let mut tally = Tally::default();

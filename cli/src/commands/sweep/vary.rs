@@ -75,7 +75,7 @@ fn read_values(text: &str) -> Result<Vec<f64>, String> {
     }
 }
 
-/// How many values a range has whose third part was meant for their distance.
+/// The number of values of a range whose third part is probably a distance.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 fn count_of(from: f64, to: f64, distance: &str) -> Option<usize> {
     let distance = distance.trim().parse::<f64>().ok()?;
@@ -93,7 +93,7 @@ pub(super) fn points(axes: &[Axis]) -> Result<u64, Failure> {
         .ok_or_else(|| Failure::Usage(format!("a sweep can have at most {MOST_POINTS} points")))
 }
 
-/// The values of a point, one of each axis: the last axis varies fastest.
+/// The values of a point, one from each axis: the last axis varies fastest.
 pub(super) fn at(axes: &[Axis], point: u64) -> Vec<f64> {
     let mut left = point;
     let mut values: Vec<f64> = axes

@@ -9,7 +9,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// After this time a checkpoint is written, so that a killed sweep is kept. The rows themselves need no
+/// After this time a checkpoint is written, so that a killed sweep can be resumed. The rows themselves need no
 /// checkpoint.
 const WORTH_KEEPING: Duration = Duration::from_millis(200);
 

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 /// The result of the search for a run to resume.
 pub enum ResumableRun {
-    /// Nothing: the run begins.
+    /// Nothing to resume: the run starts.
     Nothing,
     /// A run in the middle.
     Middle(Box<(Staging, Checkpoint)>),
@@ -108,7 +108,7 @@ impl Staging {
             }
             match Checkpoint::read(&folder, identity) {
                 Ok(checkpoint) => {
-                    // Beside results that are there already only they are of interest.
+                    // If the results already exist, remains of other runs do not matter.
                     if standing && folder != target {
                         break;
                     }

@@ -1,5 +1,5 @@
-//! Bodies without sites: frames, drawn as points with axes, and points that move by themselves.
-//! Takes a card; gives a point for each.
+//! Bodies without sites: frames, drawn as points with axes, and points with their own motion. Takes a card; gives a
+//! ParaView point for each body.
 
 use super::columns::{axes, in_space, place};
 use super::{Data, Part};
@@ -73,7 +73,7 @@ pub(super) fn parts(card: &Card) -> Vec<(String, Box<dyn Part>)> {
     vec![("bodies".to_owned(), Box::new(Bodies { all, vectors }))]
 }
 
-/// Momenta, by their names without the names of the bodies. If there is one body, other vectors as well.
+/// Momenta, by their names without the names of the bodies. If there is one body, other vectors are drawn as well.
 fn vectors(all: &[Body], alone: &[(&'static Field, Range<usize>)]) -> Vec<Vectors> {
     let mut out: Vec<Vectors> = Vec::new();
     let mut put = |name: String, body: usize, columns: Range<usize>| {

@@ -1,5 +1,5 @@
-//! Fluids: particles, the cells of their Voronoi mesh on a torus, the nodes of a grid. Takes a card and a plan; gives a
-//! part for each.
+//! Fluids: particles, the cells of their Voronoi mesh on a torus, the nodes of a grid. Takes a card and a plan; gives
+//! a part for each kind of object.
 
 use super::cells::Cells;
 use super::columns::{Columns, in_space};
@@ -121,7 +121,7 @@ impl Particles {
         each.copied().collect()
     }
 
-    /// Where a particle is, within the domain.
+    /// The position of a particle within the domain.
     pub(super) fn within(&self, place: &[f64]) -> Vec<f64> {
         let each = place.iter().zip(&self.space.lengths).zip(&self.space.walls);
         each.map(|((x, length), wall)| if *wall { *x } else { x.rem_euclid(*length) })
@@ -171,7 +171,7 @@ impl Part for Dots {
     }
 }
 
-/// The letter of the index of a grid.
+/// The label of the index of a grid.
 fn grid_index(stated: &Stated) -> Option<String> {
     Some(stated.lattice.grid()?.index.text.clone())
 }

@@ -1,6 +1,5 @@
-//! A run as files for ParaView, in a folder of their own: one file per sample for every object in space, and a
-//! collection of these files over time. Takes a card and a plan, then the rows of the run; gives the names of
-//! the collections.
+//! A run as files for ParaView, in a separate folder: one file per sample for every object in space, and a collection
+//! of these files over time. Takes a card and a plan, then the rows of the run; gives the names of the collections.
 
 mod bodies;
 mod cells;

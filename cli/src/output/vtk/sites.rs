@@ -1,5 +1,5 @@
-//! Quantities at the sites of labels: lines from node to node, sets of points and bodies.
-//! Takes a card and a plan; gives a part for each label.
+//! Quantities at the sites of labels: lines from node to node, sets of points and bodies. Takes a card and a plan;
+//! gives a part for each label.
 
 use super::columns::{Columns, in_space, name_axes};
 use super::{Data, Part};
@@ -34,7 +34,8 @@ enum SiteLocation {
     Standing(f64),
 }
 
-/// The labels of a model in the order of their first quantities; of a fluid whose particles are drawn, the line alone.
+/// The labels of a model in the order of their first quantities; for a fluid whose particles are drawn, only its
+/// chain.
 pub(super) fn parts(card: &Card, plan: &Plan, fluid: bool) -> Vec<(String, Box<dyn Part>)> {
     let all = at_sites(card);
     let mut labels: Vec<&str> = Vec::new();
@@ -87,7 +88,7 @@ fn of_label((card, plan): (&Card, &Plan), own: &[&AtSites<'_>]) -> Option<OfSite
     let points: Vec<SiteLocation> = points.collect::<Option<_>>()?;
     let of_sites = |at: Sites, count: usize| {
         let all = own.iter().filter(|q| q.at == at);
-        // Positions are the points themselves, so they have no column.
+        // Positions are the points themselves, so they do not need an array of values.
         let all = all.filter(|q| places.is_none_or(|p| p.key != q.key));
         let mut all: Vec<Columns> = all
             .map(|q| Columns::of(&q.key, q.field, columns(q, count, ring.then_some(segments))))
@@ -120,7 +121,7 @@ fn ring_and_segments(plan: &Plan, own: &[&AtSites<'_>], on_line: bool) -> (bool,
         _ => site + 1,
     });
     let counted = segments.max().unwrap_or(0);
-    // A last node with a given value has no column, so the chosen count is preferred.
+    // A last node with a prescribed value does not have a column, so the chosen count is preferred.
     let chosen = plan.choice.as_ref().and_then(|c| match *c.counts {
         [only] if on_line => Some(only),
         _ => None,
@@ -166,7 +167,7 @@ impl Part for OfSites {
         });
         let last = points.len().saturating_sub(1) as u64;
         let mut data = match self.joined {
-            // One line per segment, from node to node, since segments have their own values.
+            // One line for each segment, from node to node, since segments have their own values.
             true => PolyData {
                 points,
                 lines: (0..last).map(|i| vec![i, i + 1]).collect(),

@@ -13,14 +13,14 @@ const TABLES: [&str; 2] = ["parameters", "initial"];
 /// The position of a key in the text.
 struct KeyPosition {
     value: Range<usize>,
-    /// The key, if the case gives the quantity under another one: the inertia `I` for the second moments `J`.
+    /// The key, if the case gives the quantity under another name: the inertia `I` for the second moments `J`.
     key: Option<Range<usize>>,
     /// Whether the value is an entry of a table.
     within: bool,
 }
 
-/// The text with a new value for a list, a table or an entry of a table. `None` for other values, and if the
-/// case does not give it.
+/// The text with a new value for a list, a table or an entry of a table. `None` for other values, and if the case
+/// does not contain it.
 pub(super) fn put(text: &str, name: &str, value: &str) -> Option<String> {
     let found = found(text, name).filter(|found| is_own(found, value))?;
     let before = text.get(found.value.clone())?;
@@ -61,7 +61,7 @@ fn found(text: &str, name: &str) -> Option<KeyPosition> {
         if let Some(value) = table.get(root) {
             let (value, within) = descended(value, &path)?;
             let span = value.span();
-            // A table with its own head, `[initial.R]`, has its entries elsewhere.
+            // The entries of a table with its own header, `[initial.R]`, are elsewhere.
             let is_inline = text.get(span.clone())?.starts_with(['[', '{']);
             let is_table = value.get_ref().is_table();
             return (is_inline || !is_table).then_some(KeyPosition {
@@ -89,7 +89,7 @@ fn other_key(name: &str) -> Option<String> {
     of('I', 'J').or_else(|| of('J', 'I'))
 }
 
-/// Follows keys and indices of entries into a value. Gives the value there, and whether it is inside a table.
+/// Follows keys and indices of entries into a value. Returns the value there, and whether it is inside a table.
 fn descended<'v, 'i>(
     value: &'v Spanned<DeValue<'i>>,
     path: &[&str],

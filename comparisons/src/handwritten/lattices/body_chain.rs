@@ -93,7 +93,7 @@ impl Body {
         scaled(-self.eps, &cross(&self.arm, &apply_transposed(r, v)))
     }
 
-    /// `dragged` for each column of a matrix.
+    /// `dragged` applied to each column of a matrix.
     #[inline(always)]
     fn dragging(&self, r: &Matrix, m: &Matrix) -> Matrix {
         crossed(&scaled(-self.eps, &self.arm), &transposed_product(r, m))

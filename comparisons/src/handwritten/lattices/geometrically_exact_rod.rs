@@ -54,7 +54,8 @@ pub enum End {
     Clamped {
         /// Attitude of the wall.
         wall: Quaternion,
-        /// Stiffness of the bond to the wall relative to a bond between sections: two, because it is half as long.
+        /// Stiffness of the coupling to the wall relative to a coupling between sections: two, because the distance
+        /// is half as long.
         bonds: f64,
     },
 }

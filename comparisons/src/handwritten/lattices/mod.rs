@@ -1,5 +1,6 @@
-//! Hand-written chain steppers: loops over sites, with one list per component of a site or one array per site, and no allocation in
-//! a step. They take data of the sites and the ends, and give positions, attitudes and momenta at the nodes.
+//! Hand-written chain steppers: loops over sites, with one list per component of a site or one array per site, and no
+//! allocation in a step. They take data of the sites and the ends, and return positions, attitudes and momenta at the
+//! nodes.
 
 pub mod block_tridiagonal;
 pub mod body_chain;

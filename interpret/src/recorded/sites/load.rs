@@ -1,4 +1,4 @@
-//! Numbers of lists put side by side, one lane a site, and back.
+//! Loads numbers of lists into lanes, one site per lane, and stores them back.
 
 use crate::code::Places;
 use crate::map_scalar::{alike, map_scalar, numbers};
@@ -30,8 +30,8 @@ pub fn numbers_of(value: &Value<f64>, kind: &Value<f64>, out: &mut Vec<f64>) -> 
     }
 }
 
-/// Fills inputs with components of the values at so many sites of a list, from one on. Lanes beyond repeat the last. `components` pairs inputs with
-/// components.
+/// Fills inputs with components of the values at `count` sites of a list, starting at `from`. Further lanes repeat
+/// the last site. `components` pairs inputs with components.
 pub fn fill<const L: usize>(
     column: &Column<f64>,
     kind: &Value<f64>,
@@ -138,7 +138,7 @@ pub fn store<'a>(
     Some(())
 }
 
-/// So many sites more at the end of a list.
+/// Appends this many sites to a list.
 pub fn extend(column: &mut Column<f64>, count: usize, kind: &Value<f64>) -> Option<()> {
     match column {
         Column::Numbers(all) => all.resize(all.len() + count, 0.0),

@@ -1,4 +1,4 @@
-//! A tape of sites and how it runs: numbers are taken from lists, computed side by side and put into lists.
+//! A tape of sites and how it runs: numbers are loaded from lists, computed side by side and stored in lists.
 
 use super::load::{column, extend, fill, numbers_of, store};
 use super::{Lists, SiteRecording};
@@ -11,7 +11,7 @@ use crate::sites::Column;
 use crate::value::Value;
 use clebsch_program::{Frame, Machine, WIDTH};
 
-/// So few sites are run one by one.
+/// At most this many sites are run one by one.
 const FEW: usize = 8;
 
 /// A value that is read: its kind, and which of its components enter which inputs.
@@ -34,7 +34,7 @@ enum ConstantPlace {
 pub struct SiteTape {
     machine: Machine,
     steady: Vec<Source<ConstantPlace>>,
-    /// Values of lists, so far from the site of the loop.
+    /// Values of a list at this distance from the site of the loop.
     moving: Vec<Source<(List, isize)>>,
     fixed: Fixed,
     gives: Vec<Value<f64>>,
@@ -44,8 +44,8 @@ pub struct SiteTape {
 type Frames = (Frame<1>, Frame<WIDTH>);
 
 impl SiteTape {
-    /// The tape of recordings at two sites; nothing where they differ. If the body `clamps` sites to a list, a list that
-    /// is read at one site must have one.
+    /// The tape of recordings at two sites; `None` if the recordings differ. If the body `clamps` sites to a list, a
+    /// list that is read at one site must have one.
     pub fn of(
         [here, there]: [usize; 2],
         [first, second]: [SiteRecording; 2],
@@ -115,17 +115,17 @@ impl SiteTape {
         })
     }
 
-    /// Whether the values that the tape relies on are as they were.
+    /// Whether the values that the tape assumes constant are unchanged.
     pub fn fits(&self, places: &Places<f64>) -> bool {
         stands(&self.fixed, places)
     }
 
-    /// Whether the neighbours of a site are there.
+    /// Whether all neighbours that the tape reads exist at a site.
     pub fn admits(&self, places: &Places<f64>, site: usize) -> bool {
         self.admitted(places, site, site + 1).is_some()
     }
 
-    /// Runs sites from `from` to the one before `to`: the next that is left to the body.
+    /// Runs the sites from `from` to `to - 1`; returns the next site that needs the body.
     pub fn run(
         &self,
         places: &Places<f64>,
@@ -176,7 +176,7 @@ impl SiteTape {
         Some(to)
     }
 
-    /// The site after the last whose neighbours are there; nothing if the first site lacks one.
+    /// The end of the sites with all neighbours; `None` if the first site lacks one.
     fn admitted(&self, places: &Places<f64>, from: usize, to: usize) -> Option<usize> {
         let mut end = to;
         for source in &self.moving {

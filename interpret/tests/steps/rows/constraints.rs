@@ -17,7 +17,7 @@ fn of_pendulum<T: Number>(given: &Place<'_, T>, at: &Place<'_, T>) -> Vec<T> {
     vec![norm(&at.column::<3>("x")) - square(given.real("l"))]
 }
 
-/// Removes the part of a momentum perpendicular to the first vector.
+/// Removes the part of a momentum along the first vector.
 fn tangent(across: &[f64], momentum: &mut [f64]) {
     let inner = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     let part = inner(across, momentum) / inner(across, across);
@@ -28,7 +28,7 @@ fn tangent(across: &[f64], momentum: &mut [f64]) {
 }
 
 fn settle_pendulum(named: &mut Named) {
-    // Never near the point of suspension.
+    // Far from the point of suspension.
     let length = named["x"].iter().map(|x| x * x).sum::<f64>().sqrt();
     let x: Vec<f64> = named["x"].iter().map(|x| x / length).collect();
     named.insert("x", x.clone());

@@ -122,7 +122,7 @@ pub const ROWS: &[Row] = &[
         action!(driven),
         &["J", "M"],
     )
-    // A height of the plane moves nothing.
+    // The height of the plane has no effect on the motion.
     .idle(&["Z[3]"])
     .refused(1)
     .misses(2.1e-12),

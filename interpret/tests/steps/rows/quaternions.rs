@@ -21,7 +21,7 @@ fn im<T: Number>(e: &Edge<'_, T>) -> [T; 3] {
     [x, y, z]
 }
 
-/// The vertical seen from the body: of `q^T quat(z) q` the imaginary part, by the formula of Rodrigues.
+/// The vertical in the body frame: the imaginary part of `q^T quat(z) q`, by the formula of Rodrigues.
 fn seen<T: Number>(at: &Place<'_, T>, z: &[T; 3]) -> [T; 3] {
     let [w, x, y, u] = at.square::<4>("q").0.map(|row| row[0]);
     let v = [-x, -y, -u];

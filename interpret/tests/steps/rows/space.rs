@@ -1,4 +1,4 @@
-//! Rotations seen from space.
+//! Rotations in the space frame.
 
 use crate::steps::row::Row;
 use crate::steps::words::*;

@@ -1,4 +1,4 @@
-//! Rotations seen from the body: powers, products and functions of the velocity.
+//! Rotations in the body frame: powers, products and functions of the velocity.
 
 use crate::steps::row::Row;
 use crate::steps::words::*;

@@ -34,7 +34,7 @@ enum Size {
     Given(usize),
 }
 
-/// One point: every letter has the value set for it, or a value computed from the seed and the letter.
+/// A point: every letter has the value set for it, or a value computed from the seed and the letter.
 #[derive(Clone)]
 pub(crate) struct Point<'a> {
     symbols: &'a Symbols,

@@ -32,7 +32,7 @@ pub(super) struct Opened {
     back: Option<(u8, Poly)>,
 }
 
-/// Directions and the seed: one term of each, or each unchanged.
+/// Directions and the seed: one term of each, or each of them unchanged.
 #[derive(Clone)]
 struct Slots {
     coefficient: Rational,
@@ -83,7 +83,7 @@ impl Algebra<'_> {
     }
 
     /// The expression in gradients of the entries of the value. These are pull-backs of unit seeds, which also
-    /// replace the transposed derivative. None if the expression is of that form already.
+    /// replace the transposed derivative. None if the expression already has this form.
     fn by_entries(&self, a: &Applied, back: Option<(u8, &Expr)>, value: Kind) -> Option<Expr> {
         let s = self.symbols;
         let basis = basis(s, value)?;
@@ -353,7 +353,7 @@ fn signed(x: u64, minus: bool) -> u64 {
     if minus { negate(x) } else { x }
 }
 
-/// The products so far, each multiplied by every entry of one more direction.
+/// Multiplies each product so far by every entry of another direction.
 fn more(
     found: &[(u64, Vec<Entry>)],
     which: u8,

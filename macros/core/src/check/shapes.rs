@@ -256,7 +256,7 @@ pub fn group(symbols: &Symbols, k: &SizedName, errors: &mut Errors) -> Option<Gr
         let own = own.replace(" and ", "` and `").replace(", ", "`, `");
         let message = format!("this version does not support the group `{}`", written(k));
         errors.push(Diagnostic::new(k.place, message).help(format!(
-            "of this family it supports `{own}`; the groups are {}",
+            "clebsch supports `{own}` in this family; the groups are {}",
             all()
         )));
     }

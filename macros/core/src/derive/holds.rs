@@ -328,7 +328,7 @@ pub(super) struct InvariantSearch {
 }
 
 /// The invariants that constraint forces do not change wherever the constraints are satisfied. The constraints are
-/// added, and their rates of change if these are enforced too.
+/// added; their rates of change are added too if the steps enforce them.
 pub(super) fn kept(
     spec: &Spec,
     letters: &Letters,
@@ -358,7 +358,7 @@ pub(super) fn kept(
         })
         .collect();
     let solved = Solved::of(spec, letters, algebra);
-    // A constraint force may contain advected quantities where a momentum contains the configuration.
+    // A constraint force may contain an advected quantity, and a momentum the configuration that defines it.
     let defined = |a: &Advected| Some((here(a.quantity), a.definition.clone()?));
     let definitions: Vec<(Letter, Expr)> = spec.advected.iter().filter_map(defined).collect();
     let vanishes = |change: &Expr| {

@@ -1,8 +1,8 @@
 //! Schur reduction: unknowns that occur linearly in their own equations are eliminated in closed form before the
-//! others are solved. These are translations of rigid motions, if the balance of linear momentum is linear in them.
-//! Its matrix must be a product of invertible factors that contain rotations and constants. Newton's method then
-//! finds rotations only, with the whole derivative of the remaining equations. Takes velocities in parts and their
-//! equations; gives the solution and the remaining equations.
+//! other unknowns are solved. These are translations of rigid motions, if the balance of linear momentum is linear in
+//! them. Its matrix must be a product of invertible factors that contain rotations and constants. Newton's method
+//! then finds rotations only, with the whole derivative of the remaining equations. Takes velocities in parts and
+//! their equations; gives the solution and the remaining equations.
 
 use super::parts::{Parts, Velocity};
 use super::tangent::Direction;

@@ -325,7 +325,7 @@ fn wrong_side(
         || (w.clone(), format!("{w}^T")),
         |c| action(c.group, &w, shape.rows),
     );
-    // A form of a linear map remains symmetric, because it is pulled back.
+    // The form of a linear map remains symmetric, because it is a pull-back.
     let back = match s.get(a.quantity).structure.is_symmetric() && there == w {
         true => format!("{w}^T"),
         false => back,

@@ -1,7 +1,7 @@
 //! Prints rigid motions by their parts. An equation between vectors of the Lie algebra or its dual becomes two, for
-//! the angular and the linear part; homogeneous coordinates are printed by blocks. From a document and its symbols,
-//! `in_parts` returns both with the letters of the parts, and defines each letter where it first occurs. The
-//! derivation itself does not change.
+//! the angular and the linear part; homogeneous coordinates are printed by blocks. `in_parts` adds the letters of the
+//! parts to a document and its symbols, and defines each letter where it first occurs. The derivation itself does not
+//! change.
 
 mod display;
 mod document_scan;
@@ -24,7 +24,7 @@ use names::Names;
 /// How rigid motions and their momenta are printed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Motions {
-    /// By their parts, with a letter for each part.
+    /// As their parts, with a letter for each part.
     InParts,
     /// As single letters.
     Whole,

@@ -33,7 +33,7 @@ pub(super) fn equation(
     section.paragraph([
         "There is no Riccati form for ".into(),
         sheet.here(c.velocity).into(),
-        ": the group is not SO(n). In its real part ".into(),
+        ": the group is not SO(n). In terms of its real part ".into(),
         w.clone().into(),
         " and its imaginary part ".into(),
         v.clone().into(),

@@ -1,5 +1,5 @@
 //! The step of a model whose velocities are found in several blocks. The values known at the node are computed once
-//! for all blocks, then each block is solved by its own method, then all blocks advance to the next node. Takes the
+//! for all blocks; then each block is solved by its own method, and all blocks advance to the next node. Takes the
 //! derivation; gives the factors that the model stores, the workspace and `step`.
 
 use super::constant_factors::Constant;

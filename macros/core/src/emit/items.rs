@@ -184,7 +184,7 @@ pub fn shape_text(d: &Derivation, id: SymbolId) -> String {
     } else if shape.is_vector() {
         format!("a vector of {rows} components")
     } else {
-        format!("a {rows} x {cols} matrix")
+        format!("a matrix of size {rows} x {cols}")
     }
 }
 

@@ -195,7 +195,7 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
     let module = format_ident!("{}", names.module);
     let visibility = d.spec.public.then(|| quote!(pub));
     let [configuration, balance] = residual::balance(d, &names);
-    // Functions of states besides the step.
+    // Functions of states other than the step.
     let asked = [
         balance,
         kinetic::inertia_at(d, &names),

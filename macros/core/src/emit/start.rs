@@ -38,7 +38,7 @@ impl Choice {
         }
     }
 
-    /// The protocol's word for the choice.
+    /// The keyword of the protocol for the choice.
     pub fn word(self) -> TokenStream {
         match self {
             Choice::Order => quote!(order),

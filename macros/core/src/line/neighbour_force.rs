@@ -331,8 +331,8 @@ pub(super) fn forces(part: &RepresentativeChain, term: &Expr) -> Vec<Force> {
     out
 }
 
-/// Forces of ends are added to the forces of neighbours: a configuration on which no neighbour acts gets empty
-/// entries for the forces of ends.
+/// Adds an empty entry for the forces of ends if no neighbour acts on a configuration, because forces of ends are
+/// added to the forces of neighbours.
 pub(super) fn collecting(
     lattice: &Lattice,
     pulls: &[NeighbourForce],

@@ -79,7 +79,7 @@ impl Line {
     }
 
     /// The contributions of neighbour terms with velocities to the momenta of the outgoing and of the incoming edge.
-    #[allow(clippy::option_option)] // Outside: whether its letters exist. Inside: whether there are such terms.
+    #[allow(clippy::option_option)] // Outer option: whether its letters exist. Inner option: whether there are such terms.
     fn tied(&self, name: &str, site: usize) -> Option<Option<[Expr; 2]>> {
         let mut out: Option<[Expr; 2]> = None;
         for own in self

@@ -22,7 +22,7 @@ fn shipped_lattices_are_programs() {
         ("geometrically-exact-rod", 2, 2),
         ("quaternion-rod", 2, 2),
         ("hanging-chain", 0, 1),
-        // Between sections, and where an end condition exerts a force.
+        // Terms between sections, and an end condition that exerts a force.
         ("kirchhoff-rod", 2, 2),
     ] {
         let line = match line(&shipped(name)) {

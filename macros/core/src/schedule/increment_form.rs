@@ -154,8 +154,8 @@ fn parts_displaced(symbols: &Symbols, e: &Expr) -> Expr {
     }
 }
 
-/// `vee(A Ω)` as `vee(A (Ω - Id)) + vee(A)`, if the latter is known. If `A` is symmetric, its axial vector is zero,
-/// so that the large entries of `A` multiply small ones only. The entries of `vee(Ω)` are small already.
+/// `vee(A Ω)` as `vee(A (Ω - Id)) + vee(A)`, if `vee(A)` is known. If `A` is symmetric, its axial vector is zero, so
+/// that the large entries of `A` multiply small ones only. The entries of `vee(Ω)` are small already.
 fn of_axial(symbols: &Symbols, a: &Expr) -> Option<Expr> {
     if at_rest(symbols, a).is_some() {
         return None;

@@ -1,6 +1,6 @@
 //! Velocities of linear maps by their difference from the identity: `S G - S` as `S (G - Id)`, and `tr(G S G^T) - 2
 //! tr(G S) + tr(S)` as `tr((G - Id) S (G - Id)^T)`. For small steps a velocity is near the identity, and the terms of
-//! a momentum cancel to the size of the step. Takes an expression; gives an equal one without this cancellation.
+//! a momentum cancel down to the size of the step. Takes an expression; gives an equal one without this cancellation.
 
 use crate::algebra::Algebra;
 use crate::expr::shape::{Dim, Structure};

@@ -152,8 +152,8 @@ fn is_work(e: &Expr) -> bool {
     }
 }
 
-/// Whether it needs a temporary of its own: a functional is computed once per arguments, and other expressions use
-/// its name.
+/// Whether it needs its own temporary: a functional is computed once for each list of arguments, and other
+/// expressions use its name.
 fn is_stage(e: &Expr) -> bool {
     matches!(e.node(), Node::Given(_) | Node::PullBack(..))
 }
@@ -227,7 +227,7 @@ mod tests {
         assert_eq!(first.temporaries.len(), 1);
         let other = expr::sum([expr::mul(product.clone(), a), product.clone(), b], three);
         let second = program_after(&first, std::slice::from_ref(&other), "t");
-        // A B has its name from the first program; on its own it would get a name of its own.
+        // A B has a name from the first program; without that program it gets a new name.
         assert!(second.temporaries.is_empty());
         assert_eq!(program(&symbols, &[other], "t").temporaries.len(), 1);
         let [(known, _)] = first.temporaries.as_slice() else {

@@ -180,10 +180,9 @@ fn by_others(mut open: Vec<Formula>, room: &Cell<Option<usize>>) -> Result<Vec<F
         if ready.is_empty() {
             for f in &waiting {
                 let message = format!("`{}` calls itself", f.name.text);
-                errors.push(
-                    Diagnostic::new(f.name.place, message)
-                        .help("functions may call other functions, but not in a circle"),
-                );
+                errors.push(Diagnostic::new(f.name.place, message).help(
+                    "a function may call other functions, but not itself, directly or through them",
+                ));
             }
             return Err(errors);
         }

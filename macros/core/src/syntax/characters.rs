@@ -16,7 +16,7 @@ pub(super) const QUOTES: &str =
 /// The notation of the language for a character that papers use.
 fn written(c: char) -> Option<&'static str> {
     Some(match c {
-        '−' | '–' | '—' | '‐' => "write the minus of the keyboard, `-`",
+        '−' | '–' | '—' | '‐' => "write the ASCII minus sign, `-`",
         '\'' | '′' | '’' => PRIME,
         '·' | '⋅' | '×' | '∙' | '∗' | '∧' | '⊗' => {
             "write `a*b` for a product, `dot(a, b)` and `cross(a, b)` for products of vectors"
@@ -96,11 +96,7 @@ mod tests {
     #[test]
     fn a_character_of_a_paper_is_pointed_at() {
         for (source, column, said) in [
-            (
-                "model M { lagrangian = a − b; }",
-                26,
-                "minus of the keyboard",
-            ),
+            ("model M { lagrangian = a − b; }", 26, "ASCII minus sign"),
             ("model M { param ω₀: Real; }", 18, "`w_0`"),
             ("model M { let a = q' - q; }", 20, "`next(x)`"),
             ("model M { let a = (q)' - q'; }", 22, "`next(x)`"),

@@ -76,7 +76,7 @@ fn refusal(model: &str) -> String {
 }
 
 /// Doubling the model multiplies the work by at most this factor, which is less than the 8 of cubic growth. Every
-/// group is compared with every other, and the rows of independent momenta grow with both.
+/// group is compared with every other group, and the number of independent momenta grows with the number of groups.
 const GROWTH: u64 = 6;
 
 #[test]

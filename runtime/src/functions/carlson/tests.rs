@@ -38,7 +38,7 @@ fn values_and_gradients_are_those_of_the_definition() {
         let root = |s: f64| axes.iter().map(|x| x + s).product::<f64>().sqrt();
         let wanted = quadrature(|s| 1.0 / root(s));
         let found = carlson_rf.value(&b);
-        // Quadrature and duplication round a few hundred sums of one sign each.
+        // Quadrature and duplication each round a few hundred sums whose terms have one sign.
         assert!(
             (found / wanted - 1.0).abs() < 1e-13,
             "{axes:?}: {found} {wanted}"

@@ -1,7 +1,7 @@
 //! The instruction set that the steps of an ensemble run on, chosen at run time.
 //! Takes the work; gives its output.
 
-/// The instruction set of an ensemble's steps. The results are the same on all of them.
+/// The instruction set of an ensemble's steps. The results are the same on all instruction sets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum InstructionSet {
@@ -14,8 +14,8 @@ pub enum InstructionSet {
     Build,
 }
 
-/// Work that is compiled for each instruction set. It is a trait since a closure cannot be marked
-/// for inlining, and a call that is not inlined runs on the instruction set of the build.
+/// Work that is compiled for each instruction set. It is a trait because a closure cannot be marked for inlining, and
+/// a call that is not inlined uses the instruction set of the build.
 pub trait Work {
     /// The result of the work.
     type Output;

@@ -5,11 +5,11 @@ use core::fmt;
 
 /// At least one body could not start or continue.
 ///
-/// Bodies step side by side, as many as there are lanes; if one of them fails, the other bodies of
-/// its group stay at the same node. All other bodies have taken their steps.
+/// Bodies step side by side in lanes; if one of them fails, the other bodies of its group stay at the same node. All
+/// other bodies have completed their steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnsembleError<E> {
-    /// The index of the body, in the order the bodies were given; the first, if several fail.
+    /// The index of the body, in the order of the bodies; the first such body if several fail.
     pub body: usize,
     /// The number of bodies, starting at `body`, that may be the cause. It is 1 unless every body of a
     /// group succeeds alone and they fail only side by side.

@@ -36,7 +36,7 @@ enum BodyStates<M: Model<Scalar = f64>, const N: usize> {
     Lanes {
         state: <Wide<M, N> as Stepper>::State,
         workspace: <Wide<M, N> as Stepper>::Workspace,
-        /// Where each body was when the group was at its node 0.
+        /// The node of each body when the group was at its node 0.
         begun: [u64; N],
     },
     /// One by one.
@@ -116,7 +116,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Group<M, N> {
         }
     }
 
-    /// Finds which of the `bodies` bodies causes `cause`, by running each alone.
+    /// Finds the body among `bodies` bodies that causes `cause`, by stepping each body alone.
     #[cold]
     #[inline(never)]
     pub(super) fn blame(
@@ -189,7 +189,8 @@ fn one_by_one<M: Model<Scalar = f64>>(
     made
 }
 
-/// The first body that fails alone, how many do, or all of them when none does.
+/// The first body that fails alone and the number of such bodies; if none fails alone, the first body and the number
+/// of all bodies.
 fn ensemble_error<E>(
     alone: impl ExactSizeIterator<Item = Result<(), E>>,
     first: usize,

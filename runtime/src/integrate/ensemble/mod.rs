@@ -1,9 +1,9 @@
 //! Many independent bodies of one model, with different parameters and states.
 //! Takes parameters and initial data of each; advances all of them, in cache and on all cores.
 //!
-//! A group holds `N` bodies in the lanes of vector registers. It makes all its steps before the
-//! next group begins, so the cost per step does not grow with the size of the ensemble. Groups are
-//! independent: the result is the same, bit for bit, for any number of threads and size of tasks.
+//! A group holds `N` bodies in the lanes of vector registers. It takes all its steps before the next group begins, so
+//! the cost per step does not grow with the size of the ensemble. Groups are independent: the result is bitwise
+//! identical for any number of threads and any size of tasks.
 
 mod dispatch;
 mod failure;
@@ -26,14 +26,13 @@ const BLOCK: usize = 4;
 /// If the number of bodies is not a multiple of `N`, copies of the last body fill the remaining
 /// lanes; you never see them.
 ///
-/// With the feature `simd` the steps are compiled for several instruction sets, and clebsch selects
-/// the best one of the processor at run time. Without it they are compiled for the instruction set
-/// of the build. The results are the same, bit for bit: every lane rounds as plain numbers do, and
-/// products and sums are never fused.
+/// With the feature `simd` the steps are compiled for several instruction sets, and clebsch selects the best one of
+/// the processor at run time. Without it they are compiled for the instruction set of the build. The results are
+/// bitwise identical: every lane rounds as plain numbers do, and products and sums are never fused.
 ///
-/// Steps are, bit for bit, those that [`Stepper::advance_many`] makes of each body alone. Bodies
-/// whose steps need iterations ([`Model::SIDE_BY_SIDE`]) are stepped one by one: in lanes, all
-/// bodies would wait for the slowest, which costs more than lanes save.
+/// Steps are bitwise identical to the steps that [`Stepper::advance_many`] takes with each body alone. Bodies whose
+/// steps need iterations (see [`Model::SIDE_BY_SIDE`]) are stepped one by one: in lanes, all bodies would wait for
+/// the slowest, which costs more than lanes save.
 ///
 /// ```
 /// use clebsch::integrate::Ensemble;
@@ -120,7 +119,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
         Self::resume(begun, h, choice)
     }
 
-    /// The ensemble of running bodies, each at its own node, with steps of size `h` of either sign.
+    /// An ensemble of running bodies, each at its own node, with steps of size `h` of either sign.
     ///
     /// # Errors
     /// Names the first body whose next step could not be made.
@@ -169,7 +168,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
         self.bodies
     }
 
-    /// Whether there are none.
+    /// Whether the ensemble is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.bodies == 0
@@ -185,12 +184,12 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
         group.body(index % N.max(1))
     }
 
-    /// Parameters and states of all bodies, in the order they were given.
+    /// Parameters and states of all bodies, in the order of the bodies.
     pub fn bodies(&self) -> impl Iterator<Item = (M::Parameters, M::State)> + '_ {
         (0..self.bodies).filter_map(|i| self.body(i))
     }
 
-    /// A number for every body, in their order, found for all lanes at once:
+    /// A number for every body, in their order, computed for all lanes at once:
     /// `ensemble.observe(|model, state| model.energy(state))`.
     pub fn observe(
         &self,

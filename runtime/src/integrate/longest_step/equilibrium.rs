@@ -1,6 +1,6 @@
-//! Probes of Lagrangians with terms linear in velocities, as of magnetic fields and rotating frames. At rest the
-//! momenta of a constrained start are then not zero, and a disturbance moves at the same momenta. Takes states; gives
-//! momenta and velocities.
+//! Probes of Lagrangians with terms linear in velocities, as of magnetic fields and rotating frames. The momenta of a
+//! constrained start at rest are then not zero, and a disturbed state moves with the same momenta. Takes states;
+//! gives momenta and velocities.
 
 use super::extremes::{dot, numbers};
 use super::probe::Probe;
@@ -8,19 +8,20 @@ use super::probe::Probe;
 /// Velocities are measured over this many probe steps.
 const LONG: f64 = 100.0;
 
-/// A state is at rest if it moves by less than this share of its unit in a probe step.
+/// A state is at rest if it moves by less than this fraction of its unit in a probe step.
 const STILL: f64 = 1e-9;
 
-/// By which part of the velocities of zero momenta it may still move, and how many directions are tried.
+/// The fraction of the velocities of zero momenta that may remain, and the largest number of directions.
 const LEFT: f64 = 1e-5;
 const DIRECTIONS: usize = 50;
 
-/// A disturbed state that moves by more than this part of the disturbance in a long step does so by terms linear in
-/// velocities: by forces it moves by hundred times less.
+/// If a disturbed state moves by more than this fraction of the disturbance in a long step, terms linear in
+/// velocities move it: forces would move it a hundred times less.
 const LED: f64 = 1e-3;
 
 impl Probe<'_> {
-    /// The velocities with which a state leaves, by a long step and one half as long: what forces add grows with the square.
+    /// The velocities at the start of a step from a state, from a long step and a step half as long: the contribution
+    /// of forces grows with the square of the step.
     fn leaving(&self, state: &[Vec<f64>]) -> Option<Vec<f64>> {
         let h = LONG * self.step();
         let at = self.observed(state, h, 0)?;
@@ -30,7 +31,7 @@ impl Probe<'_> {
         Some(both.map(|(half, whole)| (4.0 * half - whole) / h).collect())
     }
 
-    /// The velocities with which the base leaves, where disturbed states leave with others.
+    /// The initial velocities of the base, if disturbed states have other initial velocities.
     pub(super) fn drifting(&self) -> Option<Vec<f64>> {
         let p = self.along(numbers(self.count()))?;
         let v = self.velocity(&p)?;
@@ -57,8 +58,8 @@ impl Probe<'_> {
         Some(to.iter().zip(from).map(|(to, from)| to - from).collect())
     }
 
-    /// A state with the momenta with which it does not move, as near to rest as is found; `None` where it is at rest as it is.
-    /// By conjugate gradients for the inverse of the mass.
+    /// A state near rest: the same positions with momenta that nearly cancel its velocities; `None` if the state is
+    /// already at rest. By conjugate gradients for the inverse of the mass.
     pub(super) fn rested(&self, state: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
         let mut left = self.leaving(state)?;
         let first = self.size(&left);

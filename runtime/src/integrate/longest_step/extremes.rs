@@ -1,5 +1,5 @@
 //! The slowest and the fastest of small motions, by Lanczos' method in the inner product of the mass.
-//! Takes answers of a model; gives two motions.
+//! Takes the responses of a model to disturbances; gives the two motions.
 
 use super::probe::Probe;
 use super::unknown::Unknown;
@@ -10,11 +10,11 @@ use nalgebra::{DMatrix, SymmetricEigen};
 /// fiftieth.
 const VECTORS: usize = 60;
 
-/// The maximum dimension for more than `MANY` freedoms, where each vector takes steps of a long chain.
+/// The maximum dimension for more than `MANY` degrees of freedom, where each vector needs steps of a long chain.
 const VECTORS_OF_MANY: usize = 30;
 const MANY: usize = 1000;
 
-/// The Krylov space ends if the coupling is below this share of the largest square, without and with constraints.
+/// The Krylov space ends if the coupling is below this fraction of the largest square, without and with constraints.
 const WEAK: f64 = 1e-6;
 const WEAK_HELD: f64 = 1e-4;
 
@@ -29,7 +29,7 @@ impl Probe<'_> {
     /// The motions of least and of largest ω² in the space that Lanczos' method spans, in the inner product of the mass.
     pub(super) fn extremes(&self) -> Result<[Motion; 2], Unknown> {
         let count = self.count();
-        // Momenta that give about equal velocities in parts of what moves.
+        // Momenta that give about equal velocities, relative to the units of disturbances.
         let nothing = || self.why(Unknown::Kinetic);
         let mut p = self.along(numbers(count)).ok_or_else(nothing)?;
         let first = self.velocity(&p).ok_or_else(nothing)?;
@@ -88,15 +88,15 @@ impl Probe<'_> {
         if alphas.is_empty() {
             return Err(nothing());
         }
-        // If the Lagrangian has terms linear in velocities, a disturbed state moves at the same momenta. Twice the
-        // energy of this motion depends on how the terms are written, so it is subtracted from the stiffness within the
-        // space.
+        // If the Lagrangian has terms linear in velocities, a disturbed state moves with the same momenta. The energy
+        // of this motion, counted twice, depends on how the terms are written, so it is subtracted from the stiffness
+        // within the space.
         let shares = led
             .iter()
             .map(|w| momenta.iter().map(|q| dot(q, w)).collect());
         let shares: Vec<Vec<f64>> = shares.collect();
-        // If the start is not an equilibrium, forces turn with their frames: only the symmetric part of the stiffness
-        // has an energy.
+        // If the start is not an equilibrium, forces rotate with their frames: only the symmetric part of the
+        // stiffness has an energy.
         let part =
             |i: usize, j: usize| dot(&velocities[i], &forces[j]) - dot(&shares[i], &shares[j]);
         let at = |i: usize, j: usize| 0.5 * (part(i, j) + part(j, i));
@@ -122,7 +122,7 @@ impl Probe<'_> {
     }
 }
 
-/// Numbers at random between minus one half and one half, the same every time.
+/// Pseudorandom numbers between minus one half and one half, the same in every run.
 pub(super) fn numbers(count: usize) -> Vec<f64> {
     let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
     let next = || {

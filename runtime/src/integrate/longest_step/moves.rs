@@ -8,7 +8,7 @@ use crate::scalar::largest;
 use nalgebra::{DMatrix, DVector, Vector3};
 use std::ops::Range;
 
-/// A configuration and its momentum among the initial values and among what is observed.
+/// A configuration and its momentum among the initial values and among the observables.
 pub(super) struct Moves {
     pub(super) initial: usize,
     pub(super) behind: usize,
@@ -16,14 +16,14 @@ pub(super) struct Moves {
     pub(super) spatial: bool,
     pub(super) place: Range<usize>,
     pub(super) momentum: Range<usize>,
-    /// Which numbers of the momentum are freedoms: of a skew matrix those below its diagonal.
+    /// The entries of the momentum that are degrees of freedom; for a skew matrix, the entries below its diagonal.
     freedoms: Vec<usize>,
     /// Rows of the momentum of a rotation that is not one of space: a skew matrix.
     skew: Option<usize>,
 }
 
 impl Moves {
-    /// All of a card; `None` where one is of another kind.
+    /// All configurations of a card; `None` if a configuration is of an unsupported kind.
     pub(super) fn all(card: &Card) -> Option<Vec<Self>> {
         let places = card.initial.iter().enumerate();
         let places = places.filter(|(_, place)| !is_momentum(place));
@@ -81,19 +81,19 @@ impl Moves {
         self.freedoms.len()
     }
 
-    /// The freedoms of its momentum in what is observed.
+    /// The degrees of freedom of its momentum among the observables.
     pub(super) fn momenta<'o>(&'o self, observed: &'o [f64]) -> impl Iterator<Item = f64> + 'o {
         let own = &observed[self.momentum.clone()];
         self.freedoms.iter().map(|k| own[*k])
     }
 
-    /// The freedoms of its momentum in a state.
+    /// The degrees of freedom of its momentum in a state.
     pub(super) fn given<'o>(&'o self, state: &'o [Vec<f64>]) -> impl Iterator<Item = f64> + 'o {
         let own = &state[self.behind];
         self.freedoms.iter().map(|k| own[*k])
     }
 
-    /// The momentum with these freedoms, as it is given at the start.
+    /// The momentum with these degrees of freedom, in the form of an initial value.
     pub(super) fn momentum_with(&self, freedoms: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut all = vec![0.0; self.momentum.len()];
         for (k, x) in self.freedoms.iter().zip(freedoms) {
@@ -144,8 +144,9 @@ fn columns(card: &Card, wanted: &Field) -> Option<Range<usize>> {
     None
 }
 
-/// The unit of disturbances of each freedom: one for angles and linear maps. The unit for fields and translations is
-/// the largest distance between their values at all sites or, if that is zero, the largest value, at most one.
+/// The unit of disturbances of each degree of freedom: one for angles and linear maps. The unit for fields and
+/// translations is the largest distance between their values at all sites or, if that is zero, the largest value, at
+/// most one.
 pub(super) fn units(moves: &[Moves], initial: &[Vec<f64>]) -> Vec<f64> {
     let places = moves.iter().filter_map(|m| {
         let value = initial.get(m.initial)?;
@@ -179,7 +180,7 @@ fn angles(count: usize) -> usize {
     }
 }
 
-/// Attitude and place of a rigid motion, from its homogeneous matrix, row-major.
+/// Attitude and position of a rigid motion, from its homogeneous matrix, row-major.
 fn rigid(value: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
     let all = square(value);
     let n = all.nrows();
@@ -188,8 +189,8 @@ fn rigid(value: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
     (attitude, place)
 }
 
-/// The small turn by an angle in the plane, by three angles about the axes of space, or by an angle for each plane of
-/// two axes. If `is_whole` is false, it is the skew matrix of the turn, its first-order term.
+/// The small rotation by an angle in the plane, by three angles about the axes of space, or by an angle for each
+/// plane of two axes. If `is_whole` is false, it is the skew matrix of the rotation, its first-order term.
 fn turn_by(angles: &[f64], is_whole: bool) -> DMatrix<f64> {
     match *angles {
         [angle] if is_whole => {
@@ -287,7 +288,8 @@ fn rigid_difference(a: &[f64], b: &[f64], spatial: bool) -> Vec<f64> {
     all
 }
 
-/// Moves a configuration by a small change: added to a field, a turn in the frame of the momentum for an attitude.
+/// Moves a configuration by a small change: a sum for a field, a rotation in the frame of the momentum for an
+/// attitude.
 pub(super) fn disturb(value: &mut Vec<f64>, body: &Moves, by: &[f64]) -> Option<()> {
     match body.kind {
         Kind::FieldMomentum => value.iter_mut().zip(by).for_each(|(x, by)| *x += by),

@@ -1,6 +1,6 @@
 //! Linearises a model about its initial state at rest by finite differences of single steps: the forces of
 //! disturbances, the velocities of momenta, and the projection of momenta on the constraints. Takes a card with its
-//! data; gives lists over all freedoms.
+//! data; gives lists over all degrees of freedom.
 
 use super::extremes::{Motion, dot, numbers};
 use super::moves::{self, Moves};
@@ -14,8 +14,9 @@ use std::cell::Cell;
 /// linear in both. It is larger than the square root of the rounding unit, since models are nonlinear.
 const PART: f64 = 1e-5;
 
-/// Like `PART`, for a model with constraints, divided by the number of its configurations. The curvature of constraints
-/// is measured by disturbances relative to the distance of neighbours, which is about that part of the unit.
+/// Like `PART`, for a model with constraints, divided by the number of its configurations. The curvature of
+/// constraints is measured by disturbances relative to the distance of neighbours, which is about that fraction of
+/// the unit.
 const PART_HELD: f64 = 1e-6;
 
 /// The model has constraints if the projection removes more than this share of random momenta.
@@ -25,15 +26,15 @@ const TAKEN: f64 = 1e-9;
 const SCALES: usize = 12;
 const SLOWER: f64 = 1e-4;
 
-/// If a momentum moves less than this share of the way that a smaller one predicts, it is too large to be linear. An
-/// example is a relativistic particle.
+/// If the displacement by a momentum is less than this fraction of the displacement that a smaller momentum predicts,
+/// the momentum is too large to be linear. An example is a relativistic particle.
 const STRAIGHT: f64 = 0.5;
 
-/// The factor that reduces such a momentum, and the least way that it must move in the end, in parts of disturbances.
+/// The factor that reduces such a momentum, and the smallest final displacement, in units of the disturbances.
 const SMALLER: f64 = 1e-2;
 const SEEN: f64 = 1e-6;
 
-/// Whether displacements are not proportional to scales, because the larger scale gives too short a displacement.
+/// Whether displacements are not proportional to scales, because the larger scale gives too small a displacement.
 fn is_bent(one: (f64, f64), other: (f64, f64)) -> bool {
     let ((scale, way), (larger, farther)) = match one.0 < other.0 {
         true => (one, other),
@@ -52,11 +53,12 @@ pub(super) struct Probe<'a> {
     pub(super) moves: Vec<Moves>,
     /// The probe step.
     h: f64,
-    /// The unit of disturbances of each freedom.
+    /// The unit of disturbances of each degree of freedom.
     pub(super) units: Vec<f64>,
     /// The observables after a step from rest.
     rest: Vec<f64>,
-    /// The state at rest where forces are compared: the start or, with constraints, the end of a step from the start.
+    /// The state at rest for the comparison of forces: the start or, with constraints, the end of a step from the
+    /// start.
     base: Vec<Vec<f64>>,
     /// The observables after a step from the base.
     pushed: Vec<f64>,
@@ -118,7 +120,7 @@ impl<'a> Probe<'a> {
             return Ok(probe);
         }
         probe.part = PART_HELD / probe.moves.len() as f64;
-        // Constraints turn with the motion, so a velocity at the start would act like a force.
+        // The directions of constraints change along the motion, so a velocity at the start would act like a force.
         let start = probe.rested(&probe.initial);
         let start = start.unwrap_or_else(|| probe.initial.clone());
         probe.initial = probe.settled(start).ok_or(Unknown::Start)?;
@@ -133,22 +135,22 @@ impl<'a> Probe<'a> {
         Ok(probe)
     }
 
-    /// How many freedoms there are.
+    /// The number of degrees of freedom.
     pub(super) fn count(&self) -> usize {
         self.moves.iter().map(Moves::count).sum()
     }
 
-    /// The state where forces are compared.
+    /// The state for the comparison of forces.
     pub(super) fn base(&self) -> &[Vec<f64>] {
         &self.base
     }
 
-    /// Disturbances in parts of what is disturbed.
+    /// Disturbances relative to their units.
     pub(super) fn part(&self) -> f64 {
         self.part
     }
 
-    /// The velocities with which the base leaves, where disturbed states leave with others.
+    /// The initial velocities of the base, if disturbed states have other initial velocities.
     pub(super) fn drift(&self) -> Option<&[f64]> {
         self.drift.as_deref()
     }
@@ -163,7 +165,7 @@ impl<'a> Probe<'a> {
         self.held
     }
 
-    /// The reason if an answer is missing: a failed step, or else the given one.
+    /// The reason for a missing value: a failed step, otherwise the given reason.
     pub(super) fn why(&self, otherwise: Unknown) -> Unknown {
         match self.refused.get() {
             true => Unknown::Refused,
@@ -197,12 +199,12 @@ impl<'a> Probe<'a> {
         found
     }
 
-    /// The observed momenta, in the order of freedoms.
+    /// The observed momenta, in the order of the degrees of freedom.
     fn momenta<'o>(&'o self, observed: &'o [f64]) -> impl Iterator<Item = f64> + 'o {
         self.moves.iter().flat_map(|body| body.momenta(observed))
     }
 
-    /// The momenta of a state, in the order of freedoms.
+    /// The momenta of a state, in the order of the degrees of freedom.
     fn given(&self, state: &[Vec<f64>]) -> Vec<f64> {
         let each = self.moves.iter();
         each.flat_map(|body| body.given(state)).collect()
@@ -250,8 +252,8 @@ impl<'a> Probe<'a> {
 
     /// Momenta projected on the constraints at the start; unchanged without constraints.
     fn projected(&self, p: &[f64]) -> Option<Vec<f64>> {
-        // A state that is at rest except for these momenta fails only because of their size, for example if the mass
-        // is much smaller than one.
+        // A step from rest with these momenta can fail only because they are too large, for example if the mass is
+        // much smaller than one.
         let mut scale = 1.0 / largest(p.iter().copied());
         if !scale.is_finite() {
             return Some(p.to_vec());
@@ -266,7 +268,7 @@ impl<'a> Probe<'a> {
         None
     }
 
-    /// Momenta projected on the constraints; returned as they are without constraints.
+    /// Momenta projected on the constraints; without constraints they are returned unchanged.
     pub(super) fn along(&self, p: Vec<f64>) -> Option<Vec<f64>> {
         match self.held {
             true => self.projected(&p),
@@ -274,9 +276,9 @@ impl<'a> Probe<'a> {
         }
     }
 
-    /// The stiffness times `v`, for a disturbance along the velocity `v` with momentum `p`: the force at the base minus
-    /// the force at the disturbed state. Also the velocity that the disturbance gives at the same momenta, a part of
-    /// this stiffness.
+    /// The stiffness times `v`, for a disturbance along the velocity `v` with momentum `p`: the force at the base
+    /// minus the force at the disturbed state. The second list is the velocity that the disturbance causes at the
+    /// same momenta, which contributes to this stiffness.
     pub(super) fn stiffness(&self, v: &[f64], p: &[f64]) -> Option<[Vec<f64>; 2]> {
         let scale = self.part / self.size(v);
         let disturbed = self.disturbed(v, p, scale)?;
@@ -298,7 +300,7 @@ impl<'a> Probe<'a> {
         acted.map(|(after, before)| (after - before) / self.h)
     }
 
-    /// The velocity of a momentum `p`: the displacement of a step with it, compared with a step from rest.
+    /// The velocity of a momentum `p`: the displacement in a step with it, relative to a step from rest.
     pub(super) fn velocity(&self, p: &[f64]) -> Option<Vec<f64>> {
         // The displacement is known only after the step.
         let mut scale = self.part / largest(p.iter().copied());
@@ -309,7 +311,7 @@ impl<'a> Probe<'a> {
         // The previous scale with its displacement, and whether scales are reduced until displacements are proportional to them.
         let (mut before, mut bends) = (None, false);
         for _ in 0..SCALES {
-            // A step may fail because the velocity is too large for the model, as with a small mass.
+            // A step may fail because the velocity is too large for the model, for example with a small mass.
             let thrown = self.thrown(p, scale)?;
             let Some(after) = self.observed(&thrown, self.h, 1) else {
                 refused = true;
@@ -343,9 +345,9 @@ impl<'a> Probe<'a> {
         None
     }
 
-    /// Whether a step of `h`, disturbed by this motion, leaves `1 - h² ω²/2` of it, as steps with the potential at the nodes do:
-    /// one with it in the middle leaves `(4 - h² ω²)/(4 + h² ω²)`. Uses a part of the step if the whole step fails; `None` if the
-    /// part fails too.
+    /// Whether a step of `h`, disturbed by this motion, leaves `1 - h² ω²/2` of it, as steps with the potential at
+    /// the nodes do: one with it in the middle leaves `(4 - h² ω²)/(4 + h² ω²)`. Uses a fraction of the step if the
+    /// whole step fails; `None` if the shorter step fails too.
     pub(super) fn is_left(&self, motion: &Motion, h: f64) -> Option<bool> {
         // The two schemes differ by a quarter of h² ω² for the whole step, by a tenth for half of it, by 0.03 for a
         // quarter.
@@ -358,7 +360,7 @@ impl<'a> Probe<'a> {
             })
     }
 
-    /// The step, and the share of a motion that the step leaves; `None` if the step fails.
+    /// The step, and the fraction of a motion that remains after it; `None` if the step fails.
     fn left(&self, motion: &Motion, h: f64) -> Option<(f64, f64)> {
         let scale = self.part / self.size(&motion.velocity);
         let moved = self.disturbed(&motion.velocity, &motion.momentum, scale)?;
@@ -387,7 +389,7 @@ impl<'a> Probe<'a> {
         waves::shortness(&motion.velocity, &self.units, &pairs)
     }
 
-    /// The largest part of a change in units of disturbances.
+    /// The largest component of a change in units of disturbances.
     pub(super) fn size(&self, change: &[f64]) -> f64 {
         largest(change.iter().zip(&self.units).map(|(x, unit)| x / unit))
     }
@@ -401,8 +403,8 @@ impl<'a> Probe<'a> {
         each.collect()
     }
 
-    /// The start with a disturbance `scale` times `v`; of a held model what a step with its momentum `p` leads to, which is
-    /// on the constraints.
+    /// The start with a disturbance `scale` times `v`. For a model with constraints, the end of a step with the
+    /// momentum `p`, which satisfies the constraints.
     pub(super) fn disturbed(&self, v: &[f64], p: &[f64], scale: f64) -> Option<Vec<Vec<f64>>> {
         if self.held {
             let thrown = self.thrown(p, scale / self.h)?;

@@ -5,7 +5,7 @@ use core::fmt;
 /// Why the stability limit is unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unknown {
-    /// The initial values do not contain a momentum for each configuration.
+    /// The initial values lack a momentum for some configuration.
     Kind,
     /// The first step from the start at rest fails, or its constraints are not independent.
     Start,
@@ -20,7 +20,7 @@ pub enum Unknown {
     /// A step does not move the fastest motion as steps with the potential at the nodes do: with a potential in the
     /// middle of steps, with strong terms linear in velocities, at a kink, all steps may be stable.
     OtherSteps,
-    /// The search was given up before its end.
+    /// The search reached its time limit.
     Unfinished,
 }
 

@@ -1,11 +1,11 @@
-//! How short the waves of a small motion are along a line of sites.
-//! Takes the velocities of all freedoms, and the neighbours by the names of a card; gives a number.
+//! How short the waves of a small motion are along a line of sites. Takes the velocities of all degrees of freedom,
+//! and the neighbours by the names of a card; gives a number.
 
 use super::moves::Moves;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// The freedoms of each configuration and of its next neighbour, such as `q_3` and `q_4`.
+/// The degrees of freedom of each configuration and of its next neighbour, such as `q_3` and `q_4`.
 pub(super) fn neighbours(moves: &[Moves], names: &[&str]) -> Vec<[Range<usize>; 2]> {
     let mut from = 0;
     let mut own = Vec::new();
@@ -25,14 +25,14 @@ pub(super) fn neighbours(moves: &[Moves], names: &[&str]) -> Vec<[Range<usize>; 
     own.iter().filter_map(beside).collect()
 }
 
-/// The name without the number at its end, and that number.
+/// The name without the number at its end, and the number.
 fn site(name: &str) -> Option<(&str, usize)> {
     let (stem, number) = name.rsplit_once('_')?;
     Some((stem, number.parse().ok()?))
 }
 
 /// How much neighbours move against each other, relative to their motion: 0 if they move alike, 2 if they alternate,
-/// `1 - cos(k)` for a wave that turns by `k` from site to site. 0 without neighbours.
+/// `1 - cos(k)` for a wave whose phase changes by `k` from site to site. 0 without neighbours.
 pub(super) fn shortness(velocity: &[f64], units: &[f64], pairs: &[[Range<usize>; 2]]) -> f64 {
     let (mut apart, mut all) = (0.0, 0.0);
     for [here, there] in pairs {

@@ -46,7 +46,7 @@ fn systems<const N: usize>() {
     assert_eq!(da.determinant(), linalg::determinant(&a));
     assert_eq!(da.inverse(), of(linalg::inverse(&a)));
     assert_eq!(da.small_inverse(), of(linalg::small_inverse(&a)));
-    // For other sizes it is NaN, which equals nothing.
+    // For other sizes it is NaN, which never compares equal.
     let (adjugate, own) = (da.adjugate(), Dense::of(&linalg::adjugate(&a)));
     let same = adjugate == own;
     assert_eq!(same, N == 2 || N == 3);
@@ -91,8 +91,8 @@ fn large_systems_are_solved() {
     assert!(Dense::<f64>::zeros(n, n).solved(&b).is_none());
 }
 
-/// Two bodies on a hinge: their turns, positions and five constraint forces. The velocities are as exact for masses of
-/// 1e-12 as for masses of 1, and equal bit for bit to the ones of static sizes.
+/// Two bodies on a hinge: their rotations, positions and five constraint forces. The velocities are as exact for
+/// masses of 1e-12 as for masses of 1, and equal bit for bit to the ones of static sizes.
 #[test]
 fn held_systems_do_not_depend_on_the_unit_of_mass() {
     let (p, q) = ([0.5, 0.2, 0.0], [-0.5, 0.2, 0.0]);
@@ -102,7 +102,7 @@ fn held_systems_do_not_depend_on_the_unit_of_mass() {
     };
     let one = |i: usize, j: usize| f64::from(u8::from(i == j));
     let masses = [3.5, 2.5, 3.0, 7.0, 5.0, 6.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0];
-    // The rate of x + R p - y - S q, and of the two that keep the axis, at rest.
+    // At rest: the rate of x + R p - y - S q, and the two rates that keep the axis.
     let rate = |k: usize, j: usize| match (k, j / 3) {
         (0..3, 0) => -hat(p, k, j),
         (0..3, 1) => hat(q, k, j - 3),

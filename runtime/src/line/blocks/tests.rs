@@ -1,4 +1,4 @@
-//! Solutions against the matrix times themselves: arrays and lists, lines and rings, blocks that need pivots.
+//! Solutions multiplied by their matrix: arrays and lists, open chains and rings, blocks that need pivots.
 
 use super::{Blocks, Fixed};
 
@@ -9,7 +9,7 @@ fn drawn(state: &mut u64) -> f64 {
     (*state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
 }
 
-/// A matrix whose own blocks are `own` and small numbers, and the same, row after row of all sites.
+/// A matrix whose diagonal blocks are `own` plus small numbers, as blocks and as a dense matrix, row by row.
 fn made<const N: usize>(
     sites: usize,
     ring: bool,
@@ -42,7 +42,7 @@ fn made<const N: usize>(
     (blocks, dense)
 }
 
-/// The largest residual of a solution, and of another one with what was factored.
+/// The largest residual of a solution, and of a second solution with the same factors.
 fn residual<const N: usize>(
     (blocks, dense): &mut (Blocks<f64>, Vec<Vec<f64>>),
     lists: bool,

@@ -1,5 +1,5 @@
-//! One direction of a uniform grid: the coordinates and weights of its nodes, and the images of nodes beyond its ends.
-//! Takes a length, a number of intervals and the boundary condition.
+//! One direction of a uniform grid: the coordinates and weights of its nodes, and the images of nodes beyond its
+//! ends. Takes a length, a number of intervals and the boundary condition.
 
 use super::super::{MeshError, Wall};
 use crate::{ParameterError, Problem, Real};
@@ -107,8 +107,8 @@ impl Axis {
         }
     }
 
-    /// The node that the place `padded - margin` nodes from the first is an image of: the same one modulo the
-    /// period, or its mirror image in the walls, repeatedly.
+    /// The node whose image is the padded point with index `padded`: the same node modulo the period, or its repeated
+    /// mirror image in the walls.
     pub(super) fn image(&self, padded: usize, margin: usize) -> usize {
         let n = self.intervals;
         match self.wall {
@@ -176,9 +176,9 @@ impl Axis {
 /// Why no interval contains a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum OutsideReason {
-    /// It is NaN or infinite.
+    /// The coordinate is NaN or infinite.
     Nowhere,
-    /// It is beyond a wall by this length.
+    /// The coordinate is beyond a wall by this length.
     By(f64),
 }
 

@@ -56,7 +56,7 @@ impl<T: Real> Bounded<T> {
         }
     }
 
-    /// Smooths across rows of so many values: `values` has one row for each node. As `S = 1 - (M + α²K)⁻¹ α²K`.
+    /// Smooths across rows of this length: `values` has one row for each node. As `S = 1 - (M + α²K)⁻¹ α²K`.
     pub fn across(&mut self, values: &mut [T], width: usize) {
         let nodes = self.pivots.len();
         if width == 0 || values.len() != nodes * width {
@@ -64,7 +64,7 @@ impl<T: Real> Bounded<T> {
         }
         self.rest.resize(nodes * width, T::zero());
         let rest = &mut self.rest[..];
-        // The differences to the next row, of which the right side is made.
+        // The differences to the next row, from which the right side is computed.
         for i in 0..nodes {
             let (done, row) = rest.split_at_mut(i * width);
             let row = &mut row[..width];
@@ -107,7 +107,7 @@ impl<T: Real> Bounded<T> {
         }
     }
 
-    /// Smooths along each row of as many values as there are nodes.
+    /// Smooths along each row; a row has one value for each node.
     pub fn along(&mut self, values: &mut [T]) {
         let nodes = self.pivots.len();
         let mut block = core::mem::take(&mut self.block);

@@ -14,8 +14,8 @@ use crate::line::Threads;
 use crate::{ParameterError, Problem, Real};
 use nalgebra::SVector;
 
-/// The number of rows in a stripe, which one thread deposits. Stripes of even number come first, then those
-/// between: where two overlap, by `K - 1` rows, the order of the sum is fixed.
+/// The number of rows in a stripe, which one thread deposits. Stripes of even number come first, then stripes of odd
+/// number: neighbours overlap by `K - 1` rows, so the order of the sum is fixed.
 const STRIPE: usize = 8;
 
 /// The least number of particles for a thread; with fewer, waking the thread costs more than it saves.

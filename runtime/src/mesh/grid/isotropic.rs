@@ -12,7 +12,7 @@ use super::periodic::is_plain;
 use super::smoother::{Directions, Weights};
 use crate::{ParameterError, Real};
 
-/// Where conjugate gradients stop: what is left of the equation, relative to its right side.
+/// Conjugate gradients stop at this residual, relative to the right side.
 const TOLERANCE: f64 = 1e-15;
 
 /// Most iterations. Their number grows as the smoothing length in units of the spacing, 20 for twice the spacing.

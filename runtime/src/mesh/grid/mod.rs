@@ -1,5 +1,5 @@
-//! Functionals on a uniform grid: depth deposited from particles by B-splines, smoothing by the inverse of a Helmholtz
-//! operator. Directions are periodic, or end in walls that are mirrors.
+//! Functionals on a uniform grid: depth deposited from particles by B-splines, smoothing by the inverse of a
+//! Helmholtz operator. Directions are periodic, or end in reflecting walls.
 
 mod axis;
 mod bounded;

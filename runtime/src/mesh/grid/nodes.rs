@@ -1,5 +1,5 @@
 //! The nodes of a uniform grid on a domain, in the order of values at nodes: the index of the last direction runs
-//! fastest. Takes the setting of a functional; gives their number, places and weights.
+//! fastest. Takes the setting of a functional; gives the number, the positions and the weights of the nodes.
 
 use super::super::Setting;
 use super::axis::Axis;
@@ -65,7 +65,7 @@ impl<const D: usize> Nodes<D> {
         indices
     }
 
-    /// The place of each node.
+    /// The position of each node.
     #[must_use]
     pub fn places(&self) -> Vec<[f64; D]> {
         let place = |node| {
@@ -75,8 +75,8 @@ impl<const D: usize> Nodes<D> {
         (0..self.count()).map(place).collect()
     }
 
-    /// The weight of each node in the trapezoid rule, whose sum is the measure of the domain: the product of the
-    /// spacings, halved for each wall that the node is on.
+    /// The weight of each node in the trapezoid rule: the product of the spacings, halved for each wall that contains
+    /// the node. The sum of all weights is the measure of the domain.
     #[must_use]
     pub fn weights<T: Real>(&self) -> Vec<T> {
         let weight = |node| {

@@ -5,11 +5,11 @@
 use super::nodes::Nodes;
 use crate::Real;
 
-/// Places around the nodes of a grid, the rows along the last direction contiguous.
+/// Values at the nodes of a grid and in a margin around them; rows along the last direction are contiguous.
 #[derive(Clone, Debug)]
 pub(super) struct Padded<T, const D: usize> {
     places: Vec<T>,
-    /// The node that each place along a direction belongs to.
+    /// The node that belongs to each padded point along a direction.
     images: [Vec<usize>; D],
     /// Nodes along each direction.
     nodes: [usize; D],
@@ -37,7 +37,7 @@ impl<T: Real, const D: usize> Padded<T, D> {
         }
     }
 
-    /// Places of a row: one along a line.
+    /// Length of a row; 1 in one dimension.
     #[inline(always)]
     pub fn width(&self) -> usize {
         match D {
@@ -46,19 +46,19 @@ impl<T: Real, const D: usize> Padded<T, D> {
         }
     }
 
-    /// All places, row after row.
+    /// All values, row by row.
     #[inline(always)]
     pub fn places(&self) -> &[T] {
         &self.places
     }
 
-    /// All places, set to zero, to be summed into.
+    /// All values, set to zero as the start of sums.
     pub fn cleared(&mut self) -> &mut [T] {
         self.places.fill(T::zero());
         &mut self.places
     }
 
-    /// The places of the margin along a direction, each with its node's.
+    /// The points of the margin along a direction, each with its node.
     fn ghosts(&self, d: usize) -> impl Iterator<Item = (usize, usize)> + use<'_, T, D> {
         let inside = self.margin..self.margin + self.nodes[d];
         let all = self.images[d].iter().enumerate();
@@ -98,7 +98,7 @@ impl<T: Real, const D: usize> Padded<T, D> {
         self.places = places;
     }
 
-    /// The transpose of [`Padded::fold`]: `seed` at nodes, each over its weight, and at the margin copies of it.
+    /// The transpose of [`Padded::fold`]: `seed` at nodes, each divided by its weight, with copies in the margin.
     pub fn extend(&mut self, seed: &[T]) {
         let (width, margin) = (self.width(), self.margin);
         let mut places = core::mem::take(&mut self.places);

@@ -1,6 +1,7 @@
-//! The Helmholtz smoother around a period: each Fourier component over `1 + α²k²`, k being its wave number. Plain
-//! numbers go through a real fast Fourier transform. Other scalars are convolved with the same operator's kernel, in
-//! quadratic time: their values agree to rounding, and the transform knows no derivatives.
+//! The Helmholtz smoother along a periodic direction: each Fourier component is divided by `1 + α²k²`, where k is its
+//! wave number. Plain numbers use a real fast Fourier transform. Other scalars use a convolution with the kernel of
+//! the same operator, in quadratic time: values agree to rounding, and the convolution, unlike the transform, also
+//! propagates derivatives.
 
 use super::axis::Axis;
 use super::bounded::BLOCK;
@@ -31,7 +32,7 @@ enum Way<T> {
 struct Transformed {
     to: Arc<dyn RealToComplex<f64>>,
     from: Arc<dyn ComplexToReal<f64>>,
-    /// `1 - S` of each component, over the number of nodes.
+    /// `1 - S` for each component, divided by the number of nodes.
     symbol: Vec<f64>,
     row: Vec<f64>,
     components: Vec<Complex<f64>>,
@@ -55,7 +56,7 @@ impl<T: Real> Periodic<T> {
     /// For the smoothing length `alpha`.
     pub fn new(axis: &Axis, alpha: T) -> Self {
         let nodes = axis.nodes();
-        // `1 - S` of the component of so many waves.
+        // `1 - S` for the component with this wave number.
         let whole = full_angle::<T>() * axis.density::<T>() / T::from_f64(nodes as f64);
         let symbol = |waves: usize| {
             let ratio = alpha * whole * T::from_f64(waves as f64);
@@ -77,7 +78,7 @@ impl<T: Real> Periodic<T> {
         }
     }
 
-    /// Smooths along each row of as many values as there are nodes.
+    /// Smooths along each row; a row has one value for each node.
     pub fn along(&mut self, values: &mut [T]) {
         for row in values.chunks_exact_mut(self.nodes) {
             match &mut self.way {
@@ -87,7 +88,7 @@ impl<T: Real> Periodic<T> {
         }
     }
 
-    /// Smooths across rows of so many values: `values` has one row for each node.
+    /// Smooths across rows of this length: `values` has one row for each node.
     pub fn across(&mut self, values: &mut [T], width: usize) {
         let nodes = self.nodes;
         if width == 0 || values.len() != nodes * width {
@@ -113,7 +114,7 @@ impl<T: Real> Periodic<T> {
     }
 }
 
-/// 2π in the precision of the scalar: a zero of the sine, improved once.
+/// 2π in the precision of the scalar: a zero of the sine, after one Newton step.
 fn full_angle<T: Real>() -> T {
     let near = T::from_f64(core::f64::consts::PI);
     let half = near + near.sin();
@@ -149,7 +150,8 @@ fn convolve<T: Real>(kernel: &[T], copy: &mut [T], row: &mut [T]) {
 }
 
 impl Transformed {
-    /// Takes `1 - S` of each component, over the number of nodes. Not generic, so that transforms are compiled only once.
+    /// Takes `1 - S` for each component, divided by the number of nodes. Not generic, so that transforms are compiled
+    /// only once.
     fn new(nodes: usize, symbol: Vec<f64>) -> Self {
         let mut planner = RealFftPlanner::<f64>::new();
         let to = planner.plan_fft_forward(nodes);

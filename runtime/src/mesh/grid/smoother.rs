@@ -1,7 +1,7 @@
-//! Smoothing on a grid by the inverse of a Helmholtz operator, direction after direction: `S = S_1 S_2`, each factor
-//! `(1 - α²∂²)⁻¹` by finite elements between walls, by Fourier components around a period. The factors commute, and S
-//! is its own adjoint in the weights w of nodes, `Σ w a S b = Σ w b S a`: the transposed derivative is `w S w⁻¹`.
-//! Takes values at nodes, gives values at nodes; it keeps `Σ w H` and constants.
+//! Smoothing on a grid by the inverse of a Helmholtz operator, direction after direction: `S = S_1 S_2`, where each
+//! factor is `(1 - α²∂²)⁻¹`, by finite elements between walls, by Fourier components along a periodic direction. The
+//! factors commute, and S is self-adjoint with the weights w of nodes, `Σ w a S b = Σ w b S a`: the transposed
+//! derivative is `w S w⁻¹`. Takes values at nodes, gives values at nodes; it preserves `Σ w H` and constants.
 
 use super::super::length::check_length;
 use super::super::{Functional, MeshError, Setting, Wall};
@@ -56,7 +56,7 @@ impl<T: Real, const D: usize> Directions<T, D> {
     }
 }
 
-/// Twice the largest spacing of the grid: the smoothing length of a model that states none.
+/// Twice the largest spacing of the grid: the default smoothing length.
 ///
 /// # Errors
 /// As [`Nodes::new`].
@@ -66,7 +66,7 @@ pub fn smoothing_length<const D: usize>(setting: &Setting<D>) -> Result<f64, Par
     Ok(2.0 * largest(spacings))
 }
 
-/// The weights of nodes and their reciprocals, by which an operator that is its own adjoint is transposed.
+/// The weights of nodes and their reciprocals, which transpose a self-adjoint operator.
 #[derive(Clone, Debug)]
 pub(super) struct Weights<T>(Vec<(T, T)>);
 

@@ -1,6 +1,7 @@
-//! Particles sorted by the row of the grid that they are in, rows being numbered along the first direction. Within a
-//! row they keep the order of their numbers, so that every sum over the particles of a row has one order. The sort is
-//! a counting sort in two passes; ranges of numbers are sorted each by itself, by several threads or one after the other.
+//! Particles sorted by their row of the grid; rows are numbered along the first direction. Within a row, particles
+//! are in the order of their numbers, so the order of every sum over the particles of a row is fixed. The sort is a
+//! counting sort in two passes; ranges of particles are sorted independently, by several threads or one after the
+//! other.
 
 use super::super::MeshError;
 use super::axis::Axis;
@@ -15,7 +16,7 @@ pub(super) struct Particle<T, const D: usize> {
     pub fraction: [T; D],
     /// Its mass.
     pub mass: T,
-    /// Number of its cell along the last direction, and in the lowest bits the directions it is mirrored in.
+    /// Number of its cell along the last direction; the lowest bits mark the directions in which it is mirrored.
     column: u32,
     /// Its number, from the first of its range.
     number: u32,
@@ -54,7 +55,7 @@ impl<T: Real, const D: usize> Particle<T, D> {
 #[derive(Clone, Debug)]
 pub(super) struct Sorted<T, const D: usize> {
     particles: Vec<Particle<T, D>>,
-    /// The row of each, in the order of numbers.
+    /// The row of each particle, in the order of numbers.
     rows: Vec<u32>,
     /// The end of each row in each range, counted from the first particle of the range.
     ends: Vec<u32>,
@@ -67,11 +68,11 @@ pub(super) struct Sorted<T, const D: usize> {
     threads: usize,
 }
 
-/// Most particles of a range, unless rows are so many that their ends would take more room than particles: what is
-/// known of so many fits the cache, and numbers in no order cost little.
+/// Maximum number of particles in a range, unless rows are so many that their ends would need more memory than
+/// particles: the data of this many particles fit into the cache, where random access is cheap.
 const RANGE: usize = 1 << 16;
 
-/// A range of particles while it is sorted.
+/// A range of particles during the sort.
 struct Part<'a, T, A, const D: usize> {
     first: usize,
     at: &'a [A],
@@ -82,7 +83,7 @@ struct Part<'a, T, A, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Sorted<T, D> {
-    /// Room for so many particles in so many rows.
+    /// Space for this many particles and rows.
     pub fn new(particles: usize, count: usize) -> Self {
         let mut made = Self {
             particles: vec![Particle::none(); particles],
@@ -168,7 +169,7 @@ impl<T: Real, const D: usize> Sorted<T, D> {
             .map(move |(range, ends)| range.get(within(ends, row)).unwrap_or_default())
     }
 
-    /// The ranges, each with its rows in their order.
+    /// The ranges, each with its rows in order.
     pub fn ranges(&self) -> impl Iterator<Item = Rows<'_, T, D>> {
         let ranges = self.particles.chunks(self.share);
         let both = ranges.zip(self.ends.chunks(self.count));
@@ -203,7 +204,7 @@ impl<T: Real, const D: usize> Rows<'_, T, D> {
     }
 }
 
-/// Where the particles of a row are in their range.
+/// The particles of a row, as indices in their range.
 #[inline(always)]
 fn within(ends: &[u32], row: usize) -> Range<usize> {
     let first = if row == 0 { 0 } else { ends[row - 1] };
@@ -211,7 +212,7 @@ fn within(ends: &[u32], row: usize) -> Range<usize> {
 }
 
 impl<T: Real, A: Position<T, D>, const D: usize> Part<'_, T, A, D> {
-    /// Counts, then places.
+    /// Counts first, then places the particles.
     fn sort(self, axes: &[Axis; D]) -> Result<(), MeshError> {
         let density: [T; D] = core::array::from_fn(|d| axes[d].density());
         self.ends.fill(0);

@@ -11,10 +11,10 @@ pub(super) struct Splines<const K: usize>;
 
 /// Values and slopes of the splines of an interval.
 pub(super) trait Basis<const K: usize>: Copy + Send + Sync {
-    /// The value of each.
+    /// The value of each spline.
     fn values<T: Real>(fraction: T) -> [T; K];
 
-    /// The derivative of each with respect to the position, per interval.
+    /// The derivative of each spline with respect to the position, per interval.
     fn slopes<T: Real>(fraction: T) -> [T; K];
 }
 
@@ -72,7 +72,7 @@ fn ratio<T: Real>(num: i64, den: i64) -> T {
     T::from_ratio(num, den)
 }
 
-/// The quintic spline from its end: x^5 / 120.
+/// The quintic spline near its end: x^5 / 120.
 #[inline(always)]
 fn outer<T: Real>(x: T) -> T {
     let square = x * x;

@@ -1,13 +1,13 @@
-//! The innermost loops of deposit and gather, for one row of cells. Deposit adds the masses of its particles to the
-//! `K x K` nodes around each, gather reads derivatives from these nodes. Takes the rows of nodes that the splines of
-//! the row of cells cover. The loops use indices, since iterator adaptors are not inlined.
+//! The innermost loops of deposit and gather, for one row of cells. Deposit adds the masses of particles to the
+//! `K x K` nodes around each particle; gather reads derivatives from these nodes. Takes the rows of nodes that the
+//! splines of the row of cells cover. The loops use indices, since iterator adaptors are not inlined.
 
 use super::position::Position;
 use super::sorted::Particle;
 use super::spline::{Basis, Splines};
 use crate::Real;
 
-/// Adds the masses of particles of one row of cells to `K` rows of places.
+/// Adds the masses of the particles of one row of cells to `K` rows of the padded grid.
 #[inline(always)]
 pub(super) fn scatter<T: Real, const D: usize, const K: usize>(
     places: &mut [T],
@@ -46,7 +46,7 @@ pub(super) fn scatter<T: Real, const D: usize, const K: usize>(
     }
 }
 
-/// The derivatives for particles of one row of cells, from `K` rows of places.
+/// The derivatives at the particles of one row of cells, from `K` rows of the padded grid.
 #[inline(always)]
 pub(super) fn gather<T: Real, A: Position<T, D>, const D: usize, const K: usize>(
     places: &[T],
@@ -100,7 +100,7 @@ pub(super) fn gather<T: Real, A: Position<T, D>, const D: usize, const K: usize>
     }
 }
 
-/// Interpolates values at the nodes to the particles of one row of cells, from `K` rows of places.
+/// Interpolates values at the nodes to the particles of one row of cells, from `K` rows of the padded grid.
 #[inline(always)]
 pub(super) fn interpolate<T: Real, const D: usize, const K: usize>(
     places: &[T],

@@ -1,5 +1,5 @@
-//! The fastest waves of particles on a grid, by which the step of an explicit method is limited. Takes the speed of long
-//! waves and the rate of rotation; gives a frequency that none exceeds.
+//! The fastest waves of particles on a grid, by which the step of an explicit method is limited. Takes the speed of
+//! long waves and the rate of rotation; gives an upper bound of all frequencies.
 
 use super::super::Setting;
 use super::nodes::Nodes;
@@ -7,7 +7,7 @@ use crate::ParameterError;
 use crate::scalar::larger;
 use core::f64::consts::PI;
 
-/// Wave numbers that are tried, from 0 to twice the largest that a grid holds.
+/// Number of sampled wave numbers, from 0 to twice the largest on the grid.
 const TRIED: u32 = 512;
 
 /// The largest value of `q² φ(q)² S(q)` over waves of q radians per interval. `φ(q) = (sin(q/2)/(q/2))⁴` is the
@@ -20,7 +20,7 @@ fn steepest(ratio: f64) -> f64 {
         let spline = (2.0 * (q / 2.0).sin() / q).powi(4);
         (q * spline).powi(2) / (1.0 + (ratio * seen).powi(2))
     };
-    // Between two that are tried it is higher by less than a thousandth.
+    // Between two samples the frequency is higher by less than a thousandth.
     1.001 * (1..TRIED).map(of).fold(0.0, larger)
 }
 

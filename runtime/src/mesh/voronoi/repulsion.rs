@@ -72,7 +72,8 @@ impl<T: Real> Functional<T, 2> for pair_core<T> {
         }
         if value > 0.5 * shortest {
             let text = "the radius is at most half of either period";
-            let remedy = "give a smaller radius, so that no particle meets two copies of another";
+            let remedy =
+                "give a smaller radius, so that no particle interacts with two copies of another";
             return Err(refused("rc", Problem::AssumptionFails { text }, remedy));
         }
         if setting.domain.walls != [Wall::Periodic; 2] || T::LANES > 1 {

@@ -1,13 +1,14 @@
-//! Bytes in the 64 letters of RFC 4648, section 4. Takes bytes in pieces; writes letters, filled up by `=` at the end.
+//! Bytes in the 64 characters of RFC 4648, section 4. Takes bytes in pieces; writes characters, padded with `=` at
+//! the end.
 
 use std::io::{self, Write};
 
 const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// Letters are handed on in stretches of about so many.
+/// Characters are written in pieces of about this size.
 const STRETCH: usize = 4096;
 
-/// Bytes on their way.
+/// An encoder between two writes.
 pub(super) struct Encoder<'a> {
     file: &'a mut dyn Write,
     /// Bytes that wait for a third one.
@@ -42,7 +43,7 @@ impl<'a> Encoder<'a> {
         Ok(())
     }
 
-    /// Writes what is left.
+    /// Writes the remaining bytes.
     pub(super) fn finish(mut self) -> io::Result<()> {
         if self.count > 0 {
             self.waiting[self.count..].fill(0);
@@ -54,7 +55,7 @@ impl<'a> Encoder<'a> {
     }
 }
 
-/// Three bytes as four letters.
+/// Encodes three bytes as four characters.
 fn letters([a, b, c]: [u8; 3]) -> [u8; 4] {
     let sixes = [
         a >> 2,

@@ -8,7 +8,7 @@ use std::io::{self, Write};
 pub struct Member {
     /// The time it shows.
     pub time: f64,
-    /// Its name, as seen from the folder of the collection.
+    /// The path, relative to the folder of the collection.
     pub file: String,
 }
 

@@ -6,11 +6,11 @@ use std::io::{self, Write};
 /// A regular grid with values at its nodes, the first direction fastest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImageData {
-    /// Where the first node is.
+    /// The position of the first node.
     pub origin: [f64; 3],
     /// Distances of nodes.
     pub spacing: [f64; 3],
-    /// Nodes along each direction; 1 where there is none.
+    /// Nodes along each direction; 1 for a missing direction.
     pub nodes: [usize; 3],
     /// Values at nodes.
     pub point_data: Vec<Values>,

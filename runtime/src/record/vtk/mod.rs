@@ -22,14 +22,14 @@ const HEAD: &str = "<?xml version=\"1.0\"?>\n<VTKFile version=\"1.0\" byte_order
 pub struct Values {
     /// The name of the values.
     pub name: String,
-    /// How many there are at each: 1 for numbers, 3 for vectors, which are drawn as arrows.
+    /// The number of components at each point or cell: 1 for numbers, 3 for vectors, which are drawn as arrows.
     pub components: usize,
     /// The numbers, point after point.
     pub numbers: Vec<f64>,
 }
 
 impl Values {
-    /// A number at each.
+    /// One number at each point or cell.
     #[must_use]
     pub fn numbers(name: &str, numbers: Vec<f64>) -> Self {
         Self {
@@ -39,7 +39,7 @@ impl Values {
         }
     }
 
-    /// A vector at each.
+    /// One vector at each point or cell.
     #[must_use]
     pub fn vectors(name: &str, vectors: &[[f64; 3]]) -> Self {
         Self {
@@ -49,7 +49,7 @@ impl Values {
         }
     }
 
-    /// Whether there are as many as they belong to.
+    /// Checks that the count matches the points or cells.
     fn fit(&self, count: usize) -> io::Result<()> {
         match count.checked_mul(self.components) == Some(self.numbers.len()) {
             true => Ok(()),
@@ -80,7 +80,7 @@ fn data(file: &mut dyn Write, element: &str, values: &[Values], count: usize) ->
     writeln!(file, "</{element}>")
 }
 
-/// One array of words of eight bytes: their length in bytes, then they, in one stretch of base64.
+/// One array of eight-byte words, preceded by their length in bytes, in a single base64 block.
 fn array(
     file: &mut dyn Write,
     kind: &str,

@@ -1,5 +1,5 @@
-//! Points in space with vertices, lines and polygons on them, as `.vtp`.
-//! Takes points, the numbers of the corners of each cell and values; writes one file.
+//! Points in space with vertices, lines and polygons on them, as `.vtp`. Takes points, the corner indices of each
+//! cell and values; writes one file.
 
 use super::{HEAD, Values, array, data, unfit};
 use std::io::{self, Write};
@@ -7,11 +7,11 @@ use std::io::{self, Write};
 /// Points, and cells on them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PolyData {
-    /// Where the points are.
+    /// The positions of the points.
     pub points: Vec<[f64; 3]>,
     /// Points that are drawn as such, by their numbers.
     pub vertices: Vec<u64>,
-    /// Lines from point to point, each by the numbers of its points.
+    /// Polylines, each given by the indices of its points.
     pub lines: Vec<Vec<u64>>,
     /// Polygons by their corners.
     pub polygons: Vec<Vec<u64>>,
@@ -70,7 +70,7 @@ impl PolyData {
     }
 }
 
-/// Cells by the numbers of their corners, and by where each of them ends among these.
+/// Cells by their corner indices, and by the offset of the end of each cell.
 fn connected(file: &mut dyn Write, element: &str, cells: &[Vec<u64>]) -> io::Result<()> {
     let corners: Vec<[u8; 8]> = cells.iter().flatten().map(|c| c.to_le_bytes()).collect();
     let ends = cells.iter().scan(0, |end, cell| {

@@ -1,8 +1,9 @@
-//! Files read back by a reader of their own: every array by its name, decoded from base64, against what was written.
+//! Reads files back with an independent reader: every array by its name, decoded from base64, compared with the
+//! input.
 
 use super::*;
 
-/// The bytes of letters of base64.
+/// Decodes base64.
 fn decoded(text: &str) -> Vec<u8> {
     let value = |letter: u8| match letter {
         b'A'..=b'Z' => letter - b'A',
@@ -10,7 +11,7 @@ fn decoded(text: &str) -> Vec<u8> {
         b'0'..=b'9' => letter - b'0' + 52,
         b'+' => 62,
         b'/' => 63,
-        other => panic!("{other} is no letter of base64"),
+        other => panic!("{other} is not a base64 letter"),
     };
     assert!(text.len().is_multiple_of(4), "{}", text.len());
     let letters: Vec<u8> = text.bytes().filter(|c| *c != b'=').map(value).collect();
@@ -25,7 +26,7 @@ fn decoded(text: &str) -> Vec<u8> {
     bytes
 }
 
-/// The words of the array of this name that comes next behind `from`.
+/// The words of the array with this name that comes next after the element `from`.
 fn words(text: &str, from: &str, name: &str) -> Vec<[u8; 8]> {
     let behind = text.split_once(&format!("<{from}>")).expect("is there").1;
     let named = format!("Name=\"{name}\"");

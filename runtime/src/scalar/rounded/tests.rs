@@ -25,7 +25,7 @@ fn rounding_is_bounded_and_not_by_much_too_much() {
     }
 }
 
-/// Arguments that were moved within their bounds move the value within its own.
+/// If arguments move within their bounds, the value moves within its own bound.
 #[test]
 fn rounded_arguments_move_the_value_within_its_bounds() {
     for radius in [0.1, 0.01, 1e-6] {

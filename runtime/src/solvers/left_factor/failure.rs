@@ -72,13 +72,13 @@ impl fmt::Display for Unsolved {
             )?,
             Refusal::NotConverged => write!(
                 f,
-                "solver {} did not converge: residual {:.3e}, momentum {:.9} of its bound",
+                "solver {} did not converge: the residual is {:.3e}, and the momentum {:.9} of its bound",
                 self.method, self.residual, self.ratio
             )?,
             Refusal::NotPrincipal => write!(
                 f,
-                "solver {} found a solution that is not the principal one: momentum {:.9} of its \
-                 bound",
+                "solver {} found a solution that is not the principal one: the momentum is {:.9} of \
+                 its bound",
                 self.method, self.ratio
             )?,
             Refusal::DoesNotApply => {

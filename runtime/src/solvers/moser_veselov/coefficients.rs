@@ -1,5 +1,5 @@
-//! The coefficients of the modified moments, as rational numbers.
-//! Taken by [`super::preprocess`]; one list for each power of the step, from the second on.
+//! The coefficients of the modified moments, as rational numbers. Used by [`super::preprocess`]; one list for each
+//! power of the step, from the second power on.
 //!
 //! The Taylor series of the exact motion was inserted into the Moser-Veselov equation
 //! `I c + c x I c = (1 + |c|^2) h mu / 2`. This was solved for the moments. The coefficients of

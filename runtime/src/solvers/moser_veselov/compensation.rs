@@ -3,11 +3,11 @@
 //! the trajectory.
 //!
 //! Let `H` be the energy and `C = |mu|^2 / 2`. A map that conserves momentum and energy and is symplectic for constant
-//! `s`, `d` is a composition of the flows of `H` and `C`. A step of the body with inverse moments `s / I + d` is such a
-//! map: a motion of the true body for the time `h s'`, then the flow of `C` for the time `h d'`, a turn about the
-//! momentum. If `s`, `d` are functions of `H` and `C`, so are `s'` and `d'`, and the map is symplectic if and only if
-//! `s' dH + d' dC` is closed. A further turn for the time `h b`, `b` a function of `H` and `C`, makes it symplectic if
-//! `db/dH = ds'/dC - dd'/dH`.
+//! `s`, `d` is a composition of the flows of `H` and `C`. A step of the body with inverse moments `s / I + d` is such
+//! a map: a motion of the true body for the time `h s'`, then the flow of `C` for the time `h d'`, a rotation about
+//! the momentum. If `s`, `d` are functions of `H` and `C`, so are `s'` and `d'`, and the map is symplectic if and only
+//! if `s' dH + d' dC` is closed. A further rotation for the time `h b`, where `b` is a function of `H` and `C`, makes
+//! it symplectic if `db/dH = ds'/dC - dd'/dH`.
 //!
 //! `s'` and `d'` follow from the series of order ten. The series give, for every body, the body to step instead; for
 //! the body with inverse moments `s' / I + d'` this is the body with `s / I + d`. `s'`, `d'` and `b` are polynomials in
@@ -134,8 +134,8 @@ impl<T: Real> BodySeries<T> {
     }
 }
 
-/// `b` for the trajectory through `u = h mu / (2 unit)`, in units of the body: half of the turn is by the vector `b u`, with `u`
-/// seen from space.
+/// `b` for the trajectory through `u = h mu / (2 unit)`, in units of the body: half of the rotation is by the vector
+/// `b u`, with `u` in the space frame.
 pub(super) fn factor<T: Real>(body: &Poinsot<T>, u: [T; 3], order: Order) -> T {
     let one = Polynomial::constant(T::one());
     let invariants = Invariants::of(body, u);

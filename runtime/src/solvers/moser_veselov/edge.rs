@@ -11,8 +11,8 @@ use nalgebra::Vector3;
 
 /// The momentum of an edge, in space and in the body at its first node.
 ///
-/// A stepper makes it at the end of a step, when the quantities of the new node are at hand, and
-/// keeps it for the next one: the solve waits for the body components, and for nothing else.
+/// A stepper computes the edge at the end of a step, when the quantities of the new node are available, and stores it
+/// for the next step: the solve then waits only for the body components.
 ///
 /// Aligned so that no pair of numbers crosses a cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]

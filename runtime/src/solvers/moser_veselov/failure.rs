@@ -24,13 +24,13 @@ pub struct MoserVeselovError {
     pub largest_step: Option<f64>,
     /// Index (0, 1, 2) of the momentum component of largest `|h N_i| / I_ii`.
     pub component: usize,
-    /// `|h N_i| / I_ii` of that component, at most one in a rotation about that axis alone. `I_ii` is the moment of
+    /// `|h N_i| / I_ii` of that component; at most one for a rotation about that axis alone. `I_ii` is the moment of
     /// inertia of a body, or the stiffness of a rod stepped along its length.
     pub share: f64,
     /// The order of the step. Above two, the ratio belongs to the modified moments, and is infinite if
     /// these are not positive.
     pub order: Order,
-    /// The solver, `kappa` unless you requested another.
+    /// The solver, `kappa` unless you selected another.
     pub solver: Method,
     /// The lane of these numbers: the worst lane, or the lane of the smallest step if steps were
     /// searched. 0 for types without lanes.

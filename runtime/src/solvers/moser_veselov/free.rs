@@ -16,21 +16,21 @@ use crate::solvers::Method;
 use crate::{BodyMomentum, Real, Rotation, SpatialMomentum};
 use nalgebra::{Matrix3, Vector3};
 
-/// Steps between two projections. Rounding moves the invariants by about one ulp per step in
-/// random directions, so eight ulps gather in between, at a sixty-fourth of the cost.
+/// Steps between two projections. Rounding changes the invariants by about one ulp per step in random directions, so
+/// about eight ulps accumulate in between, at a sixty-fourth of the cost.
 const PROJECT_EVERY: u32 = 64;
 
-/// Steps between two repairs of the attitude's length: the rounding errors of a step's norm have a
-/// common sign, and would add up until the projection.
+/// Steps between two normalisations of the attitude: the rounding errors of the norm have the same sign in all steps,
+/// and would accumulate until the projection.
 const REPAIR_EVERY: u32 = 8;
 
 /// Relative change of the energy, in roundings, up to which a new attitude belongs to the same
 /// trajectory: several projections change it by that much.
 const SAME_TRAJECTORY: f64 = 64.0;
 
-/// Squared sine of the angle between `u` and `adj(I) u` below which the energy is not corrected: so
-/// near to a principal axis (or with equal moments) it depends on `|u|` only, to second order in
-/// the sine times the rounding error.
+/// Squared sine of the angle between `u` and `adj(I) u` below which the energy is not corrected. This close to a
+/// principal axis (or with equal moments), the energy depends only on `|u|`, to second order in the sine times the
+/// rounding error.
 const DEGENERATE: f64 = 1e-6;
 
 /// The rounding that a projection has removed, from the steps since the previous projection.
@@ -44,10 +44,9 @@ pub struct Correction<T = f64> {
 
 /// The constants and the momentum of one free trajectory.
 ///
-/// `|mu|^2` and `mu . I^-1 mu` are exact invariants of the discrete motion, so `kappa` is a
-/// constant and a step costs one division and one square root. Every 64 steps a projection removes
-/// rounding: it moves the momentum back to its two quadrics, and turns the attitude so that it maps
-/// the body momentum to the spatial momentum.
+/// `|mu|^2` and `mu . I^-1 mu` are exact invariants of the discrete motion, so `kappa` is a constant and a step costs
+/// one division and one square root. Every 64 steps a projection removes rounding: it moves the momentum back to its
+/// two quadrics, and rotates the attitude so that it maps the body momentum to the spatial momentum.
 ///
 /// The solver works in principal axes, so that every body costs the same as a diagonal one. Types
 /// with derivatives use the given axes, since a principal frame is not differentiable if two moments
@@ -283,7 +282,7 @@ impl<T: Real> Free<T> {
         self.step_on(attitude)
     }
 
-    /// Advances the attitude, and the momentum kept inside, by one step.
+    /// Advances the attitude and the stored momentum by one step.
     ///
     /// # Errors
     /// If a number becomes NaN or infinite (the start rejects such numbers); the attitude and the momentum are then
@@ -552,7 +551,7 @@ impl<T: Real> Free<T> {
         }
     }
 
-    /// The operations outside the fast path: the projection, and a compensating turn.
+    /// The operations outside the fast path: the projection, and a compensating rotation.
     #[cold]
     #[inline(never)]
     fn settle(&mut self, attitude: &mut Rotation<T>) {

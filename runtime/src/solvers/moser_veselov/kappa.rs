@@ -10,18 +10,17 @@ use crate::Real;
 use crate::scalar::lane_view::in_lanes;
 use crate::scalar::of_scalars;
 
-/// Below this, `s2 e / s3` leaves the quartic so close to its linear part that the series start is
-/// inside the basin of the smallest root: in units of `e` it reads `1 - w + y w^2 - ...` with
-/// higher coefficients below `y^2/3` and `y^3/27`, and a double root needs `y` near 1/4.
-/// `s1 a / s3` is at most twice as large.
+/// Below this, `s2 e / s3` leaves the quartic so close to its linear part that the start of the series is inside the
+/// basin of the smallest root. In units of `e` the quartic reads `1 - w + y w^2 - ...`, with higher coefficients
+/// below `y^2/3` and `y^3/27`, and a double root needs `y` near 1/4. `s1 a / s3` is at most twice as large.
 const SMALL: f64 = 1.0 / 32.0;
 
 /// From the series start, fourth-order convergence needs one or two iterations.
 const MOST_FAST: usize = 6;
 
-/// Near a double root Newton's method halves the error per iteration until `g` is at rounding
-/// level, after half the bits of the significand; before, the monotone approach takes up to about
-/// ten. Double-double needs 53 + 10.
+/// Near a double root, Newton's method halves the error per iteration until `g` is at rounding level, after half the
+/// bits of the significand. Before this, the monotone method takes up to about ten iterations. Double-double needs
+/// 53 + 10.
 const MOST_MONOTONE: usize = 100;
 
 /// The invariants of the body for the quartic, all over `s3`.
@@ -138,8 +137,8 @@ impl<T: Real> Quartic<T> {
         [self.value(k) * per_fall, bend, twist]
     }
 
-    /// 1 in the lanes where an improvement from `k` is exact to rounding, 0 in the others: what it
-    /// leaves is about `newton^4 bend (bend^2 + twist)`, with factors of a few.
+    /// 1 in the lanes where a correction from `k` is exact to rounding, otherwise 0: its error is about
+    /// `newton^4 bend (bend^2 + twist)`, up to factors of a few.
     fn arrives(&self, k: T) -> T {
         let [newton, bend, twist] = self.change(k);
         let square = newton * newton;
@@ -160,9 +159,8 @@ impl<T: Real> Quartic<T> {
         k
     }
 
-    /// Newton's method from below the smallest root, in the lanes where `slow` is 1: the iterates
-    /// rise to it and never pass it. If `g > 0` and `g' >= 0` at an iterate, a real root does not
-    /// exist.
+    /// Newton's method from below the smallest root, in the lanes where `slow` is 1: the iterates increase to the
+    /// root and never pass it. If `g > 0` and `g' >= 0` at an iterate, a real root does not exist.
     fn monotone(&self, slow: T) -> Option<T> {
         let one = T::one();
         let constant = self.energy + self.square;
@@ -190,8 +188,8 @@ impl<T: Real> Quartic<T> {
         None
     }
 
-    /// One more step where the slope is not itself rounding: it takes the last digits, and makes
-    /// the derivative parts exact.
+    /// One more step if the slope is not itself rounding: it corrects the last digits, and makes the derivative parts
+    /// exact.
     fn finished(&self, mut k: T) -> Option<T> {
         let one = T::one();
         let threshold = (one + self.turn) * T::from_f64(T::EPSILON.sqrt());
@@ -208,7 +206,7 @@ impl<T: Real> Quartic<T> {
 /// The smallest root, in units of the body. `deviation` is `s2 e / s3 - s1 a / s3`, which the
 /// caller may know as soon as `energy`.
 ///
-/// Only the case of a moderate step is inlined, where one iteration from the series suffices.
+/// Only the case of a moderate step is inlined, in which one iteration from the series suffices.
 #[inline(always)]
 pub(super) fn kappa<T: Real>(body: &Poinsot<T>, a: T, energy: T, deviation: T) -> Option<T> {
     let (k, found) = kappa_at_once(body, a, energy, deviation);

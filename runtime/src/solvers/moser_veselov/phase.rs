@@ -1,14 +1,13 @@
 //! Represents the attitude of a free body along its trajectory as a rotation about its spatial momentum. Takes the
 //! scaled body momentum, step by step; gives the attitude on request.
 //!
-//! The spatial momentum is constant, so the direction of the momentum in the body and one angle about
-//! it determine an attitude. Let `s(u)` be the shortest rotation that takes the direction of `u` to
-//! an axis `e`. Every attitude is then `g z s(u)`: `g` is constant, `z` a turn about `e`. A step
-//! multiplies `z`, as a complex number, by
-//! `(|u| det + d_e n_e) + i (kappa det + |u| n_e)` over its length: the components of
-//! `s(u) (det, n)` along `1` and `e`, with `u . n = kappa det` and the third row of
-//! `(d - hat u) n = det u`. That takes six products instead of twenty and a root for the product of
-//! quaternions, and rounding of `z` can only turn the body about its momentum.
+//! The spatial momentum is constant, so the direction of the momentum in the body and one angle about it determine an
+//! attitude. Let `s(u)` be the shortest rotation that takes the direction of `u` to an axis `e`. Every attitude is
+//! then `g z s(u)`: `g` is constant, `z` a rotation about `e`. A step multiplies `z`, as a complex number, by
+//! `(|u| det + d_e n_e) + i (kappa det + |u| n_e)` over its length: the components of `s(u) (det, n)` along `1` and
+//! `e`, with `u . n = kappa det` and the third row of `(d - hat u) n = det u`. This takes six products instead of the
+//! twenty products and a root of a quaternion product, and rounding of `z` can only rotate the body about its
+//! momentum.
 //!
 //! The axis `e` is the principal axis around which the momentum moves, so `s(u)` stays away from half turns.
 
@@ -17,8 +16,8 @@ use super::cayley::{Orbit, Pencil};
 use super::kappa::choose;
 use crate::{Real, Rotation};
 
-/// The constants of one trajectory, and where `z` is. The axes of the solver are relabelled (half
-/// a turn or a quarter about the second) so that `e` is the third and `u_e` is not negative.
+/// The constants of one trajectory, and the current `z`. The axes of the solver are relabelled (by a half turn or a
+/// quarter turn about the second axis) so that `e` is the third axis and `u_e` is not negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Phase<T> {
     /// 1 if `e` is the first axis of the solver, 0 if it is the third.
@@ -61,8 +60,8 @@ pub(super) struct Moving<T> {
 crate::saved!([] Phase { first, sign, length, kappa, frame, tail, base, turn, current });
 
 impl<T: Real> Phase<T> {
-    /// A trajectory with this `|u|^2` and `kappa`. `frame` takes components in the axes of the
-    /// solver to components in the axes given.
+    /// A trajectory with this `|u|^2` and `kappa`. `frame` maps components in the solver's axes to components in the
+    /// given axes.
     pub(super) fn new(frame: Rotation<T>, square: T, kappa: T) -> Self {
         let (zero, one) = (T::zero(), T::one());
         let moving = square.where_positive(one);
@@ -85,7 +84,7 @@ impl<T: Real> Phase<T> {
         self.current = false;
     }
 
-    /// Chooses the axis for the place `u`, and takes up the trajectory at `attitude`.
+    /// Chooses the axis for the momentum `u`, and continues the trajectory at `attitude`.
     #[inline(never)]
     fn found(&mut self, body: &Poinsot<T>, attitude: &Rotation<T>, u: [T; 3]) {
         let (zero, one) = (T::zero(), T::one());
@@ -124,8 +123,8 @@ impl<T: Real> Phase<T> {
         [sign * choose(first, z, x), y, sign * choose(first, -x, z)]
     }
 
-    /// Takes up the trajectory of a body in principal axes, the middle moment second, at
-    /// `attitude`, where the momentum is `u`; and the constants of its steps.
+    /// Continues the trajectory of a body in principal axes, with the middle moment second, at `attitude`, where the
+    /// momentum is `u`; also computes the constants of its steps.
     #[inline(always)]
     pub(super) fn taken_up(
         &mut self,

@@ -12,17 +12,17 @@ use crate::validate::{ROUNDINGS, mirrored_difference};
 use core::fmt;
 use nalgebra::{Matrix3, Vector3};
 
-/// A valid Poinsot matrix `J` (second moments of mass, body axes, mass times length squared) with
-/// what the solver derives from it once.
+/// A valid Poinsot matrix `J` (second moments of mass, body axes, mass times length squared) and the data that the
+/// solver computes from it once.
 ///
 /// Any symmetric `J >= 0` of rank at least 2 is a body; `J` may be singular (a flat body).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Poinsot<T = f64> {
     j: Matrix3<T>,
-    /// A power of two near the trace of `I`. The constants below are of `I / unit`, so that none
-    /// of them can overflow or underflow.
+    /// A power of two near the trace of `I`. The constants below belong to `I / unit`, so that none of them can
+    /// overflow or underflow.
     pub(super) unit: f64,
-    /// `1 / (2 unit)`, what turns `h N` into the solver's `u`.
+    /// `1 / (2 unit)`, which converts `h N` to the solver's `u`.
     pub(super) half_over_unit: T,
     /// `I / unit`, diagonal entries.
     pub(super) moments: [T; 3],
@@ -42,7 +42,7 @@ pub struct Poinsot<T = f64> {
     pub(super) s3: T,
     /// These functions divided by `s3`, for the quartic.
     pub(super) symmetric: Symmetric<T>,
-    /// `(I / unit)^-1` and `(s2 (I / unit)^-1 - s1) / s3`, whose quadratic forms start the root.
+    /// `(I / unit)^-1` and `(s2 (I / unit)^-1 - s1) / s3`, whose quadratic forms give the initial guess of the root.
     pub(super) energy: Form<T>,
     pub(super) deviation: Form<T>,
     /// Whether the off-diagonal entries are exactly zero.
@@ -112,7 +112,7 @@ pub enum PoinsotError {
         smallest: f64,
         /// The largest moment of inertia.
         largest_moment: f64,
-        /// The sum of the other two moments, which the largest must not exceed.
+        /// The sum of the two smaller moments, which the largest moment must not exceed.
         sum_of_others: f64,
     },
     /// A moment of inertia vanishes because all mass is on a line.
@@ -322,7 +322,7 @@ impl<T: Real> Poinsot<T> {
     }
 }
 
-/// A symmetric matrix, by its diagonal entries and those at (2,3), (3,1), (1,2), times a vector.
+/// A symmetric matrix, given by its diagonal entries and its entries at (2,3), (3,1), (1,2), times a vector.
 #[inline(always)]
 pub(in crate::solvers) fn symmetric_times<T: Real, const DIAGONAL: bool>(
     [xx, yy, zz]: [T; 3],
@@ -360,7 +360,7 @@ fn body_check(j: &Matrix3<f64>) -> Result<f64, PoinsotError> {
     }
 }
 
-/// The power of two at or below a positive number, kept within the range whose inverse is normal.
+/// The power of two at or below a positive number, limited to the range whose inverse is normal.
 fn power_of_two_near(x: f64) -> f64 {
     x.log2().floor().clamp(-1000.0, 1000.0).exp2()
 }

@@ -1,10 +1,10 @@
 //! Modified moments that give the Moser-Veselov step of a free body high order. Takes the body, its scaled momentum and
 //! the order; gives the body to step instead.
 //!
-//! With `1 / I_i' = s / I_i + d` the discrete motion stays on the orbit of the true body. `s` and `d`
-//! are series in the square of the step, chosen so that the motion along the orbit and the attitude
-//! agree with the true body (Hairer and Vilmart, J. Phys. A 39 (2006) 13225). They depend on the energy
-//! and `|mu|^2` only, which the motion conserves: a trajectory needs them once.
+//! With `1 / I_i' = s / I_i + d` the discrete motion stays on the orbit of the true body. `s` and `d` are series in
+//! the square of the step, chosen so that the motion along the orbit and the attitude agree with the true body
+//! (Hairer and Vilmart, J. Phys. A 39 (2006) 13225). They depend only on the energy and `|mu|^2`, which the motion
+//! conserves: a trajectory computes them once.
 //!
 //! The momentum's map is Poisson at every order. The map of momentum and attitude together is
 //! symplectic at order two only, since `s` and `d` differ between neighbouring trajectories. A

@@ -5,8 +5,8 @@ use super::Poinsot;
 use crate::{Real, Rotation};
 use nalgebra::Matrix3;
 
-/// Jacobi's method squares the off-diagonal entries in each sweep: five reach double precision
-/// from any start, six double-double.
+/// Jacobi's method squares the off-diagonal entries in each sweep: five sweeps reach double precision from any start,
+/// six reach double-double.
 const SWEEPS: usize = 8;
 
 /// The principal frame of `I / unit`.
@@ -65,8 +65,8 @@ impl<T: Real> PrincipalAxes<T> {
     }
 }
 
-/// The smaller of the rotations about `axis` that make an off-diagonal entry vanish, given the
-/// difference of the two diagonal entries; the identity where the entry is rounding.
+/// The smaller of the rotations about `axis` that make an off-diagonal entry vanish, given the difference of the two
+/// diagonal entries; the identity if the entry is only rounding.
 fn annihilator<T: Real>(axis: usize, difference: T, off: T, scale: T) -> Rotation<T> {
     let (one, half) = (T::one(), T::from_f64(0.5));
     let noise = scale * T::from_f64(0.25 * T::EPSILON);

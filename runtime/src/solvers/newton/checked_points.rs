@@ -42,8 +42,7 @@ impl CheckedPoint {
     }
 }
 
-/// The largest distance of a solution relative to a first correction that comes close to it, with a margin for
-/// rounding.
+/// The largest length of a solution relative to a first correction that is close to it, with a margin for rounding.
 const FARTHEST: f64 = 1.4;
 
 /// All points of a path up to a fraction of it: 1, or more if the solution lies beyond the end of the path.

@@ -32,8 +32,8 @@ const WORSE: f64 = 0.2;
 /// In a stage, the equations may change by this factor more than in a step judged by one correction.
 const STEEP: f64 = 1.5;
 
-/// The largest number of times that a rough piece of the path is halved, and the smallest change of slope for which it
-/// is.
+/// The largest number of times that a rough piece of the path is halved, and the smallest change of slope that causes
+/// a halving.
 const HALVINGS: u8 = 5;
 const BEND: f64 = 1e-2;
 

@@ -95,7 +95,8 @@ impl Corrections {
         decrement: impl FnOnce() -> f64,
     ) -> NextAction {
         // If no velocity was known, as at rest, every correction counts as large.
-        let fall = moved / self.last.min(1.0);
+        let before = self.last.min(1.0);
+        let fall = moved / before;
         self.last = moved;
         let unit = T::EPSILON;
         let is_rounding = r.size <= CONVERGED_ROUNDINGS * unit
@@ -110,8 +111,9 @@ impl Corrections {
             return NextAction::End;
         }
         // Predicts the residual after this correction, if it is as good as the last one. The decrease of the residual
-        // alone can be too optimistic: if one equation dominated at the first trial, it hides the others.
-        let factor = FORESIGHT * (r.size / r.previous).max(fall);
+        // alone can be too optimistic: if one equation dominated at the first trial, it hides the others. The last
+        // correction may have used a tangent at its own trial; this one then uses a tangent that is off by its length.
+        let factor = FORESIGHT * (r.size / r.previous).max(fall).max(before);
         let is_foreseen = may_end && r.size * factor <= POLISHED_ROUNDINGS * unit;
         match judged != CorrectionAssessment::More
             || (is_foreseen && self.leave_rounding::<T>(factor))
@@ -184,9 +186,8 @@ mod tests {
 
     #[test]
     fn a_residual_that_falls_further_than_corrections_ends_no_iteration() {
-        let next = |moved: [f64; 2]| {
+        let next_of = |sizes: [f64; 2], moved: [f64; 2]| {
             let mut corrections = Corrections::none();
-            let sizes = [7e8, 2.5e-4];
             let mut found = NextAction::Correct;
             for (iteration, moved) in moved.into_iter().enumerate() {
                 let r = Residual {
@@ -198,13 +199,18 @@ mod tests {
             }
             found
         };
+        let next = |moved| next_of([7e8, 2.5e-4], moved);
         // An equation without terms at rest has a large residual relative to its scale; the other corrections decrease
         // quadratically.
         assert_eq!(next([2.9e-2, 8.4e-7]), NextAction::Correct);
         // At zero velocity, the first correction cannot be compared with a length.
         assert_eq!(next([4.7e307, 1.1e-6]), NextAction::Correct);
         // Corrections that decrease as much as the residual are not rounding.
-        assert_eq!(next([2.9e-2, 1e-14]), NextAction::CorrectAndEnd);
+        assert_eq!(next([1e-13, 1e-26]), NextAction::CorrectAndEnd);
+        // Two velocities multiply each other. The first correction found one and moved the other by a quarter. The second
+        // correction uses the tangent of the first trial, which is wrong by that quarter.
+        let decrease = next_of([0.1, 2.1e-9], [0.24, 3.8e-9]);
+        assert_eq!(decrease, NextAction::Correct);
     }
 
     /// Solves `v + 4 b v^3 = p` from rest, with the sizes of the terms multiplied by `factor`. Returns this root and

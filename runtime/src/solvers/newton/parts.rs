@@ -1,5 +1,6 @@
 //! Groups the coordinates of a velocity into parts, each measured by its own length, because angles and translations
-//! cannot be added. Takes coordinates and a tangent; gives lengths, the units of parts, and the course of a stage.
+//! cannot be added. Takes coordinates and a tangent; gives lengths, the units of parts, and the lengths that a stage
+//! counts (its course).
 
 use super::checked_points::{Remainders, looks, shared_noise};
 use super::principal::FALLS;
@@ -19,7 +20,7 @@ const TURN: f64 = 2.0;
 const STEP_TURN: f64 = 1.5;
 
 /// In a step judged by one correction, the largest translation of a body that counts, in its units. Relative to a
-/// longer displacement any error would be small.
+/// longer displacement, any error would be small.
 const STEP_WAY: f64 = 2.0;
 
 /// A part that moves little is measured by this fraction of the part that moves most.

@@ -165,7 +165,7 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// Reads the numbers of an element, at most the 64 of an 8 x 8 matrix.
+    /// Reads the numbers of an element, at most the 64 numbers of an 8 x 8 matrix.
     pub fn of<X: OfScalars<Scalar = f64>>(element: &X) -> Self {
         let mut numbers = Self {
             list: [0.0; 64],

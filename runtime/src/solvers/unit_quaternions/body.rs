@@ -11,7 +11,7 @@ use nalgebra::Matrix3;
 /// A body in unit quaternions: the symmetric matrix `A` and the number `β` in `w A v + v x A v + β v = h N / 2`, in body axes. The
 /// dimension is mass times length squared. Includes the constants that the solver derives from them once.
 ///
-/// `I = A + β`, the inertia of small steps, is positive definite; `A` itself need not be.
+/// `I = A + β`, the inertia for small steps, is positive definite; `A` itself need not be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuaternionBody<T = f64> {
     /// A power of two near the largest moment. All constants below belong to `I / unit`.
@@ -192,7 +192,7 @@ impl<T: Real> QuaternionBody<T> {
     }
 }
 
-/// The number that has these real parts in its lanes, without derivatives.
+/// A number with these real parts in its lanes, without derivatives.
 pub(super) fn by_lane<T: Real>(value: impl Fn(usize) -> f64) -> T {
     let mut all = T::zero();
     for lane in 0..T::LANES {

@@ -20,7 +20,7 @@ const MOST_TRIALS: usize = 2000;
 /// The resolution of the end of the branch, as a fraction of `u`.
 const RESOLUTION: f64 = 1e-14;
 
-/// The largest share of `u` in one advance along the branch, because other branches may be close.
+/// The largest fraction of `u` in one advance along the branch, because other branches may be close.
 const LONGEST: f64 = 0.05;
 
 fn quaternions<T: Real>(mask: T, then: [T; 4], otherwise: [T; 4]) -> [T; 4] {

@@ -22,7 +22,7 @@ pub(super) const QUICK: f64 = 0.002;
 /// 9 y^3.
 pub(super) const EXACT: f64 = 1e-9;
 
-/// Two leave less than 1e-30 of `I` below this, and the principal branch is far from its end.
+/// Below this, two iterations leave less than 1e-30 of `I`, and the principal branch is far from its end.
 pub(super) const MODERATE: f64 = 0.1;
 
 /// A rotation from one node to the next, not yet normalised.
@@ -202,7 +202,7 @@ impl<T: Real> Equation<T> {
         (change, turn)
     }
 
-    /// The equation at `s` and its first three derivatives, the latter over their factorials.
+    /// The equation at `s` and its first three derivatives, each divided by the factorial of its order.
     #[inline(always)]
     pub(super) fn taylor(&self, s: T) -> [T; 4] {
         let (two, three, four, six) = (

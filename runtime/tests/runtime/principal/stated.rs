@@ -109,7 +109,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// Bodies kept in different groups.
+    /// Bodies in different groups.
     pub model MixedPair {
         param J, S: Sym<3>;
         param a: Vec<3>;

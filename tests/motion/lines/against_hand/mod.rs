@@ -37,7 +37,8 @@ trait System: Clone {
     /// Number of end conditions.
     const ENDS: usize;
     fn draw(source: &mut Source, n: usize, ends: usize) -> Self;
-    /// The same state with one kind of datum increased by this fraction; `None` if the state has no such datum.
+    /// The same state, with the data of one kind increased by this fraction; `None` if the state has none of this
+    /// kind.
     fn nudged(&self, kind: usize, share: f64) -> Option<Self>;
     fn by_hand(&self, steps: usize) -> Option<Shown>;
     fn generated(&self, steps: usize) -> Option<Shown>;

@@ -8,7 +8,7 @@ use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch_models::lattices::coupled_body_chain::*;
 
 clebsch::model! {
-    /// Bodies that drag on one another by their velocities, turn towards one another, and weigh something.
+    /// Bodies coupled by their velocities, with elastic torques between neighbours and weight.
     pub model DraggedBodies {
         label i in 0..N;
         end i = 0 { free; pinned { Λ = given; } clamped { param Λw: SO<3>; term h*tr(C*Λw^T*Λ); } }
@@ -28,7 +28,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// Bodies with beads: the sinking of one stands in one term with the velocity of the next bead.
+    /// Bodies with beads: one term couples the vertical velocity of a bead to the velocity of the next bead.
     pub model BeadedBodies {
         label i in 0..N;
         periodic;

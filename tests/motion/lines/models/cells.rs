@@ -203,7 +203,7 @@ impl Cells {
     }
     keeping!(ShallowWater2D, |model, s: &ShallowWater2DState| {
         let own = total(s.X().len(), s.X(), s.momentum_X());
-        // The total momentum of the engine equals this one.
+        // The engine computes the same total momentum.
         assert!((model.momentum(s)[0] - own).abs() < 1e-14);
         own
     });

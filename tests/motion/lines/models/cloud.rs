@@ -95,7 +95,7 @@ impl<T: Real> Functional<T, 2> for spread<T> {
 }
 
 clebsch::model! {
-    /// Particles that push one another by functions of a depth, about a centre, in a turning frame.
+    /// Particles that repel each other by functions of a depth, about a centre, in a rotating frame.
     pub model Clouds {
         label a in 0..N;
         param m, e: Real at a;

@@ -6,7 +6,7 @@ use clebsch::Real;
 use clebsch::nalgebra::{SMatrix, Vector2};
 
 clebsch::model! {
-    /// Beads whose velocities are joined as well as their places: rods between beads have masses.
+    /// Beads with coupled velocities and positions: rods between beads have masses.
     pub model LinkedChain {
         label i in 0..N;
         end i = 0 { free; pinned { q = given; } }
@@ -21,7 +21,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// Beads in the plane with a number each: what joins velocities depends on both and on the places.
+    /// Beads in the plane, each with a number: the velocity coupling depends on the numbers and on the positions.
     pub model WovenChain {
         label i in 0..N;
         periodic;

@@ -7,7 +7,7 @@ use clebsch::Real;
 use clebsch::nalgebra::Vector2;
 
 clebsch::model! {
-    /// Beads in the plane, each with a number of its own that its mass depends on.
+    /// Beads in the plane, each with a number on which its mass depends.
     pub model BentChain {
         label i in 0..N;
         periodic;

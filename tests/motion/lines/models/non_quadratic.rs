@@ -5,7 +5,8 @@ use crate::action::{Configuration, D, trace};
 use clebsch::nalgebra::{Matrix3, Vector3};
 
 clebsch::model! {
-    /// Bodies with a kinetic energy of second and fourth order, and moments that depend on where the vertical is seen.
+    /// Bodies with a kinetic energy of second and fourth order, and moments that depend on the vertical in the body
+    /// frame.
     pub model FastTops {
         label i in 0..N;
         end i = 0 { free; pinned { Λ = given; } }

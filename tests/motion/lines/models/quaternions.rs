@@ -7,18 +7,19 @@ use clebsch::{BodyMomentum, Real, Rotation, UnitQuaternion};
 use clebsch_models::lattices::quaternion_rod::*;
 
 clebsch::model! {
-    /// Bodies along a line in unit quaternions, whose kinetic energy and whose coupling see how they have come round.
+    /// Bodies along a chain in unit quaternions, whose kinetic energy and coupling depend on the sign of the
+    /// quaternion.
     pub model TwistedSpins {
         label i in 0..N step s;
         periodic;
         /// moments of inertia, body frame
         param A: Sym<3> at nodes;
-        /// the part of them that goes by the real part
+        /// the part of them that multiplies the real part
         param b: Real at nodes;
-        /// stiffness between neighbours, and the part of it that goes by the real part
+        /// stiffness between neighbours, and the part of it that multiplies the real part
         param K: Sym<3>;
         param c: Real;
-        /// a direction of the body, and the direction in space that it is drawn to
+        /// a direction of the body, and the direction in space towards which it is pulled
         param a, z: Vec<3>;
         group q: SU<2> at nodes velocity W;
         constraint next(q) = q*W;

@@ -7,8 +7,8 @@ use clebsch::Real;
 use clebsch::nalgebra::{DMatrix, DVector, SMatrix, Vector2};
 
 clebsch::model! {
-    /// Beads in the plane with a number each, whose velocity stands beside that of the place. The centre of mass is held,
-    /// the sum of the squares of distances, and a moment of the numbers.
+    /// Beads in the plane, each with a number whose velocity is coupled to the velocity of the position. The centre
+    /// of mass, the sum of squared distances, and a moment of the numbers are constrained.
     pub model WeighedBeads {
         label i in 0..N;
         periodic;

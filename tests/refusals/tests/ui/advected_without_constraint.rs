@@ -1,4 +1,4 @@
-//! Nothing says how Γ is carried.
+//! Γ lacks an evolution constraint.
 
 clebsch::model! {
     model Top {

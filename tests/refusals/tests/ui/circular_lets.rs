@@ -1,4 +1,4 @@
-//! Abbreviations that stand for one another.
+//! Circular definitions.
 
 clebsch::model! {
     model Top {

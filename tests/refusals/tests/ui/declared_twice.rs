@@ -1,4 +1,4 @@
-//! One name for two things.
+//! One name for two quantities.
 
 clebsch::model! {
     model Top {

@@ -1,4 +1,4 @@
-//! Γ is defined by Λ where its constraint asks for Λ^T.
+//! Γ is defined by Λ, but its constraint requires Λ^T.
 
 clebsch::model! {
     model Top {

@@ -1,4 +1,4 @@
-//! A rotation is no value that is added: rotations are configurations of their own.
+//! Rotations cannot be added: a rotation is a configuration in a group.
 use clebsch::model;
 
 model! {

@@ -1,4 +1,4 @@
-//! Independent entries are counted: their number must be known.
+//! The independent entries are counted, so their number must be known.
 use clebsch::model;
 
 model! {

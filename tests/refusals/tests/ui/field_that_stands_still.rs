@@ -1,4 +1,4 @@
-//! Nothing says how the field moves.
+//! The Lagrangian does not contain the increment of the field.
 use clebsch::model;
 
 model! {

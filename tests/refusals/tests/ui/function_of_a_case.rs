@@ -1,4 +1,4 @@
-//! A stepper needs to know what its functions are.
+//! A compiled stepper needs the expressions of its functions.
 use clebsch::model;
 
 model! {

@@ -1,4 +1,4 @@
-//! A chain of bodies seen from space runs from its file.
+//! A chain of bodies with spatial velocities runs only from its file.
 
 clebsch::model! {
     model Chain {

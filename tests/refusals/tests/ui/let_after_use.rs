@@ -1,4 +1,4 @@
-//! A `let` below its use.
+//! A `let` after its use.
 
 clebsch::model! {
     model Top {

@@ -1,4 +1,4 @@
-//! The name of a model is that of a type.
+//! The name of a model is the name of a type.
 
 clebsch::model! {
     model top {

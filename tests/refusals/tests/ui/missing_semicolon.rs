@@ -1,4 +1,4 @@
-//! A statement without its end.
+//! A statement without `;`.
 
 clebsch::model! {
     model Top {

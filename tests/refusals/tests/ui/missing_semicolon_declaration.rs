@@ -1,4 +1,4 @@
-//! A declaration without its end.
+//! A declaration without `;`.
 
 clebsch::model! {
     model Top {

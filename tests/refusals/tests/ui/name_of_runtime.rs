@@ -1,4 +1,4 @@
-//! The model's name is one that its stepper needs for something else.
+//! The name of the model is reserved by its stepper.
 
 clebsch::model! {
     model Rotation {

@@ -1,4 +1,4 @@
-//! Two names that are one when Greek letters are spelt out.
+//! Two names that become equal if Greek letters are spelt out.
 
 clebsch::model! {
     model Top {

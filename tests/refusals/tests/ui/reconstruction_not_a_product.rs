@@ -1,4 +1,4 @@
-//! The reconstruction is no product of element and velocity.
+//! The reconstruction is not a product of element and velocity.
 
 clebsch::model! {
     model Top {

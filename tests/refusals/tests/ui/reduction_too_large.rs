@@ -1,4 +1,4 @@
-//! More words than the reduction can go through.
+//! More words than the reduction can process.
 use clebsch::model;
 
 model! {

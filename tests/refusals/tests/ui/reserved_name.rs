@@ -1,4 +1,4 @@
-//! Names of functions are no names of quantities.
+//! A quantity cannot have the name of a function.
 
 clebsch::model! {
     model Top {

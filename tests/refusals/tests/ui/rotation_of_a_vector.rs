@@ -1,4 +1,4 @@
-//! The rotation of a vector of the plane, where that of the velocity is meant.
+//! The rotation of a vector in the plane instead of the rotation of the velocity.
 
 clebsch::model! {
     model Body {

@@ -1,4 +1,4 @@
-//! The scale holds a quantity that moves.
+//! The scale contains a moving quantity.
 
 clebsch::model! {
     model Top {

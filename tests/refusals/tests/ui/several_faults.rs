@@ -1,4 +1,4 @@
-//! Every mistake is reported, not only the first, and none that only follows from another.
+//! Every mistake is reported, not only the first, but no mistake that follows from another.
 
 clebsch::model! {
     model Top {

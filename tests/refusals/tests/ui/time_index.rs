@@ -1,4 +1,4 @@
-//! The time index is no quantity.
+//! The time index is not a quantity.
 
 clebsch::model! {
     model Top {

@@ -1,4 +1,4 @@
-//! One invocation holds one model.
+//! One invocation contains one model.
 
 clebsch::model! {
     model Top {

@@ -1,4 +1,4 @@
-//! A parenthesis that is closed only after its statement has ended: the compiler sees pairs.
+//! A parenthesis that is closed only after the end of its statement: the compiler sees a matched pair.
 
 clebsch::model! {
     model Top {

@@ -1,4 +1,4 @@
-//! A rule for nodal terms that is none.
+//! An unknown rule for nodal terms.
 
 clebsch::model! {
     model Top {

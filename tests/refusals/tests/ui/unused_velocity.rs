@@ -1,4 +1,4 @@
-//! The Lagrangian holds no velocity.
+//! The Lagrangian contains no velocity.
 
 clebsch::model! {
     model Top {

@@ -1,5 +1,5 @@
-//! What derives but is hardly meant is a warning of rustc on the tokens concerned; denied here, so
-//! that it is an error.
+//! A model that derives but is probably not intended causes a rustc warning on the tokens concerned; the lint is
+//! denied here, so that the warning is an error.
 #![deny(deprecated)]
 
 clebsch::model! {

@@ -1,4 +1,4 @@
-//! A shape that is none.
+//! An unknown shape.
 
 clebsch::model! {
     model Top {

@@ -1,4 +1,4 @@
-//! The constraint carries Γ on the side of spatial models, in a body model.
+//! In a body model, the constraint advects Γ as a spatial model would.
 
 clebsch::model! {
     model Top {

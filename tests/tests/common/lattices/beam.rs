@@ -122,7 +122,7 @@ impl Typed for Beam {
             place + number(turns * self.once_around)
         };
         let moved = |i: isize| u(head, i) - u(tail, i);
-        // The end of each sum: the first node after its last.
+        // The end of each sum: one node after its last node.
         let (nodes, last_but_one, last_but_two) = match ring {
             true => (n, n, n),
             false => (n + 1, n, n.saturating_sub(1)),

@@ -5,7 +5,7 @@ use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Rotation};
 
 clebsch::model! {
-    /// A heavy body that turns about the third axis.
+    /// A heavy body that rotates about the third axis.
     model Hinge {
         param J: Sym<3>;
         param g, a: Vec<3>;

@@ -36,7 +36,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// Two masses on spheres and a body, which know nothing of one another: three blocks, two of them held.
+    /// Two masses on spheres and a body, without coupling: three blocks, two of them constrained.
     model Apart {
         param m, M, L, l, g: Real;
         param J: Sym<3>;
@@ -52,7 +52,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A deformable body of constant volume, pulled together by itself.
+    /// A deformable body of constant volume with self-gravity.
     model Drop {
         param I0: Sym<3>;
         param M: Real;
@@ -64,7 +64,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// The same body, held by the sum of its squares.
+    /// The same body, constrained by the sum of its squares.
     model Sphere {
         param I0: Sym<3>;
         param k: Real;
@@ -75,7 +75,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A body about its centre of mass, hung up at a point of its own.
+    /// A body about its centre of mass, suspended at a body-fixed point.
     model Hung {
         param J: Sym<3>;
         param m: Real;
@@ -385,7 +385,7 @@ fn a_pendulum_keeps_its_length_and_shows_its_tension() {
     }
 }
 
-/// Blocks with separate constraints: each moves as in a model of its own, bit for bit.
+/// Blocks with separate constraints: each moves as in a separate model, bit for bit.
 #[test]
 fn bodies_held_apart_move_as_each_alone() {
     let (h, g) = (0.01, 9.81);

@@ -22,7 +22,7 @@ use clebsch_models::kirchhoff_body::{
 use clebsch_oracle::physics::random_states::Draws;
 
 clebsch::model! {
-    /// Not separable: the potential of an edge depends on how far the body turns in it.
+    /// Not separable: the potential of an edge depends on the rotation of the body along it.
     pub model RoughBody {
         param J: Sym<3>;
         param c: Real;
@@ -36,7 +36,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// In unit quaternions, with a momentum that is no quadratic form's.
+    /// In unit quaternions, with a Lagrangian that is not quadratic in the velocity.
     pub model StiffQuaternion {
         param S: Sym<3>;
         param c: Real;
@@ -47,7 +47,7 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// Bodies kept in different groups.
+    /// Bodies in different groups.
     pub model MixedPair {
         param J, S: Sym<3>;
         param a: Vec<3>;

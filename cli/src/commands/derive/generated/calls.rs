@@ -1,6 +1,5 @@
-//! Formats calls of the runtime's protocol, whose macro arguments rustfmt fills into lines regardless of
-//! meaning.
-//! Takes the text of a file; gives it with a line for each part of such a call.
+//! Formats calls of the runtime's protocol, whose macro arguments rustfmt would fill into lines without regard to
+//! their meaning. Takes the text of a file; gives the text with a line for each part of such a call.
 
 /// The largest number of columns in a line, as rustfmt counts them.
 const WIDTH: usize = 89;
@@ -62,7 +61,7 @@ fn parts(words: &str) -> impl Iterator<Item = String> {
     all.into_iter().filter(|part| !part.is_empty())
 }
 
-/// Writes one part in as many lines as it needs.
+/// Writes one part on as many lines as it needs.
 fn filled(part: &str, out: &mut String) {
     let (mut column, mut quoted) = (0, false);
     for word in part.split(' ') {

@@ -21,12 +21,12 @@ fn sizes_that_the_table_has_not_are_told_with_those_it_has() {
         let said = refused(group, "tr(V)");
         let wanted = format!("this version does not support the group `{group}`");
         assert!(said.contains(&wanted), "{said}");
-        let own = format!("of this family it supports `SE<2>` and `SE<3>`; {all}");
+        let own = format!("clebsch supports `SE<2>` and `SE<3>` in this family; {all}");
         assert!(said.contains(&own), "{said}");
     }
     let said = refused("SU<3>", "tr(V)");
     assert!(
-        said.contains("of this family it supports `SU<2>`;"),
+        said.contains("clebsch supports `SU<2>` in this family;"),
         "{said}"
     );
     let said = refused("SE<2, 2>", "tr(V)");

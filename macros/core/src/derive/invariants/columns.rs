@@ -17,7 +17,7 @@ const FEW: usize = 4;
 /// The largest number of scalars in one set whose translations are combined individually.
 const SINGLES: usize = 32;
 
-/// A list of motions that are made together.
+/// A list of motions that are performed together.
 pub(super) type Column<'s> = Vec<&'s Motion>;
 
 /// Identifies what a motion moves, and how.

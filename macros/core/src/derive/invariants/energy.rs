@@ -105,7 +105,7 @@ pub(super) fn discrete(x: &Inputs, passages: &[RandomStep], lax: Option<&Lax>) -
         value,
         exact,
         reason: if exact {
-            "apart from constants, it is the trace of the left factor times the velocity, which the eigenvalues of the Lax \
+            "up to constants it is the trace of the left factor times the velocity, which the eigenvalues of the Lax \
                 matrix determine".to_owned()
         } else {
             "the stepper is symplectic".to_owned()

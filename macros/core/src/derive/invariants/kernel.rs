@@ -199,7 +199,7 @@ impl<'a> Kernel<'a> {
         columns: &Columns,
         attempt: u64,
     ) -> Option<Kernel<'a>> {
-        // Each with the part that its motions share.
+        // Each column with the common part of its motions.
         let own = columns.basis().filter_map(|list| {
             let first = list.first()?;
             let values = list.iter().map(|m| m.value.clone());
@@ -240,7 +240,7 @@ impl<'a> Kernel<'a> {
             nodes.push(step.before);
         }
         let kept = null_space(changes, width);
-        // A function of the nodes for each of them, and the constants.
+        // For each combination, its function at the nodes and its constants.
         let functions = kept.iter().map(|v| {
             let products = momenta.iter().map(|row| {
                 let terms = row.iter().zip(v);
@@ -307,9 +307,9 @@ fn work(x: &Inputs, point: &Point) -> usize {
     nodes.saturating_mul(n * n * n)
 }
 
-/// Steps between random nodes with the parameters of a point. Each comes with the steps from one origin, the identity
-/// of the groups, to its ends. A quantity that changes by `F(end) - F(start)` changes by `F` of the end over a step
-/// that starts at the origin, up to a constant.
+/// Steps between random nodes with the parameters of a point. Each comes with the steps from one origin (the identity
+/// of the groups) to its two ends. A quantity that changes by `F(end) - F(start)` changes by `F` of the end over a
+/// step that starts at the origin, up to a constant.
 fn chain<'a>(
     x: &Inputs<'a>,
     roots: &Roots,

@@ -276,7 +276,7 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
     }
 }
 
-/// The motions of a rigid motion, whose momentum in this frame is `m`.
+/// Bodies are drawn one by one; each draw is repeated until the roots that it completes exist.
 fn of_rigid(
     x: &Inputs,
     i: usize,

@@ -167,7 +167,7 @@ fn the_spatial_side_has_the_eigenvalues_of_what_it_carries() {
         constraint next(Λ) = ω*Λ; constraint next(J) = ω*J*ω^T;
         lagrangian = -tr(ω*J)/h;
     }";
-    // The energy of the free body is exact in the spatial form too, but |m| is not a Casimir there.
+    // The energy of the free body is also exact in the spatial form, but |m| is not a Casimir there.
     let d = derive(free);
     let wanted = [
         "energy",

@@ -80,7 +80,7 @@ pub(super) fn kinks(x: &Inputs) -> Vec<Warning> {
             let at = x.spec.terms.iter().find(|(term, _)| holds(term, e));
             let place = at.map_or(x.spec.lagrangian_place, |(_, place)| *place);
             let message = format!(
-                "{} is not smooth where its argument vanishes: a step across that point loses its order, and the energy may \
+                "{} is not smooth where its argument vanishes: a step across this point has a lower order, and the energy may \
                  jump",
                 x.text(e)
             );

@@ -26,7 +26,7 @@ pub(super) fn limit(x: &Inputs) -> Option<Warning> {
     if *why == limit::INSIDE {
         let d = Diagnostic::new(
             x.spec.lagrangian_place,
-            format!("clebsch finds no limit of small steps: {why}, which it does not expand"),
+            format!("clebsch cannot find the limit of small steps: {why}, and clebsch does not expand such terms"),
         )
         .help(
             "take the step out of it, for example write `c*h*sqrt(1 - x/(c*h)^2)` for `sqrt(c^2*h^2 - x)`: apart from \

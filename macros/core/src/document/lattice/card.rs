@@ -77,7 +77,7 @@ pub fn card_words(
     let list: Vec<&Invariant> = d.invariants.iter().collect();
     let mut at_sites = sites::of_sites(&mut folded, &part, &list);
     at_sites.retain(|o| o.members.windows(2).all(|w| w[0] + 1 == w[1]));
-    // Each with whether it covers all sites.
+    // Each entry with whether it covers all sites.
     let mut told: Vec<(InvariantWords, bool)> = Vec::new();
     for (i, v) in list.into_iter().enumerate() {
         let alike = at_sites.iter().find(|o| o.members.contains(&i));

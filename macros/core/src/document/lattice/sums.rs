@@ -19,7 +19,7 @@ const FEWEST: usize = 3;
 pub(super) fn as_sums(folded: &mut IndexedNotation, part: &Part, e: &Expr) -> Option<Formula> {
     match e.node() {
         Node::Neg(a) => Some(Formula::neg(as_sums(folded, part, a)?)),
-        // A component of a total along, or its cross product with, a vector that does not depend on sites.
+        // The scalar or cross product of a total with a vector that does not depend on sites.
         Node::Dot(a, b) if !varies(folded, part, b) => {
             let sum = shortest(folded, part, a, Some(b))?;
             let axis = folded.derived(part, b, IndexOrigin::End(0));

@@ -1,5 +1,5 @@
-//! Equations of configurations without a label, which couple to all sites. From a lattice and a longer one, both
-//! expanded, they become sums over the sites if both read alike.
+//! Equations of configurations without a label, which couple to all sites. clebsch expands a lattice and a longer
+//! one; if the equations of both agree, it writes them as sums over the sites.
 
 use super::{Stated, stated_configurations, sums};
 use crate::document::indexed_notation::{IndexOrigin, IndexedNotation, Part};

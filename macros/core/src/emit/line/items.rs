@@ -261,7 +261,7 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
 }
 
 impl Lines<'_> {
-    /// The offsets of a ring without repetition, each with a field that has it.
+    /// The offsets of a ring without repetition, each with a field that uses it.
     pub(super) fn offsets(&self) -> Vec<(String, Moving<'_>)> {
         let mut out: Vec<(String, Moving)> = Vec::new();
         for m in self.moving() {

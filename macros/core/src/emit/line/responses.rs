@@ -84,7 +84,7 @@ pub(super) fn kernels(l: &Lines, b: &Bodies) -> TokenStream {
     }
 }
 
-/// Subtracts the momenta at zero velocity from those of a node.
+/// Subtracts the momenta at zero velocity from the momenta of a node.
 fn at_rest(l: &Lines, b: &Bodies) -> Option<TokenStream> {
     let m = b.first()?;
     let d = m.outline();

@@ -1,5 +1,5 @@
-//! Names of locals in kernels. A local has neither the name of another quantity of the model, nor that of a
-//! temporary, nor one that every kernel uses.
+//! Names of locals in kernels. Each differs from the other quantities of the model, the temporaries and the names
+//! that every kernel uses.
 
 use super::Lines;
 use crate::line::Line;

@@ -36,7 +36,7 @@ fn a_total_momentum_is_found_where_nothing_singles_out_a_place() {
     // On a rotating plane with the Coriolis term.
     let turning = "+ (m*f/2)*dot(perp(X), next(X)) - h*k*m*log(A)";
     assert_eq!(totals(&model(cells, turning)), kept);
-    // A position outside the functional, multiplied by it or in a term of its own, breaks the symmetry.
+    // A position outside the functional, as a factor or in a separate term, breaks the symmetry.
     let none: Vec<String> = Vec::new();
     assert_eq!(totals(&model(cells, "- h*k*m*X[1]/A")), none);
     let own = totals(&model(cells, "- h*k*m/A - h*m*dot(X, X)"));

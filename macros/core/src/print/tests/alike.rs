@@ -76,7 +76,7 @@ fn a_parameter_stands_in_the_document_where_it_stands_by_another_name() {
         ("lambda", "λ"),
         ("iota", "ι"),
     ] {
-        // The count with a letter that the engine never writes shows how often the parameter occurs.
+        // The count for a letter that the engine never uses shows how often the parameter occurs.
         for (model, plain) in models(name).iter().zip(models("psi")) {
             let text = |model: &str| {
                 let d = derive_source(model).unwrap_or_else(|e| panic!("{e}\n{model}"));

@@ -52,9 +52,9 @@ impl<T: Real> Free<T> {
         ]
     }
 
-    /// Rotates the attitude from the left by the small angle that maps the body momentum, seen from space, to the
-    /// conserved spatial momentum. Returns it with half the angle as a vector. For a body at rest, only normalises the
-    /// attitude.
+    /// Rotates the attitude from the left by the small angle that maps the body momentum, transformed to space, to
+    /// the conserved spatial momentum. Returns it with half the angle as a vector. For a body at rest, only
+    /// normalises the attitude.
     pub(super) fn aligned(&self, attitude: Rotation<T>, u: [T; 3]) -> (Rotation<T>, [T; 3]) {
         let attitude = attitude.renormalised();
         let [[a, b, c]] = attitude.rotate(&(self.frame * Vector3::from(u))).data.0;

@@ -20,7 +20,7 @@ impl Saved for Free<f64> {
             attitude,
             momentum,
             h,
-            // As asked for.
+            // These are options.
             order: _,
             method: _,
             given,

@@ -11,7 +11,7 @@ use crate::oracle::sides::Side;
 pub enum Motion {
     /// Entry by entry.
     Added,
-    /// By a basis of a Lie algebra (row-major matrices), on one side.
+    /// With a basis of a Lie algebra (row-major matrices), on one side.
     Turned(Vec<Vec<f64>>, Side),
     /// Not varied, because an end prescribes it.
     Fixed,

@@ -15,7 +15,7 @@ pub struct Point<'a> {
     model: &'a Model,
     /// The step size.
     pub step: f64,
-    /// By symbol: the parameter, or the value of an advected quantity at the identity.
+    /// For each symbol, the parameter, or the value of an advected quantity at the identity.
     pub constants: Vec<Grid<f64>>,
     nodal: Vec<bool>,
 }

@@ -1,5 +1,5 @@
 //! Sums of momenta that advected rotations transform into one frame, for any other couplings, on either side and for
-//! either rotation group; and momenta without terms that vanish.
+//! either rotation group; also momenta with vanishing terms omitted.
 
 use super::{Family, derive, found};
 use crate::algebra::{assumed, exact::Point};

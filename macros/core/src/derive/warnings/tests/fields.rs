@@ -51,7 +51,7 @@ fn a_root_of_the_step_is_no_missing_kinetic_energy() {
     }
     let text = relativistic("-m*c*sqrt(c*c*h*h - dot(d, d))");
     assert!(
-        text.contains("clebsch finds no limit of small steps"),
+        text.contains("clebsch cannot find the limit of small steps"),
         "{text}"
     );
     // The suggested form has a kinetic energy.
