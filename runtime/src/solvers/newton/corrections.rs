@@ -111,8 +111,8 @@ impl Corrections {
             return NextAction::End;
         }
         // Predicts the residual after this correction, if it is as good as the last one. The decrease of the residual
-        // alone can be too optimistic: if one equation dominated at the first trial, it hides the others. The last
-        // correction may have used a tangent at its own trial; this one then uses a tangent that is off by its length.
+        // alone can be too optimistic: if one equation dominated at the first trial, it hides the others. The tangent may
+        // belong to the last trial: its relative error is then the length of the last correction.
         let factor = FORESIGHT * (r.size / r.previous).max(fall).max(before);
         let is_foreseen = may_end && r.size * factor <= POLISHED_ROUNDINGS * unit;
         match judged != CorrectionAssessment::More
