@@ -1,4 +1,4 @@
-//! Moves a start that was typed with ten digits onto its constraints. Takes the numbers of a node; gives the nearest
+//! Moves a start that was typed with eight digits onto its constraints. Takes the numbers of a node; gives the nearest
 //! configuration that satisfies the constraints to rounding, and its distance.
 
 use crate::displacement::{Frame, Velocity, moved};

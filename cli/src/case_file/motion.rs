@@ -53,7 +53,7 @@ impl Motion {
         self.given.is_empty() && self.resting.is_empty()
     }
 
-    /// Moves the configuration of a case onto its constraints, if it satisfies them to ten digits, and computes the
+    /// Moves the configuration of a case onto its constraints, if it satisfies them to eight digits, and computes the
     /// momenta of the case from its parameters and configuration.
     pub(crate) fn put(
         &mut self,

@@ -4,6 +4,7 @@
 
 pub(crate) mod assumed;
 mod bracket;
+mod diagonal;
 pub(crate) mod exact;
 mod factor;
 mod functional;

@@ -20,6 +20,7 @@ mod functionals;
 pub mod holds;
 pub mod invariants;
 pub mod kinetic;
+mod left_factor;
 pub mod lie;
 pub mod limit;
 pub mod momentum;

@@ -449,7 +449,14 @@ fn theta_explained(sheet: &Sheet, section: &mut Section) {
     let normal = sheet.d.spec.configurations.iter();
     let normal = normal.map(|c| c.group.coordinates().is_some());
     let words = if normal.fold(false, |any, one| any | one) {
-        " is normal to the Lie algebra: the multiplier of the constraint that velocities are elements of the group."
+        match rotations.len() {
+            1 => {
+                " is normal to the Lie algebra: the multiplier of the constraint that velocities are elements of the group."
+            }
+            _ => {
+                " are normal to the Lie algebras: the multipliers of the constraint that velocities are elements of the groups."
+            }
+        }
     } else if rotations.len() == 1 {
         " is a symmetric matrix, the multiplier of the constraint that velocities are rotations."
     } else {

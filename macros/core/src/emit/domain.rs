@@ -1,6 +1,5 @@
 //! Domains that a step must not leave: the domains of functions in the model, and invertible matrices. Takes the
-//! derivation; gives the tests of a step, of a step size and of the parameters. A model without such functions has no
-//! tests.
+//! derivation; gives the tests of a step, of a step size and of the parameters, if the model has such functions.
 
 use super::between::{Edge, edge_between};
 use super::element::{Family, family};

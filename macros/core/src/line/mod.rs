@@ -32,11 +32,11 @@ pub use velocity_coupling::{Part, VelocityCoupling};
 use crate::algebra::Rational;
 use crate::derive::Outline;
 use crate::diagnostic::Errors;
-use crate::expr::symbol::Role;
+use crate::expr::symbol::{Role, SymbolId};
 use crate::expr::{self, Expr};
 use crate::lattice::{ChainConfig, ExpandedModel, Lattice, any_name};
 use crate::pipeline;
-use crate::syntax::ast::{Model, NodeRule, Statement};
+use crate::syntax::ast::{Extent, Model, NodeRule, Statement};
 
 /// A model with labels for every number of sites.
 pub struct Line {
@@ -316,5 +316,33 @@ fn without_clocks(representative: &RepresentativeChain) -> Result<(), Refused> {
             "`{}` advances with the step by itself",
             spec.symbols.get(*clock).name
         ))),
+    }
+}
+
+impl RepresentativeChain {
+    /// Whether walls change a value: it contains the momentum of positions in a box.
+    pub(crate) fn is_turned_by_walls(&self, lattice: &Lattice, e: &Expr) -> bool {
+        let mut letters = expr::letters(e).into_iter();
+        letters.any(|l| {
+            let Some(at) = self.sited(l.symbol) else {
+                return false;
+            };
+            let of = at.momentum_of().and_then(|of| lattice.find(of));
+            of.is_some_and(|q| matches!(q.domain, Some(Extent::Box(_))))
+        })
+    }
+
+    /// An expression in the letters of another chain of the same model, with copies of equal sites.
+    pub(crate) fn in_letters_of(&self, other: &RepresentativeChain, e: &Expr) -> Option<Expr> {
+        let (own, s) = (&self.d.letters.symbols, &other.d.letters.symbols);
+        let there = |id: SymbolId| match self.sited(id) {
+            Some(at) => other.copy(&at.of, at.site),
+            None => s.find(&own.get(id).name),
+        };
+        let mut list = Vec::new();
+        for l in expr::letters(e) {
+            list.push((l, expr::letter(s, there(l.symbol)?, l.shift)));
+        }
+        Some(expr::substitute(s, e, &list))
     }
 }

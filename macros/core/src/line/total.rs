@@ -8,14 +8,14 @@ use crate::derive::Derivation;
 use crate::derive::invariants::{Family, Invariant};
 use crate::document::default_choice;
 use crate::expr::shape::Shape;
-use crate::expr::symbol::{Role, SymbolId, Symbols};
+use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
 use crate::lattice::{
     ChainConfig, ExpandedModel, FunctionalKind, Lattice, Mesh, Sites, Source, holds_sums,
 };
 use crate::pipeline;
 use crate::print::{Format, Style, expression};
-use crate::syntax::ast::{Extent, Model};
+use crate::syntax::ast::Model;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A density, summed over the sites of one kind.
@@ -570,33 +570,5 @@ fn terms(part: &RepresentativeChain, e: &Expr) -> Vec<Expr> {
             }
         }
         _ => vec![e.clone()],
-    }
-}
-
-impl RepresentativeChain {
-    /// Whether walls change a value: it contains the momentum of positions in a box.
-    pub(crate) fn is_turned_by_walls(&self, lattice: &Lattice, e: &Expr) -> bool {
-        let mut letters = expr::letters(e).into_iter();
-        letters.any(|l| {
-            let Some(at) = self.sited(l.symbol) else {
-                return false;
-            };
-            let of = at.momentum_of().and_then(|of| lattice.find(of));
-            of.is_some_and(|q| matches!(q.domain, Some(Extent::Box(_))))
-        })
-    }
-
-    /// An expression in the letters of another chain of the same model, with copies of equal sites.
-    pub(crate) fn in_letters_of(&self, other: &RepresentativeChain, e: &Expr) -> Option<Expr> {
-        let (own, s) = (&self.d.letters.symbols, &other.d.letters.symbols);
-        let there = |id: SymbolId| match self.sited(id) {
-            Some(at) => other.copy(&at.of, at.site),
-            None => s.find(&own.get(id).name),
-        };
-        let mut list = Vec::new();
-        for l in expr::letters(e) {
-            list.push((l, expr::letter(s, there(l.symbol)?, l.shift)));
-        }
-        Some(expr::substitute(s, e, &list))
     }
 }
