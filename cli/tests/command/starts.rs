@@ -51,7 +51,7 @@ fn the_search_for_the_stability_limit_ends_when_its_time_is_over() {
     let (found, all) = run("600");
     found.ended(0).never_prints("not found within");
     assert!(inquiries < all, "{inquiries} {all}");
-    rotor("run --help").prints("0 disables the search [default: 1]");
+    rotor("run --help").prints("0 disables the search");
     // The trajectory is the one of a run without a search.
     let (unsearched, inquiries) = run("0");
     assert_eq!(inquiries, 0);

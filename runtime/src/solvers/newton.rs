@@ -237,6 +237,7 @@ where
             corrections: Corrections::none(),
             iteration: 0,
             found: None,
+            renewed: false,
         }
     }
 
@@ -355,6 +356,8 @@ pub struct Newton<'a, T, G, const D: usize, W = G, const E: usize = D> {
     iteration: usize,
     /// The number of iterations of a solution whose remaining unknowns are still needed.
     found: Option<usize>,
+    /// Whether the iteration was about to end and computed the sizes of the terms anew.
+    renewed: bool,
 }
 
 /// The result of a correction.
@@ -544,11 +547,14 @@ where
     }
 
     /// Whether the scales are too large for this trial: they were computed for a longer velocity. They must be computed
-    /// anew before the iteration ends.
+    /// anew before the iteration ends, but only once: velocities that are only rounding never agree. Later attempts
+    /// compute them at every trial.
     #[inline(always)]
     fn is_outdated(&mut self) -> bool {
-        let outdated = self.search.is_shorter(&self.trial);
+        let is_shorter = || self.search.is_shorter(&self.trial);
+        let outdated = self.attempt == 0 && !self.renewed && is_shorter();
         if outdated {
+            self.renewed = true;
             self.search.weighed = OLDEST_SCALE;
         }
         outdated

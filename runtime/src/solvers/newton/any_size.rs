@@ -141,6 +141,7 @@ impl<C: Chart> AnySearch<C> {
             corrections: Corrections::none(),
             iteration: 0,
             found: None,
+            renewed: false,
             has_moved: false,
         }
     }
@@ -194,6 +195,7 @@ pub struct AnyNewton<'a, C: Chart> {
     corrections: Corrections,
     iteration: usize,
     found: Option<usize>,
+    renewed: bool,
     /// Whether the last call of [`correct`](Self::correct) moved the trial.
     has_moved: bool,
 }
@@ -420,10 +422,14 @@ impl<C: Chart> AnyNewton<'_, C> {
 
     /// Whether the scales were computed for a longer velocity and must be computed anew before the iteration ends.
     fn is_outdated(&mut self) -> bool {
+        if self.attempt > 0 || self.renewed {
+            return false;
+        }
         let squares = self.chart.squares(self.trial());
         let mut parts = self.search.shortest.iter().zip(&squares);
         let outdated = parts.any(|(shortest, [square, _])| !(shortest - square).nowhere_positive());
         if outdated {
+            self.renewed = true;
             self.search.weighed = OLDEST_SCALE;
         }
         outdated
