@@ -132,8 +132,9 @@ fn few_iterations_and_a_residual_of_rounding() {
         } = measure(parameters, initial);
         println!("{name}: {tangents} tangents, {corrections} corrections, residual {residual:.1e}");
         assert!(tangents <= 4, "{name}: {tangents} tangents");
-        // Each equation has its own tolerance, so a step occasionally needs a third correction.
-        assert!(corrections <= 3, "{name}: {corrections} corrections");
+        // Each equation has its own tolerance, so a step occasionally needs a third correction. If the scales are taken
+        // anew before the step ends, as in one step of figure 2.13, the next residual may ask for a fourth.
+        assert!(corrections <= 4, "{name}: {corrections} corrections");
         assert!(residual <= ROUNDING, "{name}: {residual:.1e}");
         assert!(turned > 2.0 * ROUNDING, "{name}: {turned:.1e} would pass");
     }
