@@ -21,7 +21,7 @@ pub struct Block {
     pub members: Vec<usize>,
     /// The method: a left factor, Davenport's eigenvalue problem, a linear balance or Newton.
     pub method: Method,
-    /// The method in words and, after [`BECAUSE`], the reason for it.
+    /// The method in words and, after `BECAUSE`, the reason for it.
     pub reason: String,
     /// The constraints whose multipliers are solved with it.
     pub holds: Vec<usize>,

@@ -90,7 +90,7 @@ pub struct Solve {
     pub riccati: Vec<StepEquation>,
     /// The method of the emitted stepper.
     pub method: Method,
-    /// The method and, after [`BECAUSE`], the reason for it.
+    /// The method and, after `BECAUSE`, the reason for it.
     pub reason: String,
     /// `C` in the other frame, if it is constant along the motion: it depends on parameters and on the reference
     /// values of advected quantities.
