@@ -313,6 +313,9 @@ impl<T: Real> KirchhoffBody<T> {
             (Ok(_), Ok(_)) => iteration.unpolished(),
             (Err(fold), failed) => iteration.folded(fold, failed.err()),
         };
+        if iteration.begin_afresh() {
+            return Ok(None);
+        }
         Err(self.refused(state, h, e))
     }
     /// Reports the equation with the largest residual, and a step size that succeeds.

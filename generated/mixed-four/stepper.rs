@@ -542,6 +542,9 @@ impl<T: Real> MixedFour<T> {
             (Ok(_), Ok(_)) => iteration.unpolished(),
             (Err(fold), failed) => iteration.folded(fold, failed.err()),
         };
+        if iteration.begin_afresh() {
+            return Ok(None);
+        }
         Err(self.refused_2(state, h, e, method))
     }
     /// Reports the equation with the largest residual, and a step size that succeeds.
@@ -790,6 +793,9 @@ impl<T: Real> MixedFour<T> {
             (Ok(_), Ok(_)) => iteration.unpolished(),
             (Err(fold), failed) => iteration.folded(fold, failed.err()),
         };
+        if iteration.begin_afresh() {
+            return Ok(None);
+        }
         Err(self.refused_4(state, h, e, method))
     }
     /// Reports the equation with the largest residual, and a step size that succeeds.

@@ -381,6 +381,9 @@ impl Solve {
                 iteration.folded(fold, failed)
             }
         };
+        if iteration.begin_afresh() {
+            return Ok(None);
+        }
         let e = self.refused(e, sought, around.all())?;
         Err(Failure::from(StepCause::from(e)).into())
     }

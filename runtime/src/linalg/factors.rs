@@ -219,6 +219,12 @@ impl DenseFactors {
         }
     }
 
+    /// Forgets the matrix.
+    pub fn forget(&mut self) {
+        self.columns.data.fill(0.0);
+        self.blocks = false;
+    }
+
     /// Factors a matrix.
     pub fn set(&mut self, matrix: &Dense<f64>) {
         let n = matrix.rows;

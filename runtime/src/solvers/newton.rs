@@ -39,9 +39,6 @@ const MOST_ITERATIONS: usize = 50;
 /// rounded products.
 const CONVERGED_ROUNDINGS: f64 = 16.0;
 
-/// Below this the residual is pure rounding, and another step would only change the rounding.
-const POLISHED_ROUNDINGS: f64 = 4.0;
-
 /// Two evaluations may differ by twice their bounds of rounding, [`BOUND_ROUNDINGS`] each. If the
 /// residual stops decreasing below this, the cause is rounding.
 const STAGNATED_ROUNDINGS: f64 = 64.0;
@@ -63,7 +60,7 @@ const WORTH_KEEPING: f64 = 0.02;
 /// motion by a few step angles.
 const OLDEST_TANGENT: u32 = 8;
 
-/// The next residual may exceed its prediction, from the rate of the last correction, by at most this factor.
+/// The next correction may exceed its prediction, from the decrease of the last one, by at most this factor.
 const FORESIGHT: f64 = 4.0;
 
 /// A converged solution.
@@ -77,7 +74,7 @@ pub struct Solved<G> {
     pub residual: f64,
 }
 
-/// The index of the last attempt, which starts at the neutral element.
+/// The index of an attempt after which no other follows.
 const LAST_ATTEMPT: u32 = 2;
 
 /// If the terms of an equation are smaller than this fraction of the terms of similar equations, the similar equations
@@ -102,11 +99,9 @@ pub struct Search<T, G, const D: usize, W = G, const E: usize = D> {
     next: u64,
     /// For each equation, the inverse of the size of its terms.
     weights: SVector<T, D>,
-    /// For each coordinate, the inverse length of its part of the velocity.
-    lengths: SVector<T, D>,
-    /// For each part, the square of the length below which `weights` and `lengths` are too old.
-    shortest: [T; D],
-    /// The number of steps since `weights` and `lengths` were computed.
+    /// For each part, the factor that gives its length in common units.
+    roots: [T; D],
+    /// The number of steps since `weights` and `roots` were computed.
     weighed: u32,
     /// The unit of length of each part, and the rounding error of its length.
     units: [f64; D],
@@ -150,8 +145,7 @@ where
             known: 0,
             next: 0,
             weights: SVector::zeros(),
-            lengths: SVector::zeros(),
-            shortest: [T::zero(); D],
+            roots: [T::zero(); D],
             weighed: OLDEST_SCALE,
             units: [1.0; D],
             noise: [0.0; D],
@@ -220,7 +214,7 @@ where
         let first = if foreseen {
             self.foreseen()
         } else {
-            self.start(1)
+            self.start()
         };
         let attempt = if foreseen { 0 } else { 1 };
         if !foreseen {
@@ -236,25 +230,29 @@ where
             previous: f64::INFINITY,
             corrections: Corrections::none(),
             iteration: 0,
-            found: None,
+            found: false,
             renewed: false,
         }
     }
 
-    /// Whether some part of the velocity is much shorter than when the sizes of the terms were computed.
-    #[inline(always)]
-    fn is_shorter(&self, velocity: &G) -> bool {
-        let squares = squares::<T, G, D>(velocity);
-        let mut parts = 0..G::PARTS.min(D);
-        parts.any(|b| !(self.shortest[b] - squares[b]).nowhere_positive())
+    /// The last solution, or the neutral element before the first.
+    fn start(&self) -> G {
+        match self.known {
+            0 => G::identity(),
+            _ => self.past[self.newest],
+        }
     }
 
-    /// The starting element of the later attempts.
-    fn start(&self, attempt: u32) -> G {
-        match attempt {
-            1 if self.known > 0 => self.past[self.newest],
-            _ => G::identity(),
-        }
+    /// Forgets all solutions and measurements. Returns false if there were no solutions.
+    #[cold]
+    fn forget(&mut self) -> bool {
+        let begun = self.known > 0;
+        *self = Self {
+            tries: self.tries,
+            last: self.last,
+            ..Self::from_rest()
+        };
+        begun
     }
 
     /// Computes the units of all parts and their rounding errors from a tangent.
@@ -330,13 +328,12 @@ where
 /// [`Group::retract`] at 0, or of [`Group::retract_from_left`]. It is factored once and kept while the
 /// corrections decrease fast.
 ///
-/// Each equation is judged by the size of its own terms, its scale. A solution is accepted if the last
-/// correction is rounding of the velocity, for any scales (see `corrections`), and if one of these
-/// conditions holds for all residuals:
+/// A solution is accepted in three cases (see `corrections`):
 ///
-/// - they are below `16 EPSILON scale`, and one more correction is made;
-/// - the next correction is certain to bring them below `4 EPSILON scale`;
-/// - they are below `64 EPSILON scale` and no longer decrease.
+/// - the last correction is rounding of each part of the velocity;
+/// - the next correction is certain to be rounding;
+/// - corrections no longer decrease, and all residuals are rounding of their terms: below `16 EPSILON scale`, or below
+///   `64 EPSILON scale` without decrease. The scale of an equation is the size of its own terms.
 ///
 /// Residuals are measured by their real parts, in every lane. From a real solution, one more step makes
 /// the first derivatives exact. Dual numbers therefore get such a step, with a tangent of its own.
@@ -354,10 +351,23 @@ pub struct Newton<'a, T, G, const D: usize, W = G, const E: usize = D> {
     previous: f64,
     corrections: Corrections,
     iteration: usize,
-    /// The number of iterations of a solution whose remaining unknowns are still needed.
-    found: Option<usize>,
-    /// Whether the iteration was about to end and computed the sizes of the terms anew.
+    /// Whether the solution is found, and only its eliminated unknowns are still needed.
+    found: bool,
+    /// Whether the sizes of the terms were computed anew because corrections no longer decreased.
     renewed: bool,
+}
+
+/// How an iteration goes on.
+enum Correction {
+    /// Evaluate the equations at the trial.
+    Next,
+    /// The trial solves the equations.
+    Last {
+        /// Whether the trial moved since its evaluation.
+        moved: bool,
+    },
+    /// This attempt failed.
+    Impossible,
 }
 
 /// The result of a correction.
@@ -410,29 +420,39 @@ where
             let unit = search.unit.lane(lane).abs();
             let squares = squares::<T, G, D>(&self.trial);
             let lengths = squares.map(|x| x.lane(lane).sqrt());
+            let size = G::DIMENSION.min(D);
             let tangent = scale::Tangent {
                 entry: &|i, j| search.factors.entry(i, j, lane) / unit,
                 part_of: &G::part_of,
                 lengths: &lengths,
             };
-            tangent.raise(&mut scales.as_mut_slice()[..G::DIMENSION.min(D)]);
-            let mut inverses = [0.0; D];
-            tangent.inverse_lengths(&mut inverses[..G::DIMENSION.min(D)]);
-            let mut shortest = [0.0; D];
-            tangent.shortest(&inverses[..G::DIMENSION.min(D)], &mut shortest);
+            tangent.raise(&mut scales.as_mut_slice()[..size]);
+            let mut roots = [0.0; D];
+            tangent.roots(size, &mut roots);
             let search = &mut *self.search;
             for (weight, scale) in search.weights.iter_mut().zip(&scales) {
                 weight.set_lane(lane, T::One::from_f64((1.0 / scale).min(f64::MAX)));
             }
-            for (own, inverse) in search.lengths.iter_mut().zip(inverses) {
-                own.set_lane(lane, T::One::from_f64(inverse));
-            }
-            for (own, length) in search.shortest.iter_mut().zip(shortest) {
-                own.set_lane(lane, T::One::from_f64(length * length));
+            for (own, root) in search.roots.iter_mut().zip(roots) {
+                own.set_lane(lane, T::One::from_f64(root));
             }
         }
         self.search.measured = false;
         self.search.weighed = 0;
+    }
+
+    /// Starts the step again without the solutions and measurements of earlier steps. Returns false if this attempt
+    /// already does so.
+    #[cold]
+    #[inline(never)]
+    pub fn begin_afresh(&mut self) -> bool {
+        if !self.search.forget() {
+            return false;
+        }
+        self.attempt = 1;
+        self.anchor = None;
+        self.begin_at(G::identity());
+        true
     }
 
     fn begin_at(&mut self, trial: G) {
@@ -442,7 +462,7 @@ where
         self.previous = f64::INFINITY;
         self.corrections = Corrections::none();
         self.iteration = 0;
-        self.found = None;
+        self.found = false;
     }
 
     /// Takes the residual at the trial; returns whether it needs the tangent there.
@@ -453,26 +473,13 @@ where
         if T::ORDER > 0 {
             return true;
         }
+        let is_small = self.size <= CONVERGED_ROUNDINGS * T::EPSILON;
         if self.iteration > 0 {
-            return self.size > WORTH_KEEPING * self.previous && !self.polished();
+            return self.size > WORTH_KEEPING * self.previous
+                && !(is_small && self.corrections.are_small());
         }
         // If the prediction is exact to rounding, the tangent of an earlier step suffices.
-        !(self.size <= CONVERGED_ROUNDINGS * T::EPSILON && self.search.age < OLDEST_TANGENT)
-    }
-
-    /// Whether the trial needs no correction.
-    #[inline(always)]
-    fn polished(&self) -> bool {
-        self.corrections.are_polished::<T>(self.seen())
-    }
-
-    #[inline(always)]
-    fn seen(&self) -> Residual {
-        Residual {
-            size: self.size,
-            previous: self.previous,
-            iteration: self.iteration,
-        }
+        !(is_small && self.search.age < OLDEST_TANGENT)
     }
 
     /// Takes the tangent at the trial.
@@ -509,50 +516,89 @@ where
 
     #[inline(always)]
     fn correct_by<const FROM_LEFT: bool>(&mut self) -> Progress<G> {
-        if self.polished() {
-            return self.solved_unless_outdated();
+        match self.corrected::<FROM_LEFT>() {
+            Correction::Last { .. } => self.solved(),
+            Correction::Next => Progress::Continue,
+            Correction::Impossible => self.failed(),
         }
+    }
+
+    /// Moves the trial by Newton's correction, unless that is rounding.
+    #[inline(always)]
+    fn corrected<const FROM_LEFT: bool>(&mut self) -> Correction {
         let size = self.size;
         let right = self.residual * self.search.unit;
         let Some(correction) = self.search.factors.solve(&right) else {
-            return self.failed();
+            return Correction::Impossible;
         };
         let step = -correction;
-        let moved = largest(&step.component_mul(&self.search.lengths));
         let decrement = || {
             let terms = step.iter().zip(&self.residual);
             let sum = terms.fold(T::zero(), |sum, (x, r)| sum + *x * *r);
             largest(&SVector::<T, 1>::new(sum))
         };
-        let next = self.corrections.next::<T>(self.seen(), moved, decrement);
+        let seen = Residual {
+            size,
+            previous: self.previous,
+            iteration: self.iteration,
+        };
+        let next = self
+            .corrections
+            .next::<T>(seen, self.relative(&step), decrement);
         if next == NextAction::End {
-            return self.solved_unless_outdated();
+            return Correction::Last { moved: false };
+        }
+        if next == NextAction::EndIfRounding && self.is_outdated() {
+            return Correction::Next;
         }
         self.trial = match FROM_LEFT {
             true => self.trial.retract_from_left(step.as_slice()),
             false => self.trial.retract(step.as_slice()),
         };
-        if next == NextAction::CorrectAndEnd && !self.is_outdated() {
-            return self.solved(self.iteration + 1);
-        }
         self.previous = size;
         self.iteration += 1;
+        if next != NextAction::Correct {
+            return Correction::Last { moved: true };
+        }
         if self.iteration == LATE {
             self.search.weighed = OLDEST_SCALE;
         }
-        if self.iteration == MOST_ITERATIONS || !size.is_finite() {
-            return self.failed();
+        match self.iteration == MOST_ITERATIONS || !size.is_finite() {
+            true => Correction::Impossible,
+            false => Correction::Next,
         }
-        Progress::Continue
     }
 
-    /// Whether the scales are too large for this trial: they were computed for a longer velocity. They must be computed
-    /// anew before the iteration ends, but only once: velocities that are only rounding never agree. Later attempts
-    /// compute them at every trial.
+    /// The largest correction of a part of the velocity, over the present length of the part, in all lanes.
     #[inline(always)]
+    fn relative(&self, step: &SVector<T, D>) -> f64 {
+        let (size, count) = (G::DIMENSION.min(D), G::PARTS.min(D));
+        let squares = squares::<T, G, D>(&self.trial);
+        let mut worst = 0.0;
+        for lane in 0..T::LANES {
+            let mut moved = [0.0; D];
+            for k in 0..size {
+                let own = &mut moved[G::part_of(k)];
+                let x = step[k].lane(lane).abs();
+                *own = if x > *own || x.is_nan() { x } else { *own };
+            }
+            let squares = squares.map(|x| x.lane(lane));
+            let roots = self.search.roots.map(|x| x.lane(lane));
+            let own = scale::relative(&moved[..count], &squares[..count], &roots[..count]);
+            worst = if own > worst || own.is_nan() {
+                own
+            } else {
+                worst
+            };
+        }
+        worst
+    }
+
+    /// Whether the sizes of the terms belong to another trial, and must be computed anew before rounding may end the
+    /// iteration. They are computed anew once: later attempts compute them at every trial.
+    #[cold]
     fn is_outdated(&mut self) -> bool {
-        let is_shorter = || self.search.is_shorter(&self.trial);
-        let outdated = self.attempt == 0 && !self.renewed && is_shorter();
+        let outdated = self.attempt == 0 && !self.renewed;
         if outdated {
             self.renewed = true;
             self.search.weighed = OLDEST_SCALE;
@@ -561,18 +607,10 @@ where
     }
 
     #[inline(always)]
-    fn solved_unless_outdated(&mut self) -> Progress<G> {
-        match self.is_outdated() {
-            true => Progress::Continue,
-            false => self.solved(self.iteration),
-        }
-    }
-
-    #[inline(always)]
-    fn solved(&self, iterations: usize) -> Progress<G> {
+    fn solved(&self) -> Progress<G> {
         Progress::Solved(Solved {
             element: self.trial,
-            iterations,
+            iterations: self.iteration,
             residual: self.size,
         })
     }

@@ -5,6 +5,7 @@
 use super::Letters;
 use super::action::Action;
 use super::cancellation;
+use super::intermediate_positions;
 use super::rounding::Rounding;
 use super::variation::{Variation, at};
 use crate::algebra::Algebra;
@@ -263,7 +264,7 @@ fn has_fewer_letters(a: &Expr, b: &Expr) -> bool {
 
 /// The reduced form of the algebra, if it is smaller than the expression or free of a letter that cancels: `V V^T` of
 /// a rotation, if no velocity is known. The expression is unchanged if the reduced form has larger rounding errors
-/// for positions far from the origin.
+/// for positions far from the origin. Powers of positions between two nodes stay powers.
 pub fn shorter(algebra: &Algebra, e: Expr) -> Expr {
     if let (Some(rows), false) = (expr::rows_in_parts(&e), e.is_zero()) {
         // The angular and the linear part separately.
@@ -275,8 +276,10 @@ pub fn shorter(algebra: &Algebra, e: Expr) -> Expr {
     }
     let reduced = algebra.shortest(&e);
     let preferred = reduced.size() <= e.size() || has_fewer_letters(&reduced, &e);
-    match !algebra.exhausted() && preferred {
-        true => cancellation::nearer(algebra, reduced, e),
-        false => e,
+    if algebra.exhausted() || !preferred {
+        return e;
     }
+    let in_between = intermediate_positions::reduced(algebra, &e);
+    let in_between = in_between.filter(|form| form.size() <= e.size().max(reduced.size()));
+    cancellation::nearer(algebra, in_between.unwrap_or(reduced), e)
 }

@@ -18,6 +18,7 @@ mod first_order;
 #[cfg(test)]
 mod functionals;
 pub mod holds;
+mod intermediate_positions;
 pub mod invariants;
 pub mod kinetic;
 mod left_factor;

@@ -339,6 +339,9 @@ impl JointUnknowns<'_> {
                         #newton.folded(fold, failed.err())
                     }
                 };
+                if #newton.begin_afresh() {
+                    return Ok(None);
+                }
                 Err(self.#refused(state, #step, e #with_method))
             }
 

@@ -7,7 +7,7 @@ use super::*;
 use crate::expr::symbol::Symbols;
 
 /// A term as coefficient, powers of scalars, and matrices in order.
-pub(super) struct Parts {
+pub(crate) struct Parts {
     pub coefficient: Rational,
     pub numbers: Vec<(Expr, Rational)>,
     pub matrices: Vec<Expr>,
@@ -113,7 +113,7 @@ fn cancelled(e: &Expr) -> Expr {
     scaled(coefficient, core)
 }
 
-pub(super) fn parts(e: &Expr) -> Parts {
+pub(crate) fn parts(e: &Expr) -> Parts {
     let mut out = Parts {
         coefficient: Rational::ONE,
         numbers: Vec::new(),

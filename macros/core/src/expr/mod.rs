@@ -40,6 +40,7 @@ use std::sync::Arc;
 use symbol::SymbolId;
 
 pub use build::*;
+pub(crate) use collect::parts;
 pub use collect::{coefficient, collect, positive_first, term_by_term};
 pub use constant::Constant;
 pub use determinant::{adjugate, adjugate_polynomial, det, with_plain_determinants};

@@ -11,11 +11,11 @@ pub use chart::{Chart, Lane};
 
 use super::corrections::{Corrections, NextAction, Residual};
 use super::principal::{Fold, Traced, trace};
-use super::scale::{Tangent, measure};
+use super::scale::{self, Tangent, measure};
 use super::{
-    BOUND_ROUNDINGS, CONVERGED_ROUNDINGS, LAST_ATTEMPT, LATE, LEAST_SHARE, MOST_ITERATIONS,
-    NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT, Progress, REMEMBERED, Solved,
-    WORTH_KEEPING,
+    BOUND_ROUNDINGS, CONVERGED_ROUNDINGS, Correction, LAST_ATTEMPT, LATE, LEAST_SHARE,
+    MOST_ITERATIONS, NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT, Progress,
+    REMEMBERED, Solved, WORTH_KEEPING,
 };
 use crate::linalg::{Dense, DenseFactors, Reals};
 use crate::scalar::Real;
@@ -37,8 +37,7 @@ pub struct AnySearch<C: Chart> {
     past: Vec<C::Element>,
     next: u64,
     weights: Vec<f64>,
-    lengths: Vec<f64>,
-    shortest: Vec<f64>,
+    roots: Vec<f64>,
     weighed: u32,
     units: Vec<f64>,
     noise: Vec<f64>,
@@ -71,8 +70,7 @@ impl<C: Chart> AnySearch<C> {
             past: Vec::new(),
             next: 0,
             weights: vec![0.0; dimension],
-            lengths: vec![0.0; dimension],
-            shortest: Vec::new(),
+            roots: vec![0.0; dimension],
             weighed: OLDEST_SCALE,
             units: Vec::new(),
             noise: Vec::new(),
@@ -95,14 +93,27 @@ impl<C: Chart> AnySearch<C> {
     pub fn measure_as(&mut self, other: &Self) {
         self.next = other.next;
         self.weights.clone_from(&other.weights);
-        self.lengths.clone_from(&other.lengths);
-        self.shortest.clone_from(&other.shortest);
+        self.roots.clone_from(&other.roots);
         self.weighed = other.weighed;
         self.units.clone_from(&other.units);
         self.noise.clone_from(&other.noise);
         (self.open, self.measured) = (other.open, other.measured);
         self.factors.clone_from(&other.factors);
         (self.unit, self.age) = (other.unit, other.age);
+    }
+
+    /// Forgets all solutions and measurements.
+    fn forget(&mut self) {
+        self.past.clear();
+        self.weights.fill(0.0);
+        self.roots.fill(0.0);
+        self.weighed = OLDEST_SCALE;
+        self.units.clear();
+        self.noise.clear();
+        (self.open, self.measured) = (false, false);
+        self.whole = None;
+        self.factors.forget();
+        (self.unit, self.age) = (1.0, OLDEST_TANGENT);
     }
 
     /// Marks all further steps as trials.
@@ -140,7 +151,7 @@ impl<C: Chart> AnySearch<C> {
             previous: f64::INFINITY,
             corrections: Corrections::none(),
             iteration: 0,
-            found: None,
+            found: false,
             renewed: false,
             has_moved: false,
         }
@@ -194,7 +205,7 @@ pub struct AnyNewton<'a, C: Chart> {
     previous: f64,
     corrections: Corrections,
     iteration: usize,
-    found: Option<usize>,
+    found: bool,
     renewed: bool,
     /// Whether the last call of [`correct`](Self::correct) moved the trial.
     has_moved: bool,
@@ -248,15 +259,12 @@ impl<C: Chart> AnyNewton<'_, C> {
             lengths: &lengths,
         };
         tangent.raise(&mut scales);
-        let mut inverses = vec![0.0; scales.len()];
-        tangent.inverse_lengths(&mut inverses);
-        let mut shortest = vec![0.0; parts.count()];
-        tangent.shortest(&inverses, &mut shortest);
+        let roots = &mut self.search.roots;
+        roots.resize(parts.count(), 0.0);
+        tangent.roots(scales.len(), roots);
         for (weight, scale) in self.search.weights.iter_mut().zip(&scales) {
             *weight = (1.0 / scale).min(f64::MAX);
         }
-        self.search.lengths = inverses;
-        self.search.shortest = shortest.iter().map(|x| x * x).collect();
         self.search.measured = false;
         self.search.weighed = 0;
     }
@@ -292,6 +300,20 @@ impl<C: Chart> AnyNewton<'_, C> {
         }
     }
 
+    /// Starts the step again without the solutions and measurements of earlier steps: see
+    /// [`Newton::begin_afresh`](super::Newton::begin_afresh).
+    #[cold]
+    pub fn begin_afresh(&mut self) -> bool {
+        if self.search.past.is_empty() {
+            return false;
+        }
+        self.search.forget();
+        self.attempt = 1;
+        self.anchor = None;
+        self.begin_at(self.chart.identity());
+        true
+    }
+
     fn begin_at(&mut self, trial: C::Element) {
         self.search.work.trial = trial;
         self.begin_again();
@@ -303,7 +325,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         self.previous = f64::INFINITY;
         self.corrections = Corrections::none();
         self.iteration = 0;
-        self.found = None;
+        self.found = false;
     }
 
     /// Takes the residual at the trial; returns whether it needs the tangent there.
@@ -311,23 +333,13 @@ impl<C: Chart> AnyNewton<'_, C> {
         self.size = largest_of(residual, &self.search.weights);
         self.search.work.residual.clear();
         self.search.work.residual.extend_from_slice(residual);
+        let is_small = self.size <= CONVERGED_ROUNDINGS * UNIT;
         if self.iteration > 0 {
-            return self.size > WORTH_KEEPING * self.previous && !self.polished();
+            return self.size > WORTH_KEEPING * self.previous
+                && !(is_small && self.corrections.are_small());
         }
         // If the prediction is exact to rounding, the tangent of an earlier step suffices.
-        !(self.size <= CONVERGED_ROUNDINGS * UNIT && self.search.age < OLDEST_TANGENT)
-    }
-
-    fn polished(&self) -> bool {
-        self.corrections.are_polished::<f64>(self.seen())
-    }
-
-    fn seen(&self) -> Residual {
-        Residual {
-            size: self.size,
-            previous: self.previous,
-            iteration: self.iteration,
-        }
+        !(is_small && self.search.age < OLDEST_TANGENT)
     }
 
     /// Takes the tangent at the trial times `unit`, the same number at every step.
@@ -350,54 +362,65 @@ impl<C: Chart> AnyNewton<'_, C> {
     /// Whether the residual is needed. At the last trial, only the remaining unknowns are.
     #[must_use]
     pub fn wants_residual(&self) -> bool {
-        self.found.is_none()
+        !self.found
     }
 
     /// Like [`correct`](Self::correct), if some unknowns are eliminated; `whole` is the trial with all unknowns.
     pub fn correct_part(&mut self, element: C::Element, from_left: bool) -> Progress<C::Element> {
-        self.has_moved = false;
-        let found = match self.polished() {
-            true if self.is_outdated() => return Progress::Continue,
-            true => Some(self.iteration),
-            false => self.found,
+        let correction = match self.found {
+            true => Correction::Last { moved: false },
+            false => self.corrected(from_left),
         };
-        if let Some(iterations) = found {
-            return Progress::Solved(Solved {
+        match correction {
+            Correction::Last { moved: false } => Progress::Solved(Solved {
                 element,
-                iterations,
+                iterations: self.iteration,
                 residual: self.size,
-            });
-        }
-        match self.correct(from_left) {
-            Progress::Solved(solved) => {
-                self.found = Some(solved.iterations);
+            }),
+            // The eliminated unknowns of this solution are computed at the next trial.
+            Correction::Last { moved: true } => {
+                self.found = true;
                 Progress::Continue
             }
-            other => other,
+            Correction::Next => Progress::Continue,
+            Correction::Impossible => self.failed(),
         }
     }
 
     /// Moves the trial by Newton's correction, or ends.
     pub fn correct(&mut self, from_left: bool) -> Progress<C::Element> {
-        self.has_moved = false;
-        if self.polished() {
-            return self.solved_unless_outdated();
+        match self.corrected(from_left) {
+            Correction::Last { .. } => self.solved(),
+            Correction::Next => Progress::Continue,
+            Correction::Impossible => self.failed(),
         }
+    }
+
+    fn corrected(&mut self, from_left: bool) -> Correction {
+        self.has_moved = false;
         let size = self.size;
         let residual = &self.search.work.residual;
         let right: Reals = residual.iter().map(|x| x * self.search.unit).collect();
         let Some(correction) = self.search.factors.solve(&right) else {
-            return self.failed();
+            return Correction::Impossible;
         };
         let step: Reals = correction.iter().map(|x| -x).collect();
-        let moved = largest_of(&step, &self.search.lengths);
         let decrement = || {
             let terms = step.iter().zip(residual);
             f64::abs(terms.fold(0.0, |sum, (x, r)| sum + x * r))
         };
-        let next = self.corrections.next::<f64>(self.seen(), moved, decrement);
+        let seen = Residual {
+            size,
+            previous: self.previous,
+            iteration: self.iteration,
+        };
+        let moved = self.relative(&step);
+        let next = self.corrections.next::<f64>(seen, moved, decrement);
         if next == NextAction::End {
-            return self.solved_unless_outdated();
+            return Correction::Last { moved: false };
+        }
+        if next == NextAction::EndIfRounding && self.is_outdated() {
+            return Correction::Next;
         }
         let Work { trial, moved, .. } = &mut self.search.work;
         match from_left {
@@ -406,28 +429,36 @@ impl<C: Chart> AnyNewton<'_, C> {
         }
         core::mem::swap(trial, moved);
         self.has_moved = true;
-        if next == NextAction::CorrectAndEnd && !self.is_outdated() {
-            return self.solved(self.iteration + 1);
-        }
         self.previous = size;
         self.iteration += 1;
+        if next != NextAction::Correct {
+            return Correction::Last { moved: true };
+        }
         if self.iteration == LATE {
             self.search.weighed = OLDEST_SCALE;
         }
-        if self.iteration == MOST_ITERATIONS || !size.is_finite() {
-            return self.failed();
+        match self.iteration == MOST_ITERATIONS || !size.is_finite() {
+            true => Correction::Impossible,
+            false => Correction::Next,
         }
-        Progress::Continue
     }
 
-    /// Whether the scales were computed for a longer velocity and must be computed anew before the iteration ends.
-    fn is_outdated(&mut self) -> bool {
-        if self.attempt > 0 || self.renewed {
-            return false;
-        }
+    /// The largest correction of a part of the velocity, over the present length of the part.
+    fn relative(&self, step: &[f64]) -> f64 {
+        let parts = self.chart.parts();
         let squares = self.chart.squares(self.trial());
-        let mut parts = self.search.shortest.iter().zip(&squares);
-        let outdated = parts.any(|(shortest, [square, _])| !(shortest - square).nowhere_positive());
+        let mut moved = Reals::from_elem(0.0, squares.len());
+        for (k, x) in step.iter().enumerate() {
+            let own = &mut moved[parts.part_of(k)];
+            let x = x.abs();
+            *own = if x > *own || x.is_nan() { x } else { *own };
+        }
+        scale::relative(&moved, &squares, &self.search.roots)
+    }
+
+    /// Whether the sizes of the terms must be computed anew before rounding may end the iteration.
+    fn is_outdated(&mut self) -> bool {
+        let outdated = self.attempt == 0 && !self.renewed;
         if outdated {
             self.renewed = true;
             self.search.weighed = OLDEST_SCALE;
@@ -435,28 +466,23 @@ impl<C: Chart> AnyNewton<'_, C> {
         outdated
     }
 
-    fn solved_unless_outdated(&mut self) -> Progress<C::Element> {
-        match self.is_outdated() {
-            true => Progress::Continue,
-            false => self.solved(self.iteration),
-        }
-    }
-
-    fn solved(&self, iterations: usize) -> Progress<C::Element> {
+    fn solved(&self) -> Progress<C::Element> {
         Progress::Solved(Solved {
             element: self.trial().clone(),
-            iterations,
+            iterations: self.iteration,
             residual: self.size,
         })
     }
 
     #[cold]
     fn failed(&mut self) -> Progress<C::Element> {
-        // Without previous solutions, every attempt would be the first.
-        if self.attempt < LAST_ATTEMPT && !self.search.past.is_empty() {
-            self.attempt += 1;
-            self.search.begin_at(self.chart, self.attempt);
+        if self.attempt == 0 {
+            self.attempt = 1;
+            self.search.begin_at(self.chart, 1);
             self.begin_again();
+            return Progress::Continue;
+        }
+        if self.attempt < LAST_ATTEMPT && self.begin_afresh() {
             return Progress::Continue;
         }
         let (failure, iterations) = if !self.size.is_finite() {

@@ -1,8 +1,8 @@
 //! Decides when a velocity is found: the last correction must be rounding of the velocity at its own scale. Takes the
-//! corrections in order, each relative to the length of its part of the velocity. The scales of residuals are not used,
-//! so a wrong scale cannot end an iteration.
+//! corrections in order, each relative to the present length of its part of the velocity. The scales of residuals only
+//! tell rounding from slow convergence, so a wrong scale cannot end an iteration.
 
-use super::{CONVERGED_ROUNDINGS, FORESIGHT, POLISHED_ROUNDINGS, STAGNATED_ROUNDINGS};
+use super::{CONVERGED_ROUNDINGS, FORESIGHT, STAGNATED_ROUNDINGS};
 use crate::scalar::Real;
 
 /// Corrections below this many roundings of their part of the velocity are rounding. With a badly conditioned tangent,
@@ -31,6 +31,15 @@ pub(super) struct Residual {
     pub iteration: usize,
 }
 
+impl Residual {
+    /// Whether the residual is rounding of its terms, if their sizes are current.
+    #[inline(always)]
+    fn is_rounding<T: Real>(self) -> bool {
+        self.size <= CONVERGED_ROUNDINGS * T::EPSILON
+            || (self.size <= STAGNATED_ROUNDINGS * T::EPSILON && self.size >= 0.5 * self.previous)
+    }
+}
+
 /// The next action after a correction is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NextAction {
@@ -38,20 +47,12 @@ pub(super) enum NextAction {
     Correct,
     /// Apply the correction and stop.
     CorrectAndEnd,
+    /// Apply the correction and stop, if the sizes of the terms are current: corrections no longer decrease, because of
+    /// rounding in an ill-conditioned problem.
+    EndIfRounding,
     /// Stop without the correction: the error is already at rounding level, and the correction would add its own
     /// rounding.
     End,
-}
-
-/// The assessment of a correction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum CorrectionAssessment {
-    /// Another correction is needed.
-    More,
-    /// The correction is rounding of the velocity, and therefore the last.
-    Last,
-    /// Corrections no longer decrease, because of rounding in an ill-conditioned problem. This is also the last.
-    Noise,
 }
 
 /// The corrections of one iteration.
@@ -74,14 +75,10 @@ impl Corrections {
         }
     }
 
-    /// Whether the residual and any further correction would be pure rounding. A predicted velocity is corrected at
-    /// least once.
+    /// Whether the next correction is rounding with the factored tangent, too.
     #[inline(always)]
-    pub fn are_polished<T: Real>(&self, r: Residual) -> bool {
-        T::ORDER == 0
-            && r.iteration > 0
-            && r.size <= POLISHED_ROUNDINGS * T::EPSILON
-            && self.leave_rounding::<T>(r.size / r.previous)
+    pub fn are_small(&self) -> bool {
+        self.last <= SMALL
     }
 
     /// Takes a correction over the length of its part of the velocity, and its residual. `decrement` is Newton's
@@ -98,73 +95,60 @@ impl Corrections {
         let before = self.last.min(1.0);
         let fall = moved / before;
         self.last = moved;
-        let unit = T::EPSILON;
-        let is_rounding = r.size <= CONVERGED_ROUNDINGS * unit
-            || (r.size <= STAGNATED_ROUNDINGS * unit && r.size >= 0.5 * r.previous);
-        let judged = match is_rounding {
-            true => self.judged::<T>(decrement),
-            false => CorrectionAssessment::More,
-        };
-        // A correction is needed to make derivatives exact.
+        // A predicted velocity is corrected at least once, and derivatives become exact by a correction.
         let may_end = T::ORDER == 0 && r.iteration > 0;
-        if may_end && r.size <= POLISHED_ROUNDINGS * unit && judged == CorrectionAssessment::Last {
-            return NextAction::End;
+        if moved <= ROUNDINGS * T::EPSILON {
+            return match may_end && moved <= LEFT_ROUNDINGS * T::EPSILON {
+                true => NextAction::End,
+                false => NextAction::CorrectAndEnd,
+            };
         }
-        // Predicts the residual after this correction, if it is as good as the last one. The decrease of the residual
-        // alone can be too optimistic: if one equation dominated at the first trial, it hides the others. The tangent may
-        // belong to the last trial: its relative error is then the length of the last correction.
-        let factor = FORESIGHT * (r.size / r.previous).max(fall).max(before);
-        let is_foreseen = may_end && r.size * factor <= POLISHED_ROUNDINGS * unit;
-        match judged != CorrectionAssessment::More
-            || (is_foreseen && self.leave_rounding::<T>(factor))
-        {
-            true => NextAction::CorrectAndEnd,
+        // Predicts the correction after this one, if it is as good as the last one. The tangent may belong to the last
+        // trial: its relative error is then the length of the last correction.
+        let next = moved * (FORESIGHT * fall.max(before));
+        if may_end && next <= LEFT_ROUNDINGS * T::EPSILON {
+            return NextAction::CorrectAndEnd;
+        }
+        match r.is_rounding::<T>() && self.stand_still(decrement()) {
+            true => NextAction::EndIfRounding,
             false => NextAction::Correct,
         }
     }
 
-    /// Judges the last correction, if the residual is rounding.
+    /// Whether the corrections no longer decrease.
     #[inline(always)]
-    fn judged<T: Real>(&mut self, decrement: impl FnOnce() -> f64) -> CorrectionAssessment {
-        if self.last <= ROUNDINGS * T::EPSILON {
-            return CorrectionAssessment::Last;
-        }
-        let decrement = decrement();
+    fn stand_still(&mut self, decrement: f64) -> bool {
         if decrement < 0.25 * self.least {
             self.least = decrement;
             self.without_fall = 0;
         } else {
             self.without_fall += 1;
         }
-        let stands_still = (self.last <= SMALL && self.without_fall > 0)
-            || (self.without_fall >= MOST_WITHOUT_FALL && self.last.is_finite());
-        match stands_still {
-            true => CorrectionAssessment::Noise,
-            false => CorrectionAssessment::More,
-        }
-    }
-
-    /// Whether the next correction can be skipped, if it is smaller than the last one by the factor of the residuals.
-    #[inline(always)]
-    fn leave_rounding<T: Real>(&self, factor: f64) -> bool {
-        self.last * factor <= LEFT_ROUNDINGS * T::EPSILON
-            || (self.without_fall > 0 && self.last <= SMALL)
+        (self.last <= SMALL && self.without_fall > 0)
+            || (self.without_fall >= MOST_WITHOUT_FALL && self.last.is_finite())
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{CorrectionAssessment, Corrections, NextAction, ROUNDINGS, Residual};
+    use super::{Corrections, NextAction, ROUNDINGS, Residual};
     use crate::groups::{Additive, Group};
     use crate::solvers::newton::{Solved, solve};
     use nalgebra::SMatrix;
 
-    /// The number of these corrections, for a velocity of this length, after which the iteration may end.
+    /// The number of these corrections, for a velocity of this length, after which the iteration ends. All residuals
+    /// are rounding of their terms.
     fn ends(length: f64, moved: &[f64]) -> Option<usize> {
         let mut corrections = Corrections::none();
-        let found = moved.iter().position(|m| {
-            corrections.last = *m / length;
-            corrections.judged::<f64>(|| m * m) != CorrectionAssessment::More
+        let mut each = moved.iter().enumerate();
+        let found = each.position(|(iteration, moved)| {
+            let r = Residual {
+                size: 0.0,
+                previous: 0.0,
+                iteration,
+            };
+            let next = corrections.next::<f64>(r, moved / length, || moved * moved);
+            next != NextAction::Correct
         });
         found.map(|i| i + 1)
     }
@@ -173,6 +157,8 @@ mod tests {
     fn only_rounding_ends_an_iteration() {
         assert_eq!(ends(1.0, &[0.0]), Some(1));
         assert_eq!(ends(1.0, &[1.0, 1e-3, 1e-7, 1e-15]), Some(4));
+        // The fourth correction would be at most 1e-16.
+        assert_eq!(ends(1.0, &[1.0, 1e-5, 1e-12, 1e-20]), Some(3));
         // The start of Newton's method if a cubic term dominates: each correction is two thirds of the previous one.
         let slow: Vec<f64> = (0..20).map(|i| 0.5 * f64::powi(2.0 / 3.0, i)).collect();
         assert_eq!(ends(1.0, &slow), None);
@@ -206,7 +192,8 @@ mod tests {
         // At zero velocity, the first correction cannot be compared with a length.
         assert_eq!(next([4.7e307, 1.1e-6]), NextAction::Correct);
         // Corrections that decrease as much as the residual are not rounding.
-        assert_eq!(next([1e-13, 1e-26]), NextAction::CorrectAndEnd);
+        assert_eq!(next([1e-10, 1e-13]), NextAction::CorrectAndEnd);
+        assert_eq!(next([1e-13, 1e-26]), NextAction::End);
         // Two velocities multiply each other. The first correction found one and moved the other by a quarter. The second
         // correction uses the tangent of the first trial, which is wrong by that quarter.
         let decrease = next_of([0.1, 2.1e-9], [0.24, 3.8e-9]);

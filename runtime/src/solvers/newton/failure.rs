@@ -43,8 +43,7 @@ pub struct NewtonError {
     /// The step size that failed, if the caller knows it.
     pub h: Option<f64>,
     /// The largest step that succeeds with a new workspace from the same state, with the sign of `h`,
-    /// found by bisection. It is 0 if no step above `h / 2^380` succeeds, and `h` itself if only the
-    /// old workspace caused the failure.
+    /// found by bisection. It is 0 if no step above `h / 2^380` succeeds.
     pub largest_step: Option<f64>,
     /// The equation of the largest residual: a component of the momentum of a configuration, in
     /// the frame of the model. If a largest step was found, the equation comes from the shortest
@@ -230,18 +229,14 @@ impl fmt::Display for NewtonError {
             )?,
         }
         match (self.h, self.largest_step) {
-            (Some(h), Some(largest)) if largest == h => write!(
-                f,
-                "; a new workspace takes this step: start again from this state"
-            ),
-            (Some(h), Some(largest)) if largest != 0.0 => write!(
+            (Some(h), Some(largest)) if largest != h && largest != 0.0 => write!(
                 f,
                 "; the step is {} times the largest step that can be solved from this state: reduce it from {} to at most {}",
                 Times(h / largest),
                 Plain(h),
                 AtMost(largest)
             ),
-            (Some(h), Some(largest)) => instead(f, h, largest),
+            (Some(h), Some(largest)) if largest == 0.0 => instead(f, h, largest),
             _ => write!(f, "; reduce the step size or check the values"),
         }
     }
@@ -257,10 +252,12 @@ where
     #[cold]
     #[inline(never)]
     pub(super) fn failed(&mut self) -> Progress<G> {
-        // Without previous solutions, all attempts are equal.
-        if self.attempt < LAST_ATTEMPT && self.search.known > 0 {
-            self.attempt += 1;
-            self.begin_at(self.search.start(self.attempt));
+        if self.attempt == 0 {
+            self.attempt = 1;
+            self.begin_at(self.search.start());
+            return Progress::Continue;
+        }
+        if self.attempt < LAST_ATTEMPT && self.begin_afresh() {
             return Progress::Continue;
         }
         let (failure, iterations) = if !self.size.is_finite() {

@@ -12,8 +12,7 @@ impl<G: Group<f64> + Saved, const D: usize, W, const E: usize> Saved for Search<
             known,
             next,
             weights,
-            lengths,
-            shortest,
+            roots,
             weighed,
             units,
             noise,
@@ -32,8 +31,7 @@ impl<G: Group<f64> + Saved, const D: usize, W, const E: usize> Saved for Search<
         *known = words.count(*known, super::REMEMBERED);
         next.words(words);
         weights.words(words);
-        lengths.words(words);
-        shortest.words(words);
+        roots.words(words);
         weighed.words(words);
         whole.words(words);
         units.words(words);

@@ -5,6 +5,7 @@ use crate::algebra::Algebra;
 use crate::check::spec::Spec;
 use crate::derive::action::{split, summands};
 use crate::derive::balance::shorter;
+use crate::derive::intermediate_positions;
 use crate::derive::variation::at;
 use crate::expr::shape::Shape;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
@@ -54,8 +55,9 @@ pub(super) fn gathered(spec: &Spec, algebra: &Algebra, ends: &[(Letter, Expr)]) 
     if apart.len() < 2 || apart.len() > LARGEST as usize {
         return spec.lagrangian.clone();
     }
-    let stated = expr::sum(apart, Shape::SCALAR);
-    let together = algebra.shortest(&expr::substitute(s, &stated, ends));
+    let stated = expr::substitute(s, &expr::sum(apart, Shape::SCALAR), ends);
+    let together = intermediate_positions::reduced(algebra, &stated);
+    let together = together.unwrap_or_else(|| algebra.shortest(&stated));
     // A remainder at a node would be taken for a term that was stated there, and divided between its edges.
     let stays = split(s, &together).1.is_zero();
     match !algebra.exhausted() && stays && values(&together) < values(&stated) {

@@ -17,8 +17,7 @@ impl<C: Chart> AnySearch<C> {
             past,
             next,
             weights,
-            lengths,
-            shortest,
+            roots,
             weighed,
             units,
             noise,
@@ -38,8 +37,7 @@ impl<C: Chart> AnySearch<C> {
         past.iter_mut().for_each(|g| element(g, words));
         next.words(words);
         weights.words(words);
-        lengths.words(words);
-        shortest.words(words);
+        roots.words(words);
         weighed.words(words);
         optional(whole, words, || {
             Some((DenseFactors::none(0, true), Vec::new()))
