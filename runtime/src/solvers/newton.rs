@@ -7,6 +7,7 @@ mod checked_points;
 mod continuation_stage;
 mod corrections;
 mod failure;
+mod iteration;
 mod parts;
 pub(crate) mod principal;
 mod reduced;
@@ -28,7 +29,8 @@ pub use verdict::{Anchor, Numbers, Verdict};
 use crate::groups::Group;
 use crate::linalg::Factors;
 use crate::scalar::Real;
-use corrections::{Corrections, NextAction, Residual};
+use corrections::NextAction;
+use iteration::{Correction, Iteration};
 use nalgebra::{SMatrix, SVector};
 use reduced::AtRest;
 
@@ -73,9 +75,6 @@ pub struct Solved<G> {
     /// The residual before the last step relative to the size of its terms: the maximum over equations and lanes.
     pub residual: f64,
 }
-
-/// The index of an attempt after which no other follows.
-const LAST_ATTEMPT: u32 = 2;
 
 /// If the terms of an equation are smaller than this fraction of the terms of similar equations, the similar equations
 /// set its scale.
@@ -216,22 +215,15 @@ where
         } else {
             self.start()
         };
-        let attempt = if foreseen { 0 } else { 1 };
         if !foreseen {
             self.weighed = OLDEST_SCALE;
         }
         Newton {
             search: self,
             trial: first,
-            attempt,
             anchor: None,
             residual: SVector::zeros(),
-            size: f64::NAN,
-            previous: f64::INFINITY,
-            corrections: Corrections::none(),
-            iteration: 0,
-            found: false,
-            renewed: false,
+            iteration: Iteration::new(foreseen),
         }
     }
 
@@ -344,30 +336,9 @@ where
 pub struct Newton<'a, T, G, const D: usize, W = G, const E: usize = D> {
     search: &'a mut Search<T, G, D, W, E>,
     trial: G,
-    attempt: u32,
     anchor: Option<Anchor<W, E>>,
     residual: SVector<T, D>,
-    size: f64,
-    previous: f64,
-    corrections: Corrections,
-    iteration: usize,
-    /// Whether the solution is found, and only its eliminated unknowns are still needed.
-    found: bool,
-    /// Whether the sizes of the terms were computed anew because corrections no longer decreased.
-    renewed: bool,
-}
-
-/// How an iteration goes on.
-enum Correction {
-    /// Evaluate the equations at the trial.
-    Next,
-    /// The trial solves the equations.
-    Last {
-        /// Whether the trial moved since its evaluation.
-        moved: bool,
-    },
-    /// This attempt failed.
-    Impossible,
+    iteration: Iteration,
 }
 
 /// The result of a correction.
@@ -401,7 +372,7 @@ where
     /// at rest, where the bounds of terms with a kink are invalid.
     #[inline(always)]
     pub fn wants_scale(&self) -> bool {
-        self.search.weighed >= OLDEST_SCALE || self.attempt > 0
+        self.search.weighed >= OLDEST_SCALE || !self.iteration.is_first()
     }
 
     /// Takes the sizes of the terms at the trial. For each lane, `rounding` bounds the rounding of each residual, in
@@ -449,7 +420,7 @@ where
         if !self.search.forget() {
             return false;
         }
-        self.attempt = 1;
+        self.iteration.restart_at_last();
         self.anchor = None;
         self.begin_at(G::identity());
         true
@@ -459,27 +430,14 @@ where
         self.trial = trial;
         self.search.weighed = OLDEST_SCALE;
         self.search.age = OLDEST_TANGENT;
-        self.previous = f64::INFINITY;
-        self.corrections = Corrections::none();
-        self.iteration = 0;
-        self.found = false;
     }
 
     /// Takes the residual at the trial; returns whether it needs the tangent there.
     #[inline(always)]
     pub fn assess(&mut self, residual: SVector<T, D>) -> bool {
-        self.size = largest(&residual.component_mul(&self.search.weights));
+        let size = largest(&residual.component_mul(&self.search.weights));
         self.residual = residual;
-        if T::ORDER > 0 {
-            return true;
-        }
-        let is_small = self.size <= CONVERGED_ROUNDINGS * T::EPSILON;
-        if self.iteration > 0 {
-            return self.size > WORTH_KEEPING * self.previous
-                && !(is_small && self.corrections.are_small());
-        }
-        // If the prediction is exact to rounding, the tangent of an earlier step suffices.
-        !(is_small && self.search.age < OLDEST_TANGENT)
+        self.iteration.wants_tangent::<T>(size, self.search.age)
     }
 
     /// Takes the tangent at the trial.
@@ -526,47 +484,29 @@ where
     /// Moves the trial by Newton's correction, unless that is rounding.
     #[inline(always)]
     fn corrected<const FROM_LEFT: bool>(&mut self) -> Correction {
-        let size = self.size;
         let right = self.residual * self.search.unit;
         let Some(correction) = self.search.factors.solve(&right) else {
             return Correction::Impossible;
         };
         let step = -correction;
+        let residual = &self.residual;
         let decrement = || {
-            let terms = step.iter().zip(&self.residual);
+            let terms = step.iter().zip(residual);
             let sum = terms.fold(T::zero(), |sum, (x, r)| sum + *x * *r);
             largest(&SVector::<T, 1>::new(sum))
         };
-        let seen = Residual {
-            size,
-            previous: self.previous,
-            iteration: self.iteration,
-        };
-        let next = self
-            .corrections
-            .next::<T>(seen, self.relative(&step), decrement);
-        if next == NextAction::End {
-            return Correction::Last { moved: false };
-        }
-        if next == NextAction::EndIfRounding && self.is_outdated() {
-            return Correction::Next;
+        let moved = self.relative(&step);
+        let next = self.iteration.next::<T>(moved, decrement);
+        match next {
+            NextAction::End => return Correction::Last { moved: false },
+            NextAction::Measure => return self.iteration.measure(&mut self.search.weighed),
+            NextAction::Correct | NextAction::CorrectAndEnd | NextAction::EndIfRounding => {}
         }
         self.trial = match FROM_LEFT {
             true => self.trial.retract_from_left(step.as_slice()),
             false => self.trial.retract(step.as_slice()),
         };
-        self.previous = size;
-        self.iteration += 1;
-        if next != NextAction::Correct {
-            return Correction::Last { moved: true };
-        }
-        if self.iteration == LATE {
-            self.search.weighed = OLDEST_SCALE;
-        }
-        match self.iteration == MOST_ITERATIONS || !size.is_finite() {
-            true => Correction::Impossible,
-            false => Correction::Next,
-        }
+        self.iteration.corrected(next, &mut self.search.weighed)
     }
 
     /// The largest correction of a part of the velocity, over the present length of the part, in all lanes.
@@ -594,24 +534,12 @@ where
         worst
     }
 
-    /// Whether the sizes of the terms belong to another trial, and must be computed anew before rounding may end the
-    /// iteration. They are computed anew once: later attempts compute them at every trial.
-    #[cold]
-    fn is_outdated(&mut self) -> bool {
-        let outdated = self.attempt == 0 && !self.renewed;
-        if outdated {
-            self.renewed = true;
-            self.search.weighed = OLDEST_SCALE;
-        }
-        outdated
-    }
-
     #[inline(always)]
     fn solved(&self) -> Progress<G> {
         Progress::Solved(Solved {
             element: self.trial,
-            iterations: self.iteration,
-            residual: self.size,
+            iterations: self.iteration.count(),
+            residual: self.iteration.size(),
         })
     }
 }

@@ -9,19 +9,15 @@ mod saved;
 
 pub use chart::{Chart, Lane};
 
-use super::corrections::{Corrections, NextAction, Residual};
+use super::corrections::NextAction;
+use super::iteration::{Correction, Iteration};
 use super::principal::{Fold, Traced, trace};
 use super::scale::{self, Tangent, measure};
 use super::{
-    BOUND_ROUNDINGS, CONVERGED_ROUNDINGS, Correction, LAST_ATTEMPT, LATE, LEAST_SHARE,
-    MOST_ITERATIONS, NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT, Progress,
-    REMEMBERED, Solved, WORTH_KEEPING,
+    BOUND_ROUNDINGS, LEAST_SHARE, NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT,
+    Progress, REMEMBERED, Solved,
 };
 use crate::linalg::{Dense, DenseFactors, Reals};
-use crate::scalar::Real;
-
-/// The rounding unit of plain numbers.
-const UNIT: f64 = <f64 as Real>::EPSILON;
 
 /// A principal root to be polished, with the distance within which a polished solution must stay.
 #[derive(Clone, Debug)]
@@ -145,14 +141,8 @@ impl<C: Chart> AnySearch<C> {
             search: self,
             chart,
             whole,
-            attempt: u32::from(!foreseen),
             anchor: None,
-            size: f64::NAN,
-            previous: f64::INFINITY,
-            corrections: Corrections::none(),
-            iteration: 0,
-            found: false,
-            renewed: false,
+            iteration: Iteration::new(foreseen),
             has_moved: false,
         }
     }
@@ -199,14 +189,8 @@ pub struct AnyNewton<'a, C: Chart> {
     search: &'a mut AnySearch<C>,
     chart: &'a C,
     whole: &'a C,
-    attempt: u32,
     anchor: Option<Anchor<C::Element>>,
-    size: f64,
-    previous: f64,
-    corrections: Corrections,
-    iteration: usize,
-    found: bool,
-    renewed: bool,
+    iteration: Iteration,
     /// Whether the last call of [`correct`](Self::correct) moved the trial.
     has_moved: bool,
 }
@@ -236,7 +220,7 @@ impl<C: Chart> AnyNewton<'_, C> {
     /// Whether the sizes of the terms are unknown or too old.
     #[must_use]
     pub fn wants_scale(&self) -> bool {
-        self.search.weighed >= OLDEST_SCALE || self.attempt > 0
+        self.search.weighed >= OLDEST_SCALE || !self.iteration.is_first()
     }
 
     /// Takes the sizes of the terms at the trial: `rounding` bounds the rounding of each residual.
@@ -292,7 +276,7 @@ impl<C: Chart> AnyNewton<'_, C> {
                 if self.anchor.is_some() {
                     return Ok(Settled::Unpolished);
                 }
-                self.attempt = LAST_ATTEMPT;
+                self.iteration.restart_finally();
                 self.begin_at(self.chart.part(self.whole, &root));
                 self.anchor = Some(Anchor { root, reach });
                 Ok(Settled::Again)
@@ -308,7 +292,7 @@ impl<C: Chart> AnyNewton<'_, C> {
             return false;
         }
         self.search.forget();
-        self.attempt = 1;
+        self.iteration.restart_at_last();
         self.anchor = None;
         self.begin_at(self.chart.identity());
         true
@@ -322,24 +306,14 @@ impl<C: Chart> AnyNewton<'_, C> {
     fn begin_again(&mut self) {
         self.search.weighed = OLDEST_SCALE;
         self.search.age = OLDEST_TANGENT;
-        self.previous = f64::INFINITY;
-        self.corrections = Corrections::none();
-        self.iteration = 0;
-        self.found = false;
     }
 
     /// Takes the residual at the trial; returns whether it needs the tangent there.
     pub fn assess(&mut self, residual: &[f64]) -> bool {
-        self.size = largest_of(residual, &self.search.weights);
+        let size = largest_of(residual, &self.search.weights);
         self.search.work.residual.clear();
         self.search.work.residual.extend_from_slice(residual);
-        let is_small = self.size <= CONVERGED_ROUNDINGS * UNIT;
-        if self.iteration > 0 {
-            return self.size > WORTH_KEEPING * self.previous
-                && !(is_small && self.corrections.are_small());
-        }
-        // If the prediction is exact to rounding, the tangent of an earlier step suffices.
-        !(is_small && self.search.age < OLDEST_TANGENT)
+        self.iteration.wants_tangent::<f64>(size, self.search.age)
     }
 
     /// Takes the tangent at the trial times `unit`, the same number at every step.
@@ -362,24 +336,24 @@ impl<C: Chart> AnyNewton<'_, C> {
     /// Whether the residual is needed. At the last trial, only the remaining unknowns are.
     #[must_use]
     pub fn wants_residual(&self) -> bool {
-        !self.found
+        !self.iteration.found
     }
 
     /// Like [`correct`](Self::correct), if some unknowns are eliminated; `whole` is the trial with all unknowns.
     pub fn correct_part(&mut self, element: C::Element, from_left: bool) -> Progress<C::Element> {
-        let correction = match self.found {
+        let correction = match self.iteration.found {
             true => Correction::Last { moved: false },
             false => self.corrected(from_left),
         };
         match correction {
             Correction::Last { moved: false } => Progress::Solved(Solved {
                 element,
-                iterations: self.iteration,
-                residual: self.size,
+                iterations: self.iteration.count(),
+                residual: self.iteration.size(),
             }),
             // The eliminated unknowns of this solution are computed at the next trial.
             Correction::Last { moved: true } => {
-                self.found = true;
+                self.iteration.found = true;
                 Progress::Continue
             }
             Correction::Next => Progress::Continue,
@@ -398,7 +372,6 @@ impl<C: Chart> AnyNewton<'_, C> {
 
     fn corrected(&mut self, from_left: bool) -> Correction {
         self.has_moved = false;
-        let size = self.size;
         let residual = &self.search.work.residual;
         let right: Reals = residual.iter().map(|x| x * self.search.unit).collect();
         let Some(correction) = self.search.factors.solve(&right) else {
@@ -409,18 +382,12 @@ impl<C: Chart> AnyNewton<'_, C> {
             let terms = step.iter().zip(residual);
             f64::abs(terms.fold(0.0, |sum, (x, r)| sum + x * r))
         };
-        let seen = Residual {
-            size,
-            previous: self.previous,
-            iteration: self.iteration,
-        };
         let moved = self.relative(&step);
-        let next = self.corrections.next::<f64>(seen, moved, decrement);
-        if next == NextAction::End {
-            return Correction::Last { moved: false };
-        }
-        if next == NextAction::EndIfRounding && self.is_outdated() {
-            return Correction::Next;
+        let next = self.iteration.next::<f64>(moved, decrement);
+        match next {
+            NextAction::End => return Correction::Last { moved: false },
+            NextAction::Measure => return self.iteration.measure(&mut self.search.weighed),
+            NextAction::Correct | NextAction::CorrectAndEnd | NextAction::EndIfRounding => {}
         }
         let Work { trial, moved, .. } = &mut self.search.work;
         match from_left {
@@ -429,18 +396,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         }
         core::mem::swap(trial, moved);
         self.has_moved = true;
-        self.previous = size;
-        self.iteration += 1;
-        if next != NextAction::Correct {
-            return Correction::Last { moved: true };
-        }
-        if self.iteration == LATE {
-            self.search.weighed = OLDEST_SCALE;
-        }
-        match self.iteration == MOST_ITERATIONS || !size.is_finite() {
-            true => Correction::Impossible,
-            false => Correction::Next,
-        }
+        self.iteration.corrected(next, &mut self.search.weighed)
     }
 
     /// The largest correction of a part of the velocity, over the present length of the part.
@@ -456,42 +412,26 @@ impl<C: Chart> AnyNewton<'_, C> {
         scale::relative(&moved, &squares, &self.search.roots)
     }
 
-    /// Whether the sizes of the terms must be computed anew before rounding may end the iteration.
-    fn is_outdated(&mut self) -> bool {
-        let outdated = self.attempt == 0 && !self.renewed;
-        if outdated {
-            self.renewed = true;
-            self.search.weighed = OLDEST_SCALE;
-        }
-        outdated
-    }
-
     fn solved(&self) -> Progress<C::Element> {
         Progress::Solved(Solved {
             element: self.trial().clone(),
-            iterations: self.iteration,
-            residual: self.size,
+            iterations: self.iteration.count(),
+            residual: self.iteration.size(),
         })
     }
 
     #[cold]
     fn failed(&mut self) -> Progress<C::Element> {
-        if self.attempt == 0 {
-            self.attempt = 1;
+        if self.iteration.is_first() {
+            self.iteration.restart_at_last();
             self.search.begin_at(self.chart, 1);
             self.begin_again();
             return Progress::Continue;
         }
-        if self.attempt < LAST_ATTEMPT && self.begin_afresh() {
+        if !self.iteration.is_final() && self.begin_afresh() {
             return Progress::Continue;
         }
-        let (failure, iterations) = if !self.size.is_finite() {
-            (NewtonFailure::NotFinite, self.iteration.saturating_sub(1))
-        } else if self.iteration == MOST_ITERATIONS {
-            (NewtonFailure::NotConverged, MOST_ITERATIONS)
-        } else {
-            (NewtonFailure::SingularTangent, self.iteration)
-        };
+        let (failure, iterations) = self.iteration.failure();
         Progress::Failed(self.error(failure, iterations))
     }
 
@@ -512,7 +452,7 @@ impl<C: Chart> AnyNewton<'_, C> {
     #[cold]
     #[must_use]
     pub fn unpolished(&self) -> NewtonError {
-        self.error(NewtonFailure::NotConverged, self.iteration)
+        self.error(NewtonFailure::NotConverged, self.iteration.count())
     }
 
     /// The error if the principal root does not exist; `failure` is the cause of an earlier failure.

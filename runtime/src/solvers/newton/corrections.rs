@@ -50,6 +50,8 @@ pub(super) enum NextAction {
     /// Apply the correction and stop, if the sizes of the terms are current: corrections no longer decrease, because of
     /// rounding in an ill-conditioned problem.
     EndIfRounding,
+    /// Compute the sizes of the terms at this trial, and evaluate the equations again.
+    Measure,
     /// Stop without the correction: the error is already at rounding level, and the correction would add its own
     /// rounding.
     End,

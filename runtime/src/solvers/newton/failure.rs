@@ -2,7 +2,7 @@
 //! possible from the same state.
 //! Takes the last residual and a way to try other steps; gives the error.
 
-use super::{Fold, Found, LAST_ATTEMPT, MOST_ITERATIONS, Newton, Progress, Search};
+use super::{Fold, Found, Newton, Progress, Search};
 use crate::groups::{Coordinate, Group};
 use crate::number_format::{AtMost, Plain, Times, in_lane, instead};
 use crate::scalar::Real;
@@ -252,21 +252,15 @@ where
     #[cold]
     #[inline(never)]
     pub(super) fn failed(&mut self) -> Progress<G> {
-        if self.attempt == 0 {
-            self.attempt = 1;
+        if self.iteration.is_first() {
+            self.iteration.restart_at_last();
             self.begin_at(self.search.start());
             return Progress::Continue;
         }
-        if self.attempt < LAST_ATTEMPT && self.begin_afresh() {
+        if !self.iteration.is_final() && self.begin_afresh() {
             return Progress::Continue;
         }
-        let (failure, iterations) = if !self.size.is_finite() {
-            (NewtonFailure::NotFinite, self.iteration.saturating_sub(1))
-        } else if self.iteration == MOST_ITERATIONS {
-            (NewtonFailure::NotConverged, MOST_ITERATIONS)
-        } else {
-            (NewtonFailure::SingularTangent, self.iteration)
-        };
+        let (failure, iterations) = self.iteration.failure();
         let looked_at = G::DIMENSION.min(D);
         let residual = self.residual.as_slice().get(..looked_at).unwrap_or(&[]);
         Progress::Failed(NewtonError {
@@ -291,7 +285,7 @@ where
             tried: self.search.tries(),
             ..NewtonError::of(
                 NewtonFailure::NotConverged,
-                self.iteration,
+                self.iteration.count(),
                 residual,
                 self.search.weights.as_slice(),
                 &G::coordinate,

@@ -96,7 +96,7 @@ where
     /// Whether the residual is needed. At the last trial, only the remaining unknowns are.
     #[inline(always)]
     pub fn wants_residual(&self) -> bool {
-        !self.found
+        !self.iteration.found
     }
 
     /// Like [`correct`](Newton::correct), if some unknowns are eliminated; `whole` is the trial with all unknowns.
@@ -129,19 +129,19 @@ where
 
     #[inline(always)]
     fn completed<const FROM_LEFT: bool>(&mut self, element: W) -> Progress<W> {
-        let correction = match self.found {
+        let correction = match self.iteration.found {
             true => Correction::Last { moved: false },
             false => self.corrected::<FROM_LEFT>(),
         };
         match correction {
             Correction::Last { moved: false } => Progress::Solved(Solved {
                 element,
-                iterations: self.iteration,
-                residual: self.size,
+                iterations: self.iteration.count(),
+                residual: self.iteration.size(),
             }),
             // The eliminated unknowns of this solution are computed at the next trial.
             Correction::Last { moved: true } => {
-                self.found = true;
+                self.iteration.found = true;
                 Progress::Continue
             }
             Correction::Next => Progress::Continue,
