@@ -9,9 +9,8 @@ use crate::setup::Numbers;
 use crate::stated::{Layout, Side};
 use crate::value::Value;
 
-/// Roundings of an increment, which a solver finds, as of the terms of its equation: it is the quotient of a sum of
-/// products, and the forces of both nodes are sums of products with it. In a long step of a stiff spring these forces
-/// cancel, and the rounding of the increment is the largest in the equation.
+/// Roundings of an increment. A solver finds it, so it has the roundings of the terms of an equation. In a long step of
+/// a stiff spring, forces of both nodes cancel, and the rounding of the increment is the largest in the equation.
 pub const OF_AN_INCREMENT: f64 = LEFT_BY_SOLVERS;
 
 /// A number of variables.

@@ -26,8 +26,8 @@ fn worst(judge: &Judge, before: &[f64], after: &[f64]) -> Part {
     parts.into_iter().max_by(larger).expect("equations")
 }
 
-/// The residual that an equation may have, relative to its largest term, grows with the increment only: in long steps
-/// of a stiff spring, the midpoint is small, and the two ends are not.
+/// In long steps of a stiff spring, the midpoint is much smaller than both ends. The rounding of the ends is then larger
+/// than the rounding of the force.
 #[test]
 fn long_steps_of_a_stiff_spring_hold() {
     let text = "model Spring {
@@ -153,7 +153,7 @@ fn momenta_of_linear_maps_with_entries_of_every_size_hold() {
                 sizes(&transposed(&moved)),
                 sizes(&transposed(&inverse(&moved))),
             );
-            // The rounding of an inverse is that of the product with the matrix and the inverse again.
+            // The rounding of an inverse is a product with the matrix and the inverse again.
             let right = product(&right, &product(&left, &right));
             let stored: Square = std::array::from_fn(|i| {
                 std::array::from_fn(|j| (q[i][j].abs() + moved[i][j].abs()) * inertia[4 * j] / h)
