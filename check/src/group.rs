@@ -2,9 +2,9 @@
 //! momenta.
 
 use crate::matrix::Matrix;
-use crate::number::Number;
+use crate::number::{Number, UNIT, larger};
 use crate::stated::Side;
-use crate::varied::small;
+use crate::varied::{OF_AN_INCREMENT, small};
 
 /// A group of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,6 +107,24 @@ impl Group {
         };
         (numbers.len() == count)
             .then(|| Matrix::from_entries(n, n, |i, j| entry(i, j).unwrap_or_default()))
+    }
+
+    /// Adds the rounding of the increment from the numbers `before` to the positions of motions and to linear maps. The
+    /// equations of an increment couple its entries, so each has the error of the largest.
+    pub fn add_rounding_of_increment(self, element: &mut Matrix, before: &[f64], numbers: &[f64]) {
+        let n = self.rows();
+        let is_open = |k: usize| match self {
+            Self::Linear(_) => true,
+            Self::Motion(m) => k / n < m && k % n == m,
+            Self::Rotation(_) | Self::Quaternion => false,
+        };
+        let both = before.iter().zip(numbers).enumerate();
+        let open = both.filter(|(k, _)| is_open(*k));
+        let most = open.fold(0.0, |most, (_, (a, b))| larger(most, (a - b).abs()));
+        let entries = element.entries.iter_mut().enumerate();
+        for (_, x) in entries.filter(|(k, _)| is_open(*k)) {
+            x.error += OF_AN_INCREMENT * UNIT * most;
+        }
     }
 
     /// The defect of a rotation, whose columns should be orthonormal, or of a unit quaternion; 0 for other groups.

@@ -1,6 +1,6 @@
 //! Judges one step. Takes the numbers of two nodes; gives the residual of every equation and the bound on its rounding.
 
-use crate::group::MOST_OF_A_DEFECT;
+use crate::group::{Group, MOST_OF_A_DEFECT};
 use crate::holds;
 use crate::lagrangian::derivatives;
 use crate::number::{Number, UNIT, larger};
@@ -9,11 +9,12 @@ use crate::setup::Setup;
 use crate::sites::{Moving, moving, varied};
 use crate::stated::{Role, Side, Stated};
 use crate::statements;
+use crate::two_frames::{Rounding, TwoFrames};
 use clebsch_core::syntax::ast::Model;
 use std::borrow::Cow;
 
 /// Roundings of the terms of an equation that a solver may leave, in addition to the rounding of the evaluation.
-const LEFT_BY_SOLVERS: f64 = 8.0;
+pub const LEFT_BY_SOLVERS: f64 = 8.0;
 
 /// Like `LEFT_BY_SOLVERS`, for constraints. A search for multipliers ends when corrections are at most 32 double
 /// roundings of the terms.
@@ -223,9 +224,10 @@ impl Judge {
                 for (i, p) in momentum.numbers.iter().enumerate() {
                     let of = first + node * m.components + i;
                     let slope = slopes.get(of).copied().unwrap_or_default();
+                    let terms = p.abs() + slope.terms;
+                    let rounded = momentum.rounding.sizes[i] + slope.terms;
                     let brought = if node == 0 { -slope.value } else { slope.value };
                     let residual = p - brought;
-                    let terms = p.abs() + slope.terms;
                     variables.push(of);
                     parts.push(Part {
                         what: format!("momentum of {}", m.name),
@@ -234,9 +236,9 @@ impl Judge {
                         node,
                         residual,
                         bound: slope.error
-                            + momentum.error
+                            + momentum.rounding.errors[i]
                             + UNIT * residual.abs()
-                            + LEFT_BY_SOLVERS * UNIT * terms,
+                            + LEFT_BY_SOLVERS * UNIT * rounded,
                         terms,
                         // At an equilibrium, forces and reactions may cancel exactly.
                         is_exact: is_short(*p),
@@ -299,13 +301,24 @@ impl Judge {
             Role::Element(..) => 4.0 * UNIT * size,
             _ => UNIT * size,
         };
-        Ok(Momentum { numbers, error })
+        let rounding = match &q.role {
+            Role::Element(Group::Linear(n), side) => {
+                let element = self.setup.observed(m.name, m.site).ok_or_else(missing)?;
+                let frames = TwoFrames::at(*n, element.of(node), *side).ok_or_else(missing)?;
+                frames.rounding(&numbers).ok_or_else(missing)?
+            }
+            _ => Rounding {
+                errors: vec![error; numbers.len()],
+                sizes: numbers.iter().map(|p| p.abs()).collect(),
+            },
+        };
+        Ok(Momentum { numbers, rounding })
     }
 }
 
 struct Momentum {
     numbers: Vec<f64>,
-    error: f64,
+    rounding: Rounding,
 }
 
 /// Whether a number has so few bits that sums and products of such numbers are exact.

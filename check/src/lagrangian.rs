@@ -34,7 +34,7 @@ pub fn derivatives(
 ) -> Result<Vec<Derivative>, String> {
     let count: usize = moving.iter().map(|m| 2 * m.components).sum();
     let mut out = vec![Derivative::default(); count];
-    let scene = Scene::new(stated, setup, nodes, varied);
+    let scene = Scene::new(stated, setup, nodes, varied).of_a_step();
     let by = match &stated.scale {
         None => None,
         Some(scale) => {
@@ -57,7 +57,9 @@ pub fn derivatives(
                 0 => 0,
                 _ => setup.counts.get(label).copied().unwrap_or(0),
             };
-            let scene = Scene::new(stated, setup, nodes, varied).with_end(&end.params, site);
+            let scene = Scene::new(stated, setup, nodes, varied)
+                .of_a_step()
+                .with_end(&end.params, site);
             let here = Here {
                 at_last: last == 1,
                 ..Here::at(i64::try_from(site).unwrap_or(i64::MAX))

@@ -207,13 +207,18 @@ impl Legendre {
         let by = varied(moving);
         let scene = Scene::new(&self.stated, &self.setup, [node, node], &by);
         for held in crate::holds::gradients(&scene, &self.stated, &self.setup, moving)? {
-            let (mut rate, mut size) = (0.0, 0.0);
+            // The terms of a rate may all be rounding, for example at the lowest point of a pendulum.
+            let (mut rate, mut gradient) = (0.0, 0.0_f64);
+            let mut held_places = BTreeSet::new();
             for (of, slope) in held.slopes {
-                let own = rates.get(&of).copied().unwrap_or(0.0);
-                rate += slope * own;
-                size += (slope * own).abs();
+                rate += slope * rates.get(&of).copied().unwrap_or(0.0);
+                gradient = gradient.hypot(slope);
+                let own = moving.iter().map(places).find(|own| own.contains(&of));
+                held_places.extend(own.into_iter().flatten());
             }
-            if rate.abs() > TANGENT * size {
+            let held_rates = held_places.iter().filter_map(|of| rates.get(of));
+            let speed = held_rates.fold(0.0_f64, |all, x| all.hypot(*x));
+            if rate.abs() > TANGENT * gradient * speed {
                 return Err(NoMomentum::Across(held.name, held.site, rate));
             }
         }
@@ -248,7 +253,7 @@ impl Legendre {
     }
 }
 
-/// The largest rate of change of a constraint, relative to its terms, that counts as zero.
+/// The largest rate of change of a constraint, relative to its gradient times the velocity, that counts as zero.
 const TANGENT: f64 = 1e-8;
 
 /// The mean of a forward and a backward step, in which odd powers of the step cancel.
@@ -266,6 +271,12 @@ fn mean((ahead, behind): (Block, Block)) -> Block {
 
 fn most<'n>(all: impl IntoIterator<Item = &'n f64>) -> f64 {
     all.into_iter().fold(0.0, |a, x| f64::max(a, x.abs()))
+}
+
+/// The variables of a configuration at the first node.
+fn places(m: &Moving<'_>) -> std::ops::Range<usize> {
+    let first = usize::try_from(m.first).unwrap_or(usize::MAX);
+    first..first.saturating_add(m.components)
 }
 
 /// The name of a configuration with its site.

@@ -36,6 +36,7 @@ mod small_step_limit;
 mod stated;
 mod statements;
 mod terms;
+mod two_frames;
 mod undefined;
 mod value;
 mod varied;

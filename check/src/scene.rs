@@ -7,7 +7,7 @@ use crate::expression::Expression;
 use crate::group::{Group, LEFT};
 use crate::matrix::Matrix;
 use crate::number::{Number, UNIT};
-use crate::setup::Setup;
+use crate::setup::{Numbers, Setup};
 use crate::sites::range;
 use crate::stated::{Quantity, Role, Side, Sites, Stated};
 use crate::terms::Term;
@@ -39,6 +39,8 @@ pub struct Scene<'a> {
     local: Option<(&'a [String], usize)>,
     /// The range of sums over sites, while a constraint on sums is evaluated.
     sums: RefCell<Option<Option<Vec<i64>>>>,
+    /// Whether configurations at the second node have the rounding of the increments that lead to them.
+    is_of_a_step: bool,
     known: RefCell<HashMap<Key<'a>, Value>>,
 }
 
@@ -58,8 +60,16 @@ impl<'a> Scene<'a> {
             varied,
             local: None,
             sums: RefCell::new(None),
+            is_of_a_step: false,
             known: RefCell::new(HashMap::new()),
         }
+    }
+
+    /// With the rounding of the increments in the configurations at the second node.
+    #[must_use]
+    pub fn of_a_step(mut self) -> Self {
+        self.is_of_a_step = true;
+        self
     }
 
     /// With the parameters of an end condition.
@@ -181,9 +191,12 @@ impl<'a> Scene<'a> {
             }
             (Role::Element(group, side), Some(own)) => {
                 let numbers = own.of(self.nodes[node]);
-                let element = group
+                let mut element = group
                     .element(*side, numbers, UNIT)
                     .ok_or_else(|| misread(&q.name))?;
+                if let Some(before) = self.before(own, node) {
+                    group.add_rounding_of_increment(&mut element, before, numbers);
+                }
                 let first = self.varied.get(&(q.name.as_str(), site)).filter(|_| moves);
                 Ok(Value::Known(match first {
                     Some(first) => {
@@ -196,7 +209,8 @@ impl<'a> Scene<'a> {
                 let first = self.varied.get(&(q.name.as_str(), site)).filter(|_| moves);
                 let numbers = own.of(self.nodes[node]);
                 let first = first.map(|f| f + small(numbers.len() * node));
-                field(*layout, own, numbers, first).ok_or_else(|| misread(&q.name))
+                let before = self.before(own, node);
+                field(*layout, own, (before, numbers), first).ok_or_else(|| misread(&q.name))
             }
             (Role::Advected, Some(own)) => match (here.carried, here.time, &q.update) {
                 (Some(_), 0, _) | (None, _, None) => {
@@ -230,6 +244,11 @@ impl<'a> Scene<'a> {
                 None => self.parameter(&q.name, site, q.is_quaternion),
             },
         }
+    }
+
+    /// The numbers from which an increment leads to a node.
+    fn before(&self, own: &Numbers, node: usize) -> Option<&'a [f64]> {
+        (self.is_of_a_step && node == 1).then(|| own.of(self.nodes[0]))
     }
 
     /// Whether an update contains a velocity.

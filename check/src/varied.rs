@@ -2,11 +2,16 @@
 //! quantities.
 
 use crate::group::{Entries, Group, LEFT};
+use crate::judge::LEFT_BY_SOLVERS;
 use crate::matrix::Matrix;
 use crate::number::{Number, UNIT};
 use crate::setup::Numbers;
 use crate::stated::{Layout, Side};
 use crate::value::Value;
+
+/// Roundings of an increment. A solver finds it, so it has the roundings of the terms of an equation. In a long step of
+/// a stiff spring, forces of both nodes cancel, and the rounding of the increment is the largest in the equation.
+pub const OF_AN_INCREMENT: f64 = LEFT_BY_SOLVERS;
 
 /// A number of variables.
 pub fn small(n: usize) -> u32 {
@@ -61,11 +66,19 @@ fn moved(r: &Matrix, direction: &Entries, side: Side) -> Matrix {
     out
 }
 
-/// A field from its numbers, each of which is a variable.
-pub fn field(layout: Layout, own: &Numbers, numbers: &[f64], first: Option<u32>) -> Option<Value> {
+/// A field from its numbers, each of which is a variable. If an increment leads to them from the numbers `before`, they
+/// have the rounding of the increment as well.
+pub fn field(
+    layout: Layout,
+    own: &Numbers,
+    (before, numbers): (Option<&[f64]>, &[f64]),
+    first: Option<u32>,
+) -> Option<Value> {
     let entry = |k: usize, sign: f64| {
         let x = numbers.get(k).copied().unwrap_or(f64::NAN);
-        let n = Number::within(sign * x, UNIT * x.abs());
+        let from = before.map_or(x, |all| all.get(k).copied().unwrap_or(f64::NAN));
+        let error = UNIT * x.abs() + OF_AN_INCREMENT * UNIT * (x - from).abs();
+        let n = Number::within(sign * x, error);
         match first {
             Some(first) => n.with_slope(first + small(k), sign, 0.0),
             None => n,

@@ -1,10 +1,13 @@
 //! The initial motion of a case without momenta: velocities, or rest. Takes the velocities by the fields of a
 //! card; computes the momenta from the action and stores them in the case.
 
+mod extreme;
+
 use super::keys::at_site;
 use super::velocity::{Way, momentum_of, suffix};
 use crate::models::fields::is_momentum;
 use crate::models::gallery::Case;
+use crate::words::number::short;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_check::{
     Legendre, NoMomentum, Setup, Undefined, Velocities, Velocity, onto_constraints,
@@ -84,11 +87,19 @@ impl Motion {
             }
             // A configuration at rest has momentum zero, unless the action has terms linear in velocities.
             Err(_) if self.given.is_empty() => Ok(()),
-            Err(NoMomentum::Lost(name)) => {
-                let zero = self.zero(card, choice, case, &name);
-                Err(self.wrong(card, NoMomentum::Lost(name), zero))
+            Err(why) => {
+                let is_lost = matches!(why, NoMomentum::Lost(_) | NoMomentum::NoLimit);
+                let extreme = is_lost.then(|| self.extreme(card, choice, case)).flatten();
+                let zero = match &why {
+                    NoMomentum::Lost(name) => self.zero(card, choice, case, name),
+                    _ => None,
+                };
+                let mut wrong = self.wrong(card, why, zero);
+                if let Some(extreme) = extreme {
+                    wrong.why = extreme;
+                }
+                Err(wrong)
             }
-            Err(why) => Err(self.wrong(card, why, None)),
         }
     }
 
@@ -187,7 +198,8 @@ impl Motion {
                 let site = site.map_or_else(String::new, |s| format!(" at site {s}"));
                 format!(
                     "the velocities violate the constraint `{hold}`{site}: its left side minus its right side changes at the \
-                     rate {rate:.6}. Give velocities for which this rate is zero"
+                     rate {}. Give velocities for which this rate is zero",
+                    short(rate)
                 )
             }
             NoMomentum::Lost(name) => match zero {

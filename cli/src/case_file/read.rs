@@ -198,6 +198,9 @@ fn step_size(file: &File<'_>, scope: &Scope, value: &Spanned<DeValue<'_>>) -> Re
     }
 }
 
+/// The smallest number of steps that cannot be counted: 2^64.
+const TOO_MANY: f64 = 18_446_744_073_709_551_616.0;
+
 fn steps(file: &File<'_>, scope: &Scope, value: &Spanned<DeValue<'_>>) -> Result<u64, Failure> {
     let wrong = |message: &str| file.wrong(Some(&value.span()), &format!("steps: {message}"));
     let (text, steps) = match value.get_ref() {
@@ -220,6 +223,15 @@ fn steps(file: &File<'_>, scope: &Scope, value: &Spanned<DeValue<'_>>) -> Result
     };
     match steps {
         Some(steps) if steps > 0 => Ok(steps),
+        None if text
+            .parse()
+            .is_ok_and(|x: f64| x.is_finite() && x >= TOO_MANY) =>
+        {
+            Err(wrong(&format!(
+                "{text} is too large; give at most {}",
+                u64::MAX
+            )))
+        }
         _ => Err(wrong(&format!(
             "must be a whole number, at least 1, found {text}"
         ))),

@@ -58,7 +58,7 @@ pub(crate) fn resolved<'a>(
     streams: &mut Streams<'_>,
 ) -> Result<Resolved<'a>, Failure> {
     let (named, case) = resolve_model(gallery, matches)?;
-    let by_name = overrides::by_name(matches);
+    let by_name = overrides::by_name(matches)?;
     match named {
         NamedModel::Compiled(entry) => Ok(Resolved {
             entry: Cow::Borrowed(entry),

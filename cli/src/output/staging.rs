@@ -225,12 +225,12 @@ impl Staging {
         })
     }
 
-    /// As [`Staging::commit`], for results of a run that stopped early. The results that `--force` was to
-    /// replace are complete, so they stay. Gives the path of the new results.
+    /// As [`Staging::commit`], for results of a run that the user interrupted. The results that `--force` was to replace
+    /// stay. Gives the path of the new results.
     ///
     /// # Errors
     /// As [`Staging::commit`].
-    pub fn commit_stopped(mut self) -> Result<PrintableName, Failure> {
+    pub fn commit_interrupted(mut self) -> Result<PrintableName, Failure> {
         if self.standing.is_none() {
             let target = shown(&self.target);
             return self.commit().map(|()| target);

@@ -1,6 +1,7 @@
 //! Options that replace numbers of a case: `--set`, `--h`, `--steps` and `--until`.
 //! Takes the matches of a command and a case; changes the case.
 
+mod brackets;
 pub(crate) mod quantity;
 pub(crate) mod substitute;
 
@@ -77,12 +78,27 @@ pub(crate) fn set(matches: &ArgMatches) -> impl Iterator<Item = &String> {
 }
 
 /// The values of `--set` and `--h` by name, as written.
-pub(crate) fn by_name(matches: &ArgMatches) -> Vec<(String, String)> {
-    let sets = set(matches).filter_map(|text| text.split_once('='));
-    let sets = sets.map(|(name, value)| (name.trim().to_owned(), value.trim().to_owned()));
+///
+/// # Errors
+/// Usage: a bracket of a value lacks its partner. The values are inserted into the text of the case, which is right.
+pub(crate) fn by_name(matches: &ArgMatches) -> Result<Vec<(String, String)>, Failure> {
+    let mut all = Vec::new();
+    for text in set(matches) {
+        let Some((name, value)) = text.split_once('=') else {
+            continue;
+        };
+        if let Some(why) = brackets::fault(value.trim()) {
+            return Err(Failure::Usage(format!(
+                "--set {}: {}",
+                shown(text),
+                shown(&why)
+            )));
+        }
+        all.push((name.trim().to_owned(), value.trim().to_owned()));
+    }
     let h = matches.try_get_one::<f64>("h").ok().flatten();
-    sets.chain(h.map(|h| ("h".to_owned(), format!("{h:?}"))))
-        .collect()
+    all.extend(h.map(|h| ("h".to_owned(), format!("{h:?}"))));
+    Ok(all)
 }
 
 /// Whether a value of `--set` is a list, a table, or the inertia of a body. Such a value is read like a value

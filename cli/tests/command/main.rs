@@ -13,6 +13,7 @@ mod consistent_mass;
 mod elastic;
 mod exit_codes;
 mod expressions;
+mod faults;
 mod figures;
 mod fluid_starts;
 mod fluids;

@@ -101,19 +101,16 @@ fn it_says_so_without_files_and_as_json() {
 }
 
 #[test]
-fn a_run_that_stops_keeps_the_earlier_results() {
+fn a_run_that_stops_replaces_the_earlier_results() {
     let folder = Folder::new("stopped_force");
     let file = failing(&folder);
     let out = folder.path("out");
     folder.rotor("run harmonic-rotor --out @out").ended(0);
-    let before = read(&out, "run.json");
     let done = run(&file, &["--out", &out, "--force"]).exits(1);
-    assert_eq!(read(&out, "run.json"), before);
-    // Its own results are next to them.
-    assert_eq!(folder.names(), ["failing.toml", "out", "out-2"]);
-    let kept = folder.path("out-2");
-    done.prints(format!("written to {kept}: "));
-    let manifest = json(&read(&kept, "run.json"));
+    // Its results have the name that the user gave.
+    assert_eq!(folder.names(), ["failing.toml", "out"]);
+    done.prints(format!("written to {out}: "));
+    let manifest = json(&read(&out, "run.json"));
     assert_eq!(manifest["results"]["stopped"]["node"], node_of(&done.err));
 }
 

@@ -270,7 +270,7 @@ fn velocities_that_leave_a_constraint_are_refused() {
     let folder = Folder::new("velocities-across");
     let done = run(&folder, model, &case("[0.4, 0.1, 0]"), "").exits(2);
     let said = "case.toml:10: initial.velocity_x: the velocities violate the constraint `λ`: its left side minus its right \
-        side changes at the rate 0.480000";
+        side changes at the rate 0.48";
     done.says(said);
 }
 

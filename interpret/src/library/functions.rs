@@ -86,3 +86,18 @@ fn of_invariants<T: Real>(method: &str, arguments: usize) -> Option<Native<T>> {
     };
     Some(found)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::native;
+    use clebsch_core::syntax::library::FUNCTIONS;
+
+    /// A model may call these functions, so the interpreter has to know them.
+    #[test]
+    fn every_function_of_the_library_runs() {
+        for (name, arguments) in FUNCTIONS {
+            let path = format!("clebsch::functions::{name}::value");
+            assert!(native::<f64>(&path, arguments.len()).is_some(), "{path}");
+        }
+    }
+}

@@ -291,6 +291,22 @@ fn snippet(source: &str, file: &str, place: Place) -> String {
     )
 }
 
+/// The indefinite article before a size in words: a digit, or letters. A single letter is read by its name, as in `an n
+/// x n matrix`.
+pub fn article(size: &str) -> &'static str {
+    let word = size.split(|c: char| !c.is_alphanumeric()).next();
+    let word = word.unwrap_or_default();
+    let first = word.chars().next().map(|c| c.to_ascii_lowercase());
+    let is_vowel = match first {
+        Some('8') => true,
+        Some('1') => matches!(word, "11" | "18"),
+        Some(c) if word.chars().nth(1).is_none() => "aefhilmnorsx".contains(c),
+        Some(c) => "aeio".contains(c),
+        None => false,
+    };
+    if is_vowel { "an" } else { "a" }
+}
+
 /// The candidate closest to a misspelt name, if it is close: the same name in another case or in ASCII (`Gamma` for
 /// `Γ`), or a name with a few letters changed, but not all letters.
 pub fn closest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {

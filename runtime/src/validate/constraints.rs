@@ -31,7 +31,7 @@ pub fn on_constraint<T: Real>(
             size,
             scale,
         },
-        remedy: "give a configuration that satisfies it to ten digits, or adjust the parameters",
+        remedy: "give a configuration that satisfies it to ten digits, in a case to eight, or adjust the parameters",
     })
 }
 

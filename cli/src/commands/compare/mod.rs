@@ -72,10 +72,7 @@ pub fn compare(
     let (mut files, mut place): (&[&str], _) = (&[], None);
     if let (Some(staging), Some(target)) = (staging, target) {
         write(&staging, card, &plan, &done, &object)?;
-        place = Some(match stopped {
-            None => staging.commit().map(|()| shown(target))?,
-            Some(_) => staging.commit_stopped()?,
-        });
+        place = Some(staging.commit().map(|()| shown(target))?);
         files = &FILES;
     }
     if as_json {

@@ -218,14 +218,14 @@ pub fn run(
             };
             *files = files::write(&staging, &run, &rows, opening, drawn)?;
             match (&end, &run.stopped) {
-                (End::Interrupted(_), _) => staging.commit_stopped(),
+                (End::Interrupted(_), _) => staging.commit_interrupted(),
                 (_, None) => staging.commit().map(|()| {
                     output::remove_what_resumes(target);
                     shown(target)
                 }),
                 (_, Some(_)) => {
                     output::remove_what_resumes(staging.folder());
-                    staging.commit_stopped()
+                    staging.commit().map(|()| shown(target))
                 }
             }
         };
@@ -265,7 +265,9 @@ pub fn run(
         }
         writeln!(out, "{object}")?;
     } else if told != Verbosity::Nothing {
-        write!(out, "\n{}", table(&outcomes, width))?;
+        if !outcomes.is_empty() {
+            write!(out, "\n{}", table(&outcomes, width))?;
+        }
         let mut lines = summary::below_the_table(&run, summary.steps);
         lines.extend(limit.summary_line(plan.case.h));
         if let Some(place) = place {

@@ -3,7 +3,7 @@
 use super::declare::DeclaredGroup;
 use super::spec::{Configuration, Spec};
 use crate::algebra::Rational;
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Place, article};
 use crate::expr::shape::Shape;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{Letter, Shift};
@@ -17,7 +17,8 @@ pub fn shape_text(symbols: &Symbols, shape: Shape) -> String {
     } else if shape.is_vector() {
         format!("a vector of length {}", dim(shape.rows))
     } else {
-        format!("a {} x {} matrix", dim(shape.rows), dim(shape.cols))
+        let (rows, cols) = (dim(shape.rows), dim(shape.cols));
+        format!("{} {rows} x {cols} matrix", article(&rows))
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::{Element, ElementStorage, Record, Sizes, entries};
 use crate::check::spec::Side;
+use crate::diagnostic::article;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
@@ -114,7 +115,10 @@ impl Record for Additive {
         match (self.0.is_scalar(), self.0.is_vector()) {
             (true, _) => "a number".to_owned(),
             (false, true) => format!("a vector of {} components", size(self.0.rows)),
-            (false, false) => format!("a {} x {} matrix", size(self.0.rows), size(self.0.cols)),
+            (false, false) => {
+                let (rows, cols) = (size(self.0.rows), size(self.0.cols));
+                format!("{} {rows} x {cols} matrix", article(&rows))
+            }
         }
     }
 

@@ -12,6 +12,13 @@ pub(super) fn label(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     let index = c.name("the name of the label")?;
     c.word("in").map_err(|e| e.help(remedy))?;
     let place = c.place();
+    if let Some(range) = reversed(c) {
+        return Err(Diagnostic::new(
+            place.to(c.last_place()),
+            format!("the range {range} runs backwards, and a label counts up from 0"),
+        )
+        .help(remedy));
+    }
     let zero = c.whole_number().map_err(|e| e.help(remedy))?;
     if zero != 0 {
         return Err(
@@ -35,6 +42,23 @@ pub(super) fn label(c: &mut Cursor) -> Result<Statement, Diagnostic> {
         false => None,
     };
     Ok(Statement::Label { index, count, step })
+}
+
+/// Reads a range that ends before it starts, such as `5..0` or `N..0`. Reads nothing otherwise.
+fn reversed(c: &mut Cursor) -> Option<String> {
+    let number = |text: &str| text.parse::<u64>().ok();
+    let dots = [1, 2].map(|k| c.peek_at(k).map(Token::text));
+    let (start, end) = (c.peek()?.text(), c.peek_at(3)?.text());
+    let is_range = dots.iter().all(|dot| dot.as_deref() == Some("."));
+    let is_reversed = match (number(&start), number(&end)) {
+        (Some(start), Some(end)) => start > end,
+        (None, Some(end)) => end == 0,
+        _ => false,
+    };
+    (is_range && is_reversed).then(|| {
+        (0..4).for_each(|_| c.advance());
+        format!("{start}..{end}")
+    })
 }
 
 /// `at nodes`, `at segments`, `at a`, if it comes next.

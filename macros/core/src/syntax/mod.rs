@@ -9,6 +9,7 @@ mod delimiters;
 mod expression;
 pub mod formula;
 mod label;
+pub mod library;
 mod mesh;
 mod parts;
 mod statement;

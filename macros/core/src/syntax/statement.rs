@@ -7,11 +7,12 @@ use super::circle;
 use super::expression::expression;
 use super::formula;
 use super::label;
+use super::library;
 use super::mesh;
 use super::token::{Cursor, SIZES, Token};
 use super::typeset::typeset;
 use super::unknown;
-use crate::diagnostic::{Diagnostic, Errors, closest};
+use crate::diagnostic::{Diagnostic, Errors, Place, closest};
 
 /// Parses a whole model.
 pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
@@ -185,19 +186,41 @@ fn statement(c: &mut Cursor) -> Result<Statement, Diagnostic> {
 
 fn dim(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     let name = c.name("the name of a dimension")?;
-    c.word("in")?;
+    let example = "write for example `dim n in 3..=8;`";
+    c.word("in").map_err(|e| e.help(example))?;
     let start = c.place();
-    let from = c.whole_number()?;
-    c.punct('.')?;
-    c.punct('.')?;
-    c.punct('=')?;
-    let to = c.whole_number()?;
-    if from < 2 || to > 64 || from > to {
+    let from = c.whole_number().map_err(|e| e.help(example))?;
+    for _ in 0..2 {
+        c.punct('.').map_err(|e| e.help(example))?;
+    }
+    let closed = c.take_punct('=');
+    let to = c.whole_number().map_err(|e| e.help(example))?;
+    let written = start.to(c.last_place());
+    let dots = if closed { "..=" } else { ".." };
+    if from > to {
+        let message = format!("the range {from}{dots}{to} runs backwards: it contains no size");
+        return Err(
+            Diagnostic::new(written, message).help(match to < 2 || from > 64 {
+                true => example.to_owned(),
+                false => format!(
+                    "write the smaller size first: `dim {} in {to}..={from};`",
+                    name.text
+                ),
+            }),
+        );
+    }
+    if !closed {
+        let message =
+            "the range of a dimension includes its last size, so it is written with `..=`";
+        return Err(Diagnostic::new(written, message)
+            .help(format!("write `dim {} in {from}..={to};`", name.text)));
+    }
+    if from < 2 || to > 64 {
         return Err(Diagnostic::new(
-            start.to(c.last_place()),
+            written,
             format!("a dimension ranges between 2 and 64, not {from}..={to}"),
         )
-        .help("write for example `dim n in 3..=8;`"));
+        .help(example));
     }
     Ok(Statement::Dim { name, from, to })
 }
@@ -301,7 +324,14 @@ fn assume(c: &mut Cursor) -> Result<Statement, Diagnostic> {
         } else {
             Comparison::Less
         }
-    } else if c.take_punct('=') {
+    } else if c.is_punct('=') {
+        let start = c.place();
+        c.advance();
+        if let Some(sign) = ['>', '<'].into_iter().find(|sign| c.take_punct(*sign)) {
+            let place = start.to(c.last_place());
+            let message = format!("`={sign}` is not a comparison: the operator is `{sign}=`");
+            return Err(Diagnostic::new(place, message).help(format!("write `{sign}=`")));
+        }
         c.take_punct('=');
         Comparison::Equal
     } else {
@@ -461,7 +491,8 @@ fn given(c: &mut Cursor) -> Result<Statement, Diagnostic> {
                      or write `case`, and the case gives the expression",
                 )
             })?;
-            path_goes_on(c, &mut path)?;
+            let last = path_goes_on(c, &mut path)?;
+            library::known(&path, last, &arguments, &value)?;
             path
         }
     };
@@ -476,15 +507,17 @@ fn given(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     })
 }
 
-/// Reads the rest of a Rust path, after its first name.
-pub(super) fn path_goes_on(c: &mut Cursor, path: &mut Name) -> Result<(), Diagnostic> {
+/// Reads the rest of a Rust path, after its first name. Gives the place of the last name.
+pub(super) fn path_goes_on(c: &mut Cursor, path: &mut Name) -> Result<Place, Diagnostic> {
+    let mut last = path.place;
     while c.take_punct(':') {
         c.punct(':')?;
         let next = c.name("the next part of the path")?;
         path.text = format!("{}::{}", path.text, next.text);
         path.place = path.place.to(next.place);
+        last = next.place;
     }
-    Ok(())
+    Ok(last)
 }
 
 fn binding(c: &mut Cursor) -> Result<Statement, Diagnostic> {
