@@ -21,12 +21,11 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             }
             _ => None,
         },
-        ("with_turns", 2) => |a, _| match a {
-            [Value::Band(band), turns] => {
-                let turns = super::line::flags(turns)?;
-                Some(Value::Band(Box::new(
-                    band.as_ref().clone().with_turns(&turns),
-                )))
+        ("with_unknowns", 2) => |a, _| match a {
+            [Value::Band(band), unknowns] => {
+                let unknowns = super::line::unknowns(unknowns)?;
+                let band = band.as_ref().clone();
+                Some(Value::Band(Box::new(band.with_unknowns(&unknowns))))
             }
             _ => None,
         },

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::sites::Column;
 use crate::value::Value;
 use clebsch::linalg::Dense;
-use clebsch::line::{self, Attitude, LineError, Place, Stamp};
+use clebsch::line::{self, Attitude, LineError, Place, Stamp, Unknown};
 use clebsch::{Real, StepCause};
 use nalgebra::Matrix4;
 use std::cell::RefCell;
@@ -38,6 +38,8 @@ macro_rules! counts {
 
 pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
     Some(match (name, arguments) {
+        ("line::field", 1) => |a, _| unknown(line::field(a.first()?.count()?), false),
+        ("line::rotation", 0) => |_, _| unknown(line::rotation(), true),
         ("line::count_of", 3) => |a, _| match a {
             [Value::Text(name), found, least] => {
                 line_result(line::count_of(name, found.count()?, least.count()?))
@@ -307,27 +309,37 @@ fn shorter<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     })
 }
 
-/// A list of truth values.
-pub(super) fn flags<T: Real>(list: &Value<T>) -> Option<Vec<bool>> {
+/// A part of a site's velocity, as its number of components and whether it is a rotation.
+fn unknown<T: Real>(unknown: Unknown, turns: bool) -> Option<Value<T>> {
+    let count = i64::try_from(unknown.components()).ok()?;
+    Some(Value::List(vec![Value::Int(count), Value::Bool(turns)]))
+}
+
+/// The parts of a site's velocity.
+pub(super) fn unknowns<T: Real>(list: &Value<T>) -> Option<Vec<Unknown>> {
     let Value::List(all) = list else {
         return None;
     };
     let each = all.iter().map(|value| match value {
-        Value::Bool(b) => Some(*b),
+        Value::List(both) => match both.as_slice() {
+            [_, Value::Bool(true)] => Some(line::rotation()),
+            [count, Value::Bool(false)] => Some(line::field(count.count()?)),
+            _ => None,
+        },
         _ => None,
     });
     each.collect()
 }
 
-/// `line::root(&known, [turns, ...], |velocity| ..., |velocity| (..., ...))`, of which the first gives part of the second.
+/// `line::root(&known, [line::field(1), ...], |velocity| ..., |velocity| (..., ...))`, of which the first gives part of the second.
 fn root<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
-    let [known, turns, _, closure] = a else {
+    let [known, parts, _, closure] = a else {
         return Err(missing());
     };
     let known = unfit(known.run(places)?.dense())?;
-    let turns = unfit(flags(&turns.run(places)?))?;
+    let parts = unfit(unknowns(&parts.run(places)?))?;
     let mut stopped = None;
-    let found = line::root_of(&known.data, &turns, |velocity, momenta, derivative| {
+    let found = line::root_of(&known.data, &parts, |velocity, momenta, derivative| {
         let velocity = Value::of(Dense::column_of(velocity.to_vec()));
         let both = closure.call(vec![velocity], places);
         let told = match &both {

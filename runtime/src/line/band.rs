@@ -3,8 +3,10 @@
 //! derivatives; gives the velocities, or the site at which the continuation fails.
 
 use super::blocks::{Blocks, Fixed, RuntimeSize, Size};
-use super::root::{Lists, Momenta, NoRoot, begins, follow, of_vector, scales_of};
-use super::turn::turn_of;
+use super::ending::scales_of;
+use super::root::{Lists, Momenta, NoRoot, follow};
+use super::turn::{of_vector, turn_of};
+use super::unknown::{Unknown, begins, field};
 use crate::Real;
 use core::ops::Deref;
 use nalgebra::{Matrix3, SMatrix, SVector};
@@ -60,7 +62,8 @@ impl<T: Real> Sums<'_, T> {
 /// The equations of a chain.
 struct Line<'a, T, F, S> {
     n: S,
-    turns: &'a [bool],
+    unknowns: &'a [Unknown],
+    ring: bool,
     blocks: &'a mut Blocks<T>,
     moving: [usize; 2],
     all: F,
@@ -103,10 +106,12 @@ impl<T: Real, F: FnMut(&mut Sums<'_, T>), S: Size> Momenta<T> for Line<'_, T, F,
         self.evaluate(velocities, momenta, false);
     }
 
-    fn turns(&self, component: usize) -> bool {
-        self.turns
-            .get(component % self.n.rows().max(1))
-            .is_some_and(|turns| *turns)
+    fn unknowns(&self) -> &[Unknown] {
+        self.unknowns
+    }
+
+    fn ring(&self) -> bool {
+        self.ring
     }
 
     fn scales(&self, scales: &mut [f64]) {
@@ -118,7 +123,7 @@ impl<T: Real, F: FnMut(&mut Sums<'_, T>), S: Size> Momenta<T> for Line<'_, T, F,
 
     #[inline(always)]
     fn factor_and_solve(&mut self, velocities: &[T], x: &mut [T]) -> bool {
-        if !self.turns.is_empty() {
+        if begins(self.unknowns).next().is_some() {
             self.factored.copy_from_slice(velocities);
         }
         let done = self.blocks.factor_and_solve(self.n, 0.0, x).is_ok();
@@ -138,7 +143,7 @@ impl<T: Real, F, S: Size> Line<'_, T, F, S> {
     #[inline(always)]
     fn turned(&self, x: &mut [T]) {
         let n = self.n.rows();
-        for k in begins(self.turns) {
+        for k in begins(self.unknowns) {
             let at = self.factored.chunks_exact(n);
             for (at, x) in at.zip(x.chunks_exact_mut(n)) {
                 of_vector(&at[k..k + 3], &mut x[k..k + 3]);
@@ -153,8 +158,9 @@ pub struct AnyBand<T> {
     sites: usize,
     /// Whether the derivatives are independent of positions and velocities, and therefore factored only once.
     constant: bool,
-    /// The components of a site that belong to the vector of a rotation.
-    turns: Vec<bool>,
+    ring: bool,
+    /// The parts of a site's velocity.
+    unknowns: Vec<Unknown>,
     factored: bool,
     blocks: Blocks<T>,
     velocity: Vec<T>,
@@ -164,6 +170,9 @@ pub struct AnyBand<T> {
     correction: Vec<T>,
     known: Vec<T>,
     scales: Vec<f64>,
+    lengths: Vec<T>,
+    weights: Vec<T>,
+    rounded: Vec<bool>,
     /// The velocities at which the factored derivative was evaluated.
     factored_at: Vec<T>,
 }
@@ -177,7 +186,8 @@ impl<T: Real> AnyBand<T> {
         Self {
             sites,
             constant,
-            turns: Vec::new(),
+            ring,
+            unknowns: vec![field(n)],
             factored: false,
             blocks: Blocks::new(n, sites, ring),
             velocity: list(),
@@ -187,21 +197,27 @@ impl<T: Real> AnyBand<T> {
             correction: list(),
             known: list(),
             scales: vec![0.0; n * sites],
+            lengths: list(),
+            weights: list(),
+            rounded: vec![false; n * sites],
             factored_at: list(),
         }
     }
 
-    /// This workspace with rotations among the unknowns: `turns` marks the components of a site that belong to the
-    /// vector of a rotation.
+    /// This workspace for the given parts of a site's velocity, in order. Without them, it is a single field.
     #[must_use]
-    pub fn with_turns(self, turns: &[bool]) -> Self {
-        let turns = turns.to_vec();
-        Self { turns, ..self }
+    pub fn with_unknowns(self, unknowns: &[Unknown]) -> Self {
+        let unknowns = unknowns.to_vec();
+        Self { unknowns, ..self }
     }
 
-    /// The components of a site that belong to the vector of a rotation.
-    fn rotating<const N: usize>(&self) -> [bool; N] {
-        core::array::from_fn(|k| self.turns.get(k).is_some_and(|turns| *turns))
+    /// The components at which the vector of a rotation starts.
+    fn turning<const N: usize>(&self) -> [bool; N] {
+        let mut turning = [false; N];
+        for k in begins(&self.unknowns) {
+            turning[k] = true;
+        }
+        turning
     }
 
     /// The number of sites.
@@ -257,7 +273,8 @@ impl<T: Real> AnyBand<T> {
         let mut line = Line {
             n: size,
             blocks: &mut self.blocks,
-            turns: &self.turns,
+            unknowns: &self.unknowns,
+            ring: self.ring,
             moving,
             all,
             factored: &mut self.factored_at,
@@ -292,6 +309,9 @@ impl<T: Real> AnyBand<T> {
             whole: &mut self.whole,
             correction: &mut self.correction,
             scales: &mut self.scales,
+            lengths: &mut self.lengths,
+            weights: &mut self.weights,
+            rounded: &mut self.rounded,
         };
         match follow(&self.known, &mut line, &mut lists) {
             Ok(()) => Ok(()),
@@ -445,12 +465,11 @@ impl<T: Real, const N: usize, const R: usize> Band<T, N, R> {
         }
     }
 
-    /// This workspace with rotations among the unknowns: `turns` marks the components of a site that belong to the
-    /// vector of a rotation.
+    /// This workspace for the given parts of a site's velocity, in order. Without them, it is a single field.
     #[must_use]
-    pub fn with_turns(self, turns: [bool; N]) -> Self {
+    pub fn with_unknowns<const P: usize>(self, unknowns: [Unknown; P]) -> Self {
         let Self { all, velocities } = self;
-        let all = all.with_turns(&turns);
+        let all = all.with_unknowns(&unknowns);
         Self { all, velocities }
     }
 
@@ -478,13 +497,13 @@ impl<T: Real, const N: usize, const R: usize> Band<T, N, R> {
         for (site, aim) in all.take(moving[1]).skip(moving[0]) {
             *aim = known(site).data.0[0];
         }
-        let turns = band.rotating::<N>();
+        let turning: [bool; N] = band.turning();
         band.solve_by(Fixed::<N>, moving, |sums| {
             let numbers = sums.velocities.as_chunks::<N>().0;
             for (velocity, numbers) in velocities.iter_mut().zip(numbers) {
                 velocity.numbers = SVector::from(*numbers);
             }
-            for k in begins(&turns) {
+            for k in (0..N).filter(|k| turning[*k]) {
                 for velocity in &mut *velocities {
                     let v = velocity.numbers.fixed_rows::<3>(k).into_owned();
                     velocity.turns[k / 3] = turn_of(&v);

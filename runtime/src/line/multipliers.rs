@@ -12,8 +12,8 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::blocks::{Blocks, Fixed, RuntimeSize, Size};
+use super::ending::scales_of;
 use super::error::Place;
-use super::root::scales_of;
 use crate::Real;
 use crate::solvers::newton::principal::FALLS;
 use core::fmt;

@@ -6,18 +6,22 @@
 //! one. A stage is accepted if its first two corrections with the same derivative decrease by a factor of four. This
 //! bounds the change of the derivative along the stage (Deuflhard, Newton Methods for Nonlinear Problems, 2011,
 //! sections 2.1 and 5.1). The test samples points and proves nothing. The same two corrections estimate the error that
-//! another correction would leave.
+//! another correction would leave. The iteration ends if that error is rounding of each part of the velocity, relative to
+//! the length of the part: see [`ending`](super::ending).
 
 // Loops use one index for several lists.
 #![allow(clippy::needless_range_loop)]
 
+use super::ending::{
+    LAST, ROUNDINGS, are_several, largest, of_turns, scales_of, weigh, weighed, weighed_before,
+};
 use super::pivots;
-use super::turn::vector_change;
+use super::turn::of_vector;
+use super::unknown::{Unknown, begins};
 use crate::Real;
-use crate::scalar::larger;
 use crate::solvers::newton::principal::FALLS;
 use core::fmt;
-use nalgebra::{SMatrix, SVector, Vector3};
+use nalgebra::{SMatrix, SVector};
 
 /// The shortest stage, as a fraction of the path. For a momentum like `m v + b v^3` the first stage is about
 /// `m^(3/2)/(b^(1/2) p)`, which can be arbitrarily short.
@@ -29,20 +33,17 @@ const MOST_STAGES: usize = 1000;
 /// The largest number of corrections in a stage. They converge quadratically.
 const MOST_CORRECTIONS: usize = 20;
 
-/// If a correction is below this fraction of the velocity, the next one, about its square, is rounding.
-const LAST: f64 = 1e-8;
-
 /// The error of a velocity counts as zero if its estimate from the corrections is at most this many roundings.
 const NOTHING: f64 = 1.0 / 16.0;
 
 /// If corrections do not decrease, the next stage is shorter by this factor.
 const WORSE: f64 = 0.2;
 
+/// Corrections that no longer decrease are rounding only if they are below this fraction of the length of their part.
+const STALLS: f64 = 0.125;
+
 /// A stage that is not the last ends once its corrections are below this fraction of the first.
 const NEAR: f64 = 1e-3;
-
-/// A residual counts as zero if it is at most this many roundings of both sides.
-const ROUNDINGS: f64 = 32.0;
 
 /// No velocity with this momentum is connected to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,34 +75,15 @@ pub(super) trait Momenta<T: Real> {
     fn momenta_at(&mut self, velocity: &[T], momenta: &mut [T]);
     /// Computes a scale for each velocity component from the diagonal of the derivative.
     fn scales(&self, scales: &mut [f64]);
-    /// Whether the component belongs to the vector of a rotation. Such components have the absolute rounding error of
-    /// numbers of size 1.
-    fn turns(&self, component: usize) -> bool;
+    /// The parts of a site's velocity.
+    fn unknowns(&self) -> &[Unknown];
+    /// Whether the first and the last site are neighbours.
+    fn ring(&self) -> bool;
     /// Factors the derivative, which was evaluated at `velocity`, and overwrites the momentum change `x` by the
     /// velocity change. Returns false if the derivative is singular or not finite.
     fn factor_and_solve(&mut self, velocity: &[T], x: &mut [T]) -> bool;
     /// Solves with the last factored derivative.
     fn solve(&mut self, x: &mut [T]);
-}
-
-/// The indices of the velocity components at which the vector of a rotation starts.
-pub(super) fn begins(turns: &[bool]) -> impl Iterator<Item = usize> {
-    let mut next = 0;
-    turns.iter().enumerate().filter_map(move |(k, turns)| {
-        let begins = *turns && k >= next;
-        next = if begins { k + 3 } else { next };
-        begins.then_some(k)
-    })
-}
-
-/// Converts a change `Ω hat(η)` of a rotation into the change of its vector. `velocity` is the vector at which the
-/// derivative was taken.
-#[inline(always)]
-pub(super) fn of_vector<T: Real>(velocity: &[T], change: &mut [T]) {
-    if let (&[x, y, z], [a, b, c]) = (velocity, change) {
-        let change = vector_change(&Vector3::new(x, y, z), &Vector3::new(*a, *b, *c));
-        [*a, *b, *c] = change.data.0[0];
-    }
 }
 
 /// Work lists, as long as the velocity.
@@ -115,38 +97,12 @@ pub(super) struct Lists<'a, T> {
     pub whole: &'a mut [T],
     pub correction: &'a mut [T],
     pub scales: &'a mut [f64],
-}
-
-/// The largest scaled entry; NaN if any entry is NaN.
-#[inline(always)]
-fn largest<T: Real>(x: &[T], scales: &[f64]) -> f64 {
-    const SIDE_BY_SIDE: usize = 4;
-    let size = |x: T, scale: f64| {
-        (
-            x.greatest().abs().max(x.least().abs()) * scale,
-            x.magnitude(),
-        )
-    };
-    // Independent maxima, so that the processor computes them in parallel.
-    let (mut most, mut lost) = ([0.0_f64; SIDE_BY_SIDE], false);
-    let mut see = |k: usize, (size, magnitude): (f64, f64)| {
-        lost |= size.is_nan() | magnitude.is_nan();
-        most[k] = if size > most[k] { size } else { most[k] };
-    };
-    let (x, x_left) = x.as_chunks::<SIDE_BY_SIDE>();
-    let (scales, scales_left) = scales.as_chunks::<SIDE_BY_SIDE>();
-    for (x, scales) in x.iter().zip(scales) {
-        for k in 0..SIDE_BY_SIDE {
-            see(k, size(x[k], scales[k]));
-        }
-    }
-    for (x, scale) in x_left.iter().zip(scales_left) {
-        see(0, size(*x, *scale));
-    }
-    match lost {
-        true => f64::NAN,
-        false => most.into_iter().fold(0.0, larger),
-    }
+    /// The lengths of the parts of the velocity, each at the first component of the part.
+    pub lengths: &'a mut [T],
+    /// Scales that measure each part by its own length.
+    pub weights: &'a mut [T],
+    /// Whether the residual of a component is only rounding.
+    pub rounded: &'a mut [bool],
 }
 
 /// The target of a component at the end of a stage: `known - (1 - end) whole`, computed from rest if `end < 1/2`.
@@ -168,7 +124,8 @@ fn residual<T: Real>(known: &[T], end: f64, lists: &mut Lists<'_, T>) -> bool {
         let aim = aim(known, end, lists, i);
         let r = aim - lists.momenta[i];
         let terms = aim.magnitude() + lists.momenta[i].magnitude();
-        rounded &= r.magnitude() <= ROUNDINGS * T::EPSILON * terms;
+        lists.rounded[i] = r.magnitude() <= ROUNDINGS * T::EPSILON * terms;
+        rounded &= lists.rounded[i];
         lists.correction[i] = r;
     }
     rounded
@@ -247,19 +204,6 @@ pub(super) fn follow<T: Real>(
     Err(NoRoot { share })
 }
 
-/// The size, in scaled units, of corrections that are only rounding of rotations. In a short step the momenta are small
-/// differences of rotated vectors.
-#[inline(always)]
-fn of_turns<T: Real>(equations: &impl Momenta<T>, scales: &[f64]) -> f64 {
-    let mut most = 0.0_f64;
-    for (component, scale) in scales.iter().enumerate() {
-        if equations.turns(component) {
-            most = most.max(*scale);
-        }
-    }
-    ROUNDINGS * T::EPSILON * most
-}
-
 /// Completes a stage whose first correction is known. If the stage is too long, returns the factor for a shorter one.
 /// Each derivative serves for two corrections.
 #[inline(always)]
@@ -270,7 +214,8 @@ fn stage<T: Real>(
     lists: &mut Lists<'_, T>,
 ) -> Option<f64> {
     let last = end >= 1.0;
-    let turned = of_turns(equations, lists.scales);
+    let several = are_several(equations.unknowns(), known.len());
+    let turned = of_turns::<T>(equations.unknowns(), lists.scales);
     let first = largest(lists.correction, lists.scales);
     corrected(lists.velocity, lists.correction);
     // Uses the derivative at the start of the stage.
@@ -283,13 +228,27 @@ fn stage<T: Real>(
         return Some((0.8 * FALLS * first / second).clamp(0.1, 0.8));
     }
     corrected(lists.velocity, lists.correction);
+    let nothing = |left: f64, size: f64| left <= NOTHING * T::EPSILON * size;
+    let mut size = largest(lists.velocity, lists.scales);
+    // The stage is accepted by the largest part. The iteration ends by corrections that measure each part by its own
+    // length; for a single part they are the same.
+    let (mut earlier, later, fair) = match several {
+        false => (first, second, true),
+        true => {
+            weigh(equations.unknowns(), equations.ring(), size, lists);
+            let (earlier, fair) = weighed_before(equations.unknowns(), lists);
+            (earlier, weighed(equations.unknowns(), lists), fair)
+        }
+    };
     // A correction `d` with its own derivative leaves an error of `bend d^2`. A further correction `e` with the same
     // derivative leaves `2 bend d e`.
-    let mut bend = second / (first * first);
-    let nothing = |left: f64, size: f64| left <= NOTHING * T::EPSILON * size;
-    let size = largest(lists.velocity, lists.scales);
+    let mut bend = later / (earlier * earlier);
+    // Corrections that move some parts only do not show how products with the others bend the momenta.
+    if !fair {
+        bend = bend.max(1.0 / size);
+    }
     let mut done =
-        rounded || nothing(2.0 * bend * first * second, size) || !last && second <= NEAR * first;
+        rounded || nothing(2.0 * bend * earlier * later, size) || !last && second <= NEAR * first;
     let mut before = first;
     for _ in 0..MOST_CORRECTIONS {
         if done {
@@ -302,34 +261,59 @@ fn stage<T: Real>(
         }
         let own = largest(lists.correction, lists.scales);
         corrected(lists.velocity, lists.correction);
-        // Until they reach rounding level, corrections decrease by at least half.
+        size = largest(lists.velocity, lists.scales);
+        // Until they reach rounding level, corrections decrease by at least half. Only a small part can be unsolved
+        // once they are below the last.
         let noise = |own: f64, rounded: bool, lists: &Lists<'_, T>| {
-            own.is_finite() && (rounded || own <= turned || rounded_together(known, end, lists))
+            let small = rounded || own <= turned || several && own <= LAST * size;
+            own.is_finite() && (small || rounded_together(known, end, lists))
         };
-        let falls = own <= 0.5 * before;
+        let mut falls = own <= 0.5 * before;
         if !falls && !noise(own, rounded, lists) {
             return Some(WORSE);
         }
         before = own;
-        let size = largest(lists.velocity, lists.scales);
+        let each = match several {
+            false => own,
+            true => {
+                if !weigh(equations.unknowns(), equations.ring(), size, lists) {
+                    // Earlier corrections were measured by other lengths.
+                    (earlier, bend) = (f64::INFINITY, 1.0 / size);
+                }
+                let each = weighed(equations.unknowns(), lists);
+                falls |= each <= 0.5 * earlier || each > STALLS * size;
+                each
+            }
+        };
+        earlier = each;
         done = rounded
             || !falls
-            || own <= LAST * size
-            || nothing(bend * own * own, size)
+            || each <= LAST * size
+            || nothing(bend * each * each, size)
             || !last && own <= NEAR * first;
         if done {
             break;
         }
         let (rounded, other) = again(known, end, equations, lists);
         corrected(lists.velocity, lists.correction);
-        let falls = other <= 0.5 * own;
+        let mut falls = other <= 0.5 * own;
         if !falls && !noise(other, rounded, lists) {
             return Some(WORSE);
         }
-        bend = bend.max(other / (own * own));
-        done = rounded || !falls || nothing(2.0 * bend * own * other, size);
+        let later = match several {
+            false => other,
+            true => {
+                let later = weighed(equations.unknowns(), lists);
+                falls |= later <= 0.5 * each || later > STALLS * size;
+                later
+            }
+        };
+        bend = bend.max(later / (each * each));
+        done = rounded || !falls || nothing(2.0 * bend * each * later, size);
     }
-    if !done {
+    // Rounding can prevent that a small part is solved relative to its own length.
+    let solved = done || several && before <= LAST * size;
+    if !solved {
         return Some(WORSE);
     }
     // Each further correction makes the solution's derivatives exact to one more order.
@@ -366,7 +350,7 @@ fn again<T: Real>(
 /// The equations of one site.
 struct Site<'a, T, F> {
     n: usize,
-    turns: &'a [bool],
+    unknowns: &'a [Unknown],
     momenta: F,
     tangent: &'a mut [T],
     factors: &'a mut [T],
@@ -386,8 +370,14 @@ impl<T: Real, F: FnMut(&[T], &mut [T], Option<&mut [T]>)> Momenta<T> for Site<'_
         scales_of(self.n, self.tangent, scales);
     }
 
-    fn turns(&self, component: usize) -> bool {
-        self.turns.get(component).is_some_and(|turns| *turns)
+    #[inline(always)]
+    fn unknowns(&self) -> &[Unknown] {
+        self.unknowns
+    }
+
+    #[inline(always)]
+    fn ring(&self) -> bool {
+        false
     }
 
     #[inline(always)]
@@ -409,44 +399,42 @@ impl<T: Real, F: FnMut(&[T], &mut [T], Option<&mut [T]>)> Momenta<T> for Site<'_
     #[inline(always)]
     fn solve(&mut self, x: &mut [T]) {
         pivots::solve(self.n, self.factors, self.pivots, x);
-        for k in begins(self.turns) {
+        for k in begins(self.unknowns) {
             of_vector(&self.factored[k..k + 3], &mut x[k..k + 3]);
         }
     }
 }
 
-/// Scales from a diagonal block. Scaled velocities have a common unit, the square root of an action.
-#[inline(always)]
-pub(super) fn scales_of<T: Real>(n: usize, tangent: &[T], scales: &mut [f64]) {
-    for k in 0..n {
-        let own = tangent[n * k + k].magnitude();
-        let row = (0..n).fold(0.0_f64, |most, j| most.max(tangent[n * j + k].magnitude()));
-        let size = if own > 0.0 { own } else { row };
-        scales[k] = if size > 0.0 { size.sqrt() } else { 1.0 };
-    }
-}
-
-/// The velocity of a site with the momentum `known`. `turns` marks the components of the vector `v` of a rotation `Ω`.
-/// `momentum` computes the momentum at a velocity; `whole` also computes its derivative, taken along `Ω hat(η)` for
-/// `v`.
+/// The velocity of a site with the momentum `known`. `unknowns` are the parts of the velocity, in order. `momentum`
+/// computes the momentum at a velocity; `whole` also computes its derivative, taken along `Ω hat(η)` for the vector `v`
+/// of a rotation `Ω`.
 ///
 /// # Errors
 /// [`NoRoot`] if the solution is not connected to rest.
 #[inline]
-pub fn root<T: Real, const N: usize>(
+pub fn root<T: Real, const N: usize, const P: usize>(
     known: &SVector<T, N>,
-    turns: [bool; N],
+    unknowns: [Unknown; P],
     momentum: impl Fn(&SVector<T, N>) -> SVector<T, N>,
     whole: impl Fn(&SVector<T, N>) -> (SVector<T, N>, SMatrix<T, N, N>),
 ) -> Result<SVector<T, N>, NoRoot> {
-    let mut lists = [SVector::<T, N>::zeros(); 6];
-    let [velocity, from, at, way, correction, factored] = &mut lists;
+    let mut lists = [SVector::<T, N>::zeros(); 8];
+    let [
+        velocity,
+        from,
+        at,
+        way,
+        correction,
+        factored,
+        lengths,
+        weights,
+    ] = &mut lists;
     let mut matrices = [SMatrix::<T, N, N>::zeros(); 2];
     let [tangent, factors] = &mut matrices;
-    let (mut scales, mut pivots) = ([0.0; N], [0; N]);
+    let (mut scales, mut pivots, mut rounded) = ([0.0; N], [0; N], [false; N]);
     let mut site = Site {
         n: N,
-        turns: &turns,
+        unknowns: &unknowns,
         momenta: |v: &[T], p: &mut [T], tangent: Option<&mut [T]>| {
             let v = SVector::from_column_slice(v);
             match tangent {
@@ -470,6 +458,9 @@ pub fn root<T: Real, const N: usize>(
         whole: way.as_mut_slice(),
         correction: correction.as_mut_slice(),
         scales: &mut scales,
+        lengths: lengths.as_mut_slice(),
+        weights: weights.as_mut_slice(),
+        rounded: &mut rounded,
     };
     follow(known.as_slice(), &mut site, &mut lists)?;
     Ok(*velocity)
@@ -482,7 +473,7 @@ pub fn root<T: Real, const N: usize>(
 /// [`NoRoot`], as for [`root`].
 pub fn root_of<T: Real>(
     known: &[T],
-    turns: &[bool],
+    unknowns: &[Unknown],
     momenta: impl FnMut(&[T], &mut [T], Option<&mut [T]>),
 ) -> Result<Vec<T>, NoRoot> {
     let n = known.len();
@@ -490,10 +481,11 @@ pub fn root_of<T: Real>(
     let (mut velocity, mut from, mut at, mut whole, mut correction, mut factored) =
         (list(), list(), list(), list(), list(), list());
     let (mut tangent, mut factors) = (vec![T::zero(); n * n], vec![T::zero(); n * n]);
-    let (mut scales, mut pivots) = (vec![0.0; n], vec![0; n]);
+    let (mut scales, mut pivots, mut rounded) = (vec![0.0; n], vec![0; n], vec![false; n]);
+    let (mut lengths, mut weights) = (list(), list());
     let mut site = Site {
         n,
-        turns,
+        unknowns,
         momenta,
         tangent: &mut tangent,
         factors: &mut factors,
@@ -507,6 +499,9 @@ pub fn root_of<T: Real>(
         whole: &mut whole,
         correction: &mut correction,
         scales: &mut scales,
+        lengths: &mut lengths,
+        weights: &mut weights,
+        rounded: &mut rounded,
     };
     follow(known, &mut site, &mut lists)?;
     Ok(velocity)
@@ -515,6 +510,7 @@ pub fn root_of<T: Real>(
 #[cfg(test)]
 mod tests {
     use super::{NoRoot, root};
+    use crate::line::field;
     use nalgebra::{SMatrix, SVector};
 
     fn cubic(m: f64, b: f64, p: f64) -> Result<f64, NoRoot> {
@@ -525,7 +521,7 @@ mod tests {
                 SMatrix::from([[m + 3.0 * b * v * v]]),
             )
         };
-        root(&SVector::from([p]), [false], |v| momenta(v).0, momenta).map(|v| v[0])
+        root(&SVector::from([p]), [field(1)], |v| momenta(v).0, momenta).map(|v| v[0])
     }
 
     /// The derivative is at least m everywhere, so the root is unique for any stiffness.
@@ -578,7 +574,7 @@ mod tests {
             let size = 10.0_f64.powf(-18.0 + 6.0 * drawn());
             let moving = SVector::from([drawn() - 0.5, 1e-2 * (drawn() - 0.5)]) * size;
             let known = momenta(&SVector::zeros()).0 + moving;
-            let found = root(&known, [false; 2], |v| momenta(v).0, momenta)
+            let found = root(&known, [field(2)], |v| momenta(v).0, momenta)
                 .unwrap_or_else(|e| panic!("{place} {moving}: {e}"));
             // Allows for rounding of the position in the potential, and for part of the rounding of the larger
             // component.

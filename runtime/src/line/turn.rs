@@ -31,9 +31,19 @@ pub fn turn_of<T: Real>(v: &Vector3<T>) -> Matrix3<T> {
 
 /// The change of `v` that changes its rotation by `Ω hat(η)`.
 #[inline(always)]
-pub(super) fn vector_change<T: Real>(v: &Vector3<T>, eta: &Vector3<T>) -> Vector3<T> {
+fn vector_change<T: Real>(v: &Vector3<T>, eta: &Vector3<T>) -> Vector3<T> {
     let half = v * T::from_f64(0.5);
     eta + half.cross(eta) + half * half.dot(eta)
+}
+
+/// Converts a change `Ω hat(η)` of a rotation into the change of its vector. `velocity` is the vector at which the
+/// derivative was taken.
+#[inline(always)]
+pub(super) fn of_vector<T: Real>(velocity: &[T], change: &mut [T]) {
+    if let (&[x, y, z], [a, b, c]) = (velocity, change) {
+        let change = vector_change(&Vector3::new(x, y, z), &Vector3::new(*a, *b, *c));
+        [*a, *b, *c] = change.data.0[0];
+    }
 }
 
 #[cfg(test)]

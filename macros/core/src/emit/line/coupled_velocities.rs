@@ -48,13 +48,14 @@ pub(super) fn band_value(l: &Lines) -> Option<TokenStream> {
     let (count, ring) = (l.count_of(&first.mover.name), ring(l));
     let tied = adds(l).then(|| quote!(tied: ::std::vec![SVector::<T, #n>::zeros(); #count],));
     let constant = is_constant(l, &members);
-    let turning = members.iter().any(Moving::is_rotation);
-    let turns = turning.then(|| {
-        let turns = turns(&members);
-        quote!(.with_turns(#turns))
+    let unknowns = (!constant).then(|| {
+        let unknowns = unknowns(&members);
+        quote!(.with_unknowns(#unknowns))
     });
     let rotations = rotations(&members);
-    Some(quote!(band: line::Band::<T, #n, #rotations>::new(#count, #ring, #constant)#turns, #tied))
+    Some(
+        quote!(band: line::Band::<T, #n, #rotations>::new(#count, #ring, #constant)#unknowns, #tied),
+    )
 }
 
 /// The number of slots for rotations in a velocity. The slot of a rotation is a third of the first row of its vector.
@@ -72,11 +73,14 @@ pub(super) fn velocity(n: usize, members: &[Moving]) -> TokenStream {
     quote!(line::Velocity<T, #n, #rotations>)
 }
 
-/// Which components of a velocity belong to the vector of a rotation.
-pub(super) fn turns(members: &[Moving]) -> TokenStream {
-    let each = members.iter().flat_map(|m| {
-        let turns = m.is_rotation();
-        vec![turns; m.components()]
+/// The parts of a site's velocity: each field and each rotation.
+pub(super) fn unknowns(members: &[Moving]) -> TokenStream {
+    let each = members.iter().map(|m| match m.is_rotation() {
+        true => quote!(line::rotation()),
+        false => {
+            let count = number(m.components());
+            quote!(line::field(#count))
+        }
     });
     quote!([#(#each),*])
 }

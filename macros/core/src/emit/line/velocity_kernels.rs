@@ -337,7 +337,7 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
     let tied = super::coupled_velocities::is_tied(l, members);
     let velocities = taken_apart(members, &letters, &mut bindings, tied);
     let (lets, results) = l.program(s, &values, &bindings);
-    let (size, turns) = (number(n), super::coupled_velocities::turns(members));
+    let (size, unknowns) = (number(n), super::coupled_velocities::unknowns(members));
     let (mut fill, mut given) = (TokenStream::new(), TokenStream::new());
     let mut row = 0;
     let mut results = values.iter().zip(results);
@@ -397,7 +397,7 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
                 #given
                 line::root(
                     &known,
-                    #turns,
+                    #unknowns,
                     |velocity| self.#momenta(#h, site, at, velocity).0,
                     |velocity| self.#momenta(#h, site, at, velocity),
                 ).map_err(StepCause::NoRoot)
