@@ -174,6 +174,8 @@ impl<'a> Scene<'a> {
 
     fn quantity(&self, q: &'a Quantity, site: Option<usize>, here: Here) -> Evaluated {
         let node = match (here.carried, here.time) {
+            // Parameters are the same at every node.
+            _ if matches!(q.role, Role::Parameter) => 0,
             (None, 0) => 0,
             (None, 1) => 1,
             (Some(node), 0 | 1) => node,
@@ -184,9 +186,8 @@ impl<'a> Scene<'a> {
         let own = self.setup.observed(&q.name, site);
         let moves = here.carried.is_none() || here.time == 1;
         match (&q.role, own) {
-            (Role::Parameter, _) => self.parameter(&q.name, site, q.is_quaternion),
-            // A configuration that an end condition prescribes.
-            (Role::Element(..) | Role::Field(_), None) => {
+            // Also a configuration that an end condition prescribes.
+            (Role::Parameter, _) | (Role::Element(..) | Role::Field(_), None) => {
                 self.parameter(&q.name, site, q.is_quaternion)
             }
             (Role::Element(group, side), Some(own)) => {
