@@ -50,6 +50,7 @@ mod staging;
 mod standalone;
 mod starts;
 mod stated;
+mod stiff_fields;
 mod stopped;
 mod substepping;
 mod sweeps;

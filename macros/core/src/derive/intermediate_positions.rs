@@ -95,3 +95,42 @@ fn is_intermediate(symbols: &Symbols, e: &Expr) -> bool {
     };
     has(Role::Element) && has(Role::Velocity) && roles.as_deref().is_some_and(only)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::is_intermediate;
+    use crate::derive_source;
+    use crate::expr::symbol::{Role, Symbols};
+    use crate::expr::{Expr, Node};
+
+    /// Whether the value of a field occurs outside of such a sum.
+    fn has_separate_field(symbols: &Symbols, e: &Expr) -> bool {
+        match e.node() {
+            Node::Letter(l) => symbols.get(l.symbol).role == Role::Element,
+            _ if is_intermediate(symbols, e) => false,
+            _ => e
+                .children()
+                .into_iter()
+                .any(|x| has_separate_field(symbols, x)),
+        }
+    }
+
+    /// The expanded cube of a midpoint is rounded relative to the position, although the midpoint is near zero if the
+    /// field oscillates fast. Several terms with the inverse of the step size are combined before the derivation.
+    #[test]
+    fn powers_of_midpoints_stay_powers() {
+        let text = "model Stiff { param m, k, a: Real; field x, y: Real;
+            let X = (next(x) + x)/2; let Y = (next(y) + y)/2;
+            let u = (next(x) - x)/h; let v = (next(y) - y)/h;
+            lagrangian = h*(m*(1 + Y^2)*u^2/2 + m*(2 + sin(X))*v^2/2 - k*Y^4/4 - k*X^2/2 - a*X*Y); }";
+        let d = derive_source(text).unwrap_or_else(|e| panic!("{e:?}"));
+        for balance in &d.balances {
+            let symbols = &d.letters.symbols;
+            assert!(
+                !has_separate_field(symbols, &balance.outgoing),
+                "{:?}",
+                balance.outgoing
+            );
+        }
+    }
+}

@@ -105,8 +105,8 @@ impl Corrections {
                 false => NextAction::CorrectAndEnd,
             };
         }
-        // Predicts the correction after this one, if it is as good as the last one. The tangent may belong to the last
-        // trial: its relative error is then the length of the last correction.
+        // Predicts the next correction from the decrease of the last one. The tangent may belong to the last trial: its
+        // relative error is then the length of the last correction.
         let next = moved * (FORESIGHT * fall.max(before));
         if may_end && next <= LEFT_ROUNDINGS * T::EPSILON {
             return NextAction::CorrectAndEnd;

@@ -136,7 +136,7 @@ impl Tangent<'_> {
 #[inline(always)]
 pub(super) fn relative(corrections: &[f64], squares: &[f64], roots: &[f64]) -> f64 {
     let parts = || corrections.iter().zip(squares).zip(roots);
-    // An element without coordinates, such as a half turn, has no finite length.
+    // The length of a half turn is infinite.
     let length = |square: f64| {
         if square.is_finite() {
             square.sqrt()
