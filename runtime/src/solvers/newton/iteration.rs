@@ -105,7 +105,8 @@ impl Iteration {
         let is_small = size <= CONVERGED_ROUNDINGS * T::EPSILON;
         if self.count > 0 {
             let falls = size <= WORTH_KEEPING * self.previous;
-            return !falls && !(is_small && self.corrections.are_small());
+            let is_rounding = is_small && self.corrections.are_small();
+            return !(falls || is_rounding);
         }
         // If the prediction is exact to rounding, the tangent of an earlier step suffices.
         !(is_small && age < OLDEST_TANGENT)
