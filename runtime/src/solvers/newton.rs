@@ -29,7 +29,7 @@ pub use verdict::{Anchor, Numbers, Verdict};
 use crate::groups::Group;
 use crate::linalg::Factors;
 use crate::scalar::Real;
-use corrections::NextAction;
+use corrections::{Moved, NextAction};
 use iteration::{Correction, Iteration};
 use nalgebra::{SMatrix, SVector};
 use reduced::AtRest;
@@ -40,6 +40,9 @@ const MOST_ITERATIONS: usize = 50;
 /// A residual counts as zero below this many roundings of the terms of its equation. A residual is a sum of about ten
 /// rounded products.
 const CONVERGED_ROUNDINGS: f64 = 16.0;
+
+/// Below this the residual is pure rounding, and another step would only change the rounding.
+const POLISHED_ROUNDINGS: f64 = 4.0;
 
 /// Two evaluations may differ by twice their bounds of rounding, [`BOUND_ROUNDINGS`] each. If the
 /// residual stops decreasing below this, the cause is rounding.
@@ -53,6 +56,9 @@ const OLDEST_SCALE: u32 = 256;
 
 /// The sizes of the terms are also recomputed after this many iterations, because the terms may have grown.
 const LATE: usize = 8;
+
+/// Sizes of terms are current for this many steps, if they decide alone whether an error is rounding.
+const CURRENT_SCALE: u32 = 8;
 
 /// A factored tangent is reused while each correction reduces the residual below this fraction. Otherwise a tangent at
 /// the new trial is cheaper.
@@ -322,10 +328,12 @@ where
 ///
 /// A solution is accepted in three cases (see `corrections`):
 ///
-/// - the last correction is rounding of each part of the velocity;
-/// - the next correction is certain to be rounding;
-/// - corrections no longer decrease, and all residuals are rounding of their terms: below `16 EPSILON scale`, or below
-///   `64 EPSILON scale` without decrease. The scale of an equation is the size of its own terms.
+/// - all residuals are rounding of their terms, and the last correction is rounding of each part of the velocity;
+/// - the next correction and its residuals are certain to be rounding;
+/// - all residuals are rounding of their terms, and corrections no longer decrease or are rounding of longer parts.
+///
+/// A residual is rounding below `16 EPSILON scale`, or below `64 EPSILON scale` without decrease. The scale of an
+/// equation is the size of its own terms.
 ///
 /// Residuals are measured by their real parts, in every lane. From a real solution, one more step makes
 /// the first derivatives exact. Dual numbers therefore get such a step, with a tangent of its own.
@@ -496,7 +504,8 @@ where
             largest(&SVector::<T, 1>::new(sum))
         };
         let moved = self.relative(&step);
-        let next = self.iteration.next::<T>(moved, decrement);
+        let weighed = self.search.weighed;
+        let next = self.iteration.next::<T>(moved, weighed, decrement);
         match next {
             NextAction::End => return Correction::Last { moved: false },
             NextAction::Measure => return self.iteration.measure(&mut self.search.weighed),
@@ -511,10 +520,10 @@ where
 
     /// The largest correction of a part of the velocity, over the present length of the part, in all lanes.
     #[inline(always)]
-    fn relative(&self, step: &SVector<T, D>) -> f64 {
+    fn relative(&self, step: &SVector<T, D>) -> Moved {
         let (size, count) = (G::DIMENSION.min(D), G::PARTS.min(D));
         let squares = squares::<T, G, D>(&self.trial);
-        let mut worst = 0.0;
+        let mut worst = Moved::NOT;
         for lane in 0..T::LANES {
             let mut moved = [0.0; D];
             for k in 0..size {
@@ -525,11 +534,7 @@ where
             let squares = squares.map(|x| x.lane(lane));
             let roots = self.search.roots.map(|x| x.lane(lane));
             let own = scale::relative(&moved[..count], &squares[..count], &roots[..count]);
-            worst = if own > worst || own.is_nan() {
-                own
-            } else {
-                worst
-            };
+            worst = worst.or(own);
         }
         worst
     }

@@ -1,7 +1,11 @@
 //! Positions of fields between two nodes, such as `(next(y) + y)/2`. A power of such a sum has few rounding errors, but
 //! its expansion consists of large terms that cancel if the field oscillates fast. Takes expressions; gives a form that
 //! is reduced with each of these sums as a letter.
+//!
+//! Products of such a sum with the increment of the same field are expanded: in the momentum of a mass that depends on
+//! the position, their largest terms cancel exactly if the increment is long.
 
+use super::action::summands;
 use crate::algebra::Algebra;
 use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, Symbols};
@@ -26,8 +30,22 @@ pub(super) fn reduced(algebra: &Algebra, e: &Expr) -> Option<Expr> {
     }
     let inner = Algebra::new(&names.symbols);
     let reduced = inner.shortest(&whole);
-    let found = expr::substitute(&names.symbols, &reduced, &names.definitions);
-    (!inner.exhausted()).then_some(found)
+    if inner.exhausted() {
+        return None;
+    }
+    let defined = |e: &Expr| expr::substitute(&names.symbols, e, &names.definitions);
+    let (mixed, apart): (Vec<Expr>, Vec<Expr>) = summands(&names.symbols, &reduced)
+        .into_iter()
+        .partition(|term| names.mixes(term));
+    if apart.is_empty() {
+        return None;
+    }
+    let expanded = algebra.shortest(&defined(&expr::sum(mixed, e.shape())));
+    let apart = apart.iter().map(defined);
+    Some(expr::sum(
+        apart.chain([expanded]).collect::<Vec<_>>(),
+        e.shape(),
+    ))
 }
 
 struct Names {
@@ -36,6 +54,18 @@ struct Names {
 }
 
 impl Names {
+    /// Whether a term contains such a position and the increment of the same field.
+    fn mixes(&self, term: &Expr) -> bool {
+        let letters = expr::letters(term);
+        let named = self.definitions.iter().filter(|(l, _)| letters.contains(l));
+        let increments = |e: &Expr| {
+            let all = expr::letters(e).into_iter();
+            all.filter(|l| self.symbols.get(l.symbol).role == Role::Velocity)
+        };
+        let mut within = named.flat_map(|(_, definition)| increments(definition));
+        within.any(|increment| letters.contains(&increment))
+    }
+
     fn replace(&mut self, e: &Expr) -> Expr {
         if is_intermediate(&self.symbols, e) {
             return self.letter_of(e);

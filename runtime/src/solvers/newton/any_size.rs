@@ -9,7 +9,7 @@ mod saved;
 
 pub use chart::{Chart, Lane};
 
-use super::corrections::NextAction;
+use super::corrections::{Moved, NextAction};
 use super::iteration::{Correction, Iteration};
 use super::principal::{Fold, Traced, trace};
 use super::scale::{self, Tangent, measure};
@@ -383,7 +383,8 @@ impl<C: Chart> AnyNewton<'_, C> {
             f64::abs(terms.fold(0.0, |sum, (x, r)| sum + x * r))
         };
         let moved = self.relative(&step);
-        let next = self.iteration.next::<f64>(moved, decrement);
+        let weighed = self.search.weighed;
+        let next = self.iteration.next::<f64>(moved, weighed, decrement);
         match next {
             NextAction::End => return Correction::Last { moved: false },
             NextAction::Measure => return self.iteration.measure(&mut self.search.weighed),
@@ -400,7 +401,7 @@ impl<C: Chart> AnyNewton<'_, C> {
     }
 
     /// The largest correction of a part of the velocity, over the present length of the part.
-    fn relative(&self, step: &[f64]) -> f64 {
+    fn relative(&self, step: &[f64]) -> Moved {
         let parts = self.chart.parts();
         let squares = self.chart.squares(self.trial());
         let mut moved = Reals::from_elem(0.0, squares.len());

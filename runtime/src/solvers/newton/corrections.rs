@@ -1,9 +1,10 @@
-//! Decides when a velocity is found: the last correction must be rounding of the velocity at its own scale. Takes the
-//! corrections in order, each relative to the present length of its part of the velocity. The scales of residuals only
-//! tell rounding from slow convergence, so a wrong scale cannot end an iteration.
+//! Decides when a velocity is found: the last correction must be rounding of the velocity at its own scale, and each
+//! residual rounding of its terms. Takes the corrections in order, each relative to the present length of its part of the
+//! velocity, and the residuals relative to the sizes of their terms. Neither alone ends an iteration: sizes of terms can
+//! be old, and far from a root a long velocity hides its corrections.
 
-use super::{CONVERGED_ROUNDINGS, FORESIGHT, STAGNATED_ROUNDINGS};
-use crate::scalar::Real;
+use super::{CONVERGED_ROUNDINGS, FORESIGHT, POLISHED_ROUNDINGS, STAGNATED_ROUNDINGS};
+use crate::scalar::{Real, larger};
 
 /// Corrections below this many roundings of their part of the velocity are rounding. With a badly conditioned tangent,
 /// solving alone leaves a few roundings.
@@ -40,6 +41,38 @@ impl Residual {
     }
 }
 
+/// A correction over the length of its part of the velocity: the maximum over all parts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moved {
+    /// Each part has its own length.
+    pub own: f64,
+    /// The length is at least a share of the longest part.
+    pub shared: f64,
+}
+
+impl Moved {
+    /// No correction.
+    pub const NOT: Self = Self {
+        own: 0.0,
+        shared: 0.0,
+    };
+
+    /// A correction that cannot be compared with a length.
+    pub const FAR: Self = Self {
+        own: f64::INFINITY,
+        shared: f64::INFINITY,
+    };
+
+    /// The larger of each.
+    #[inline(always)]
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            own: larger(self.own, other.own),
+            shared: larger(self.shared, other.shared),
+        }
+    }
+}
+
 /// The next action after a correction is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NextAction {
@@ -47,8 +80,8 @@ pub(super) enum NextAction {
     Correct,
     /// Apply the correction and stop.
     CorrectAndEnd,
-    /// Apply the correction and stop, if the sizes of the terms are current: corrections no longer decrease, because of
-    /// rounding in an ill-conditioned problem.
+    /// Apply the correction and stop, if the sizes of the terms are of this step: some part of the velocity is only
+    /// rounding of longer parts, or corrections no longer decrease.
     EndIfRounding,
     /// Compute the sizes of the terms at this trial, and evaluate the equations again.
     Measure,
@@ -60,7 +93,7 @@ pub(super) enum NextAction {
 /// The corrections of one iteration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corrections {
-    last: f64,
+    last: Moved,
     /// The last decrement that was below a quarter of the previous minimum: its correction was half as long.
     least: f64,
     /// The number of corrections since then.
@@ -71,7 +104,7 @@ impl Corrections {
     /// No corrections yet.
     pub const fn none() -> Self {
         Self {
-            last: f64::INFINITY,
+            last: Moved::FAR,
             least: f64::INFINITY,
             without_fall: 0,
         }
@@ -80,38 +113,41 @@ impl Corrections {
     /// Whether the next correction is rounding with the factored tangent, too.
     #[inline(always)]
     pub fn are_small(&self) -> bool {
-        self.last <= SMALL
+        self.last.shared <= SMALL
     }
 
-    /// Takes a correction over the length of its part of the velocity, and its residual. `decrement` is Newton's
-    /// decrement, the scalar product of both. Its unit is an action for all equations, and it does not depend on their
-    /// scales.
+    /// Takes a correction and its residual. `decrement` is Newton's decrement, the scalar product of both. Its unit is an
+    /// action for all equations, and it does not depend on their scales.
     #[inline(always)]
     pub fn next<T: Real>(
         &mut self,
         r: Residual,
-        moved: f64,
+        moved: Moved,
         decrement: impl FnOnce() -> f64,
     ) -> NextAction {
-        // If no velocity was known, as at rest, every correction counts as large.
-        let before = self.last.min(1.0);
-        let fall = moved / before;
+        let before = self.last;
         self.last = moved;
+        let is_rounding = r.is_rounding::<T>();
         // A predicted velocity is corrected at least once, and derivatives become exact by a correction.
         let may_end = T::ORDER == 0 && r.iteration > 0;
-        if moved <= ROUNDINGS * T::EPSILON {
-            return match may_end && moved <= LEFT_ROUNDINGS * T::EPSILON {
+        let unit = T::EPSILON;
+        if is_rounding && moved.own <= ROUNDINGS * unit {
+            let is_exact =
+                moved.own <= LEFT_ROUNDINGS * unit && r.size <= POLISHED_ROUNDINGS * unit;
+            return match may_end && is_exact {
                 true => NextAction::End,
                 false => NextAction::CorrectAndEnd,
             };
         }
-        // Predicts the next correction from the decrease of the last one. The tangent may belong to the last trial: its
-        // relative error is then the length of the last correction.
-        let next = moved * (FORESIGHT * fall.max(before));
-        if may_end && next <= LEFT_ROUNDINGS * T::EPSILON {
+        if may_end && is_foreseen::<T>(r, moved.own, before.own) {
             return NextAction::CorrectAndEnd;
         }
-        match r.is_rounding::<T>() && self.stand_still(decrement()) {
+        // A part that still comes nearer to its own root is not rounding, neither of longer parts nor of its terms.
+        let falls = moved.own < 0.25 * before.own;
+        let ends = is_rounding
+            && (self.stand_still(decrement()) || moved.shared <= ROUNDINGS * unit)
+            && !falls;
+        match ends {
             true => NextAction::EndIfRounding,
             false => NextAction::Correct,
         }
@@ -126,14 +162,26 @@ impl Corrections {
         } else {
             self.without_fall += 1;
         }
-        (self.last <= SMALL && self.without_fall > 0)
-            || (self.without_fall >= MOST_WITHOUT_FALL && self.last.is_finite())
+        (self.last.shared <= SMALL && self.without_fall > 0)
+            || (self.without_fall >= MOST_WITHOUT_FALL && self.last.shared.is_finite())
     }
+}
+
+/// Whether the correction after this one would be rounding, and its residual too: both decrease as the last ones. The
+/// decrease of residuals alone can be too optimistic: if one equation dominated at the first trial, it hides the others. The
+/// tangent may belong to the last trial: its relative error is then the length of the last correction.
+#[inline(always)]
+fn is_foreseen<T: Real>(r: Residual, moved: f64, before: f64) -> bool {
+    // If no velocity was known, as at rest, every correction counts as large.
+    let before = before.min(1.0);
+    let factor = FORESIGHT * (r.size / r.previous).max(moved / before).max(before);
+    r.size * factor <= POLISHED_ROUNDINGS * T::EPSILON
+        && moved * factor <= LEFT_ROUNDINGS * T::EPSILON
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Corrections, NextAction, ROUNDINGS, Residual};
+    use super::{Corrections, Moved, NextAction, ROUNDINGS, Residual};
     use crate::groups::{Additive, Group};
     use crate::solvers::newton::{Solved, solve};
     use nalgebra::SMatrix;
@@ -149,7 +197,12 @@ mod tests {
                 previous: 0.0,
                 iteration,
             };
-            let next = corrections.next::<f64>(r, moved / length, || moved * moved);
+            let relative = moved / length;
+            let relative = Moved {
+                own: relative,
+                shared: relative,
+            };
+            let next = corrections.next::<f64>(r, relative, || moved * moved);
             next != NextAction::Correct
         });
         found.map(|i| i + 1)
@@ -182,6 +235,10 @@ mod tests {
                     size: sizes[iteration],
                     previous: [f64::INFINITY, sizes[0]][iteration],
                     iteration,
+                };
+                let moved = Moved {
+                    own: moved,
+                    shared: moved,
                 };
                 found = corrections.next::<f64>(r, moved, || 1.0);
             }

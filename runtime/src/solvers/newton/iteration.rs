@@ -1,10 +1,10 @@
 //! The course of an iteration, for groups described by types and by values alike: which attempt runs, which correction
 //! comes next, and when a new tangent or new sizes of terms are needed. Takes the size of each residual and correction.
 
-use super::corrections::{Corrections, NextAction, Residual};
+use super::corrections::{Corrections, Moved, NextAction, Residual};
 use super::{
-    CONVERGED_ROUNDINGS, LATE, MOST_ITERATIONS, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT,
-    WORTH_KEEPING,
+    CONVERGED_ROUNDINGS, CURRENT_SCALE, LATE, MOST_ITERATIONS, NewtonFailure, OLDEST_SCALE,
+    OLDEST_TANGENT, WORTH_KEEPING,
 };
 use crate::scalar::Real;
 
@@ -36,7 +36,7 @@ pub(super) struct Iteration {
     count: usize,
     /// Whether the solution is found, and only its eliminated unknowns are still needed.
     pub found: bool,
-    /// Whether the sizes of the terms were computed anew because corrections no longer decreased.
+    /// Whether the sizes of the terms were computed anew because they had to decide.
     renewed: bool,
 }
 
@@ -112,17 +112,23 @@ impl Iteration {
         !(is_small && age < OLDEST_TANGENT)
     }
 
-    /// The action after a correction of this relative length: see [`Corrections::next`].
+    /// The action after a correction of this relative length: see [`Corrections::next`]. The sizes of the terms are
+    /// `weighed` steps old.
     #[inline(always)]
-    pub fn next<T: Real>(&mut self, moved: f64, decrement: impl FnOnce() -> f64) -> NextAction {
+    pub fn next<T: Real>(
+        &mut self,
+        moved: Moved,
+        weighed: u32,
+        decrement: impl FnOnce() -> f64,
+    ) -> NextAction {
         let residual = Residual {
             size: self.size,
             previous: self.previous,
             iteration: self.count,
         };
         let next = self.corrections.next::<T>(residual, moved, decrement);
-        match next == NextAction::EndIfRounding && self.is_first() && !self.renewed {
-            // Later attempts compute the sizes of the terms at every trial.
+        let is_current = weighed < CURRENT_SCALE || self.renewed || !self.is_first();
+        match next == NextAction::EndIfRounding && !is_current {
             true => NextAction::Measure,
             false => next,
         }

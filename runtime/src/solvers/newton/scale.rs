@@ -3,6 +3,7 @@
 //! terms suggest. Takes the absolute values of the last factored tangent, and scales; raises the scales. Gives the
 //! lengths for corrections.
 
+use super::corrections::Moved;
 use super::parts::{Kinds, SlowPartTest};
 use crate::scalar::larger;
 
@@ -130,11 +131,11 @@ impl Tangent<'_> {
 }
 
 /// The largest correction of a part over the part's length: `corrections` are the largest coordinates, `squares` the
-/// squared lengths, `roots` as in [`Tangent::roots`]. The length is at least [`SHARE`] times the longest part in common
-/// units. Multipliers do not count, because they vanish without a constraint force. Every correction of a part of length
-/// zero is large. NaN if a correction is NaN.
+/// squared lengths, `roots` as in [`Tangent::roots`]. A shared length is at least [`SHARE`] times the longest part in
+/// common units. Multipliers do not count, because they vanish without a constraint force. Every correction of a part of
+/// length zero is large, and so is a correction that is NaN.
 #[inline(always)]
-pub(super) fn relative(corrections: &[f64], squares: &[f64], roots: &[f64]) -> f64 {
+pub(super) fn relative(corrections: &[f64], squares: &[f64], roots: &[f64]) -> Moved {
     let parts = || corrections.iter().zip(squares).zip(roots);
     // The length of a half turn is infinite.
     let length = |square: f64| {
@@ -146,17 +147,27 @@ pub(super) fn relative(corrections: &[f64], squares: &[f64], roots: &[f64]) -> f
     };
     let common = parts().map(|((_, square), root)| length(*square) * root);
     let most = common.fold(0.0, larger);
-    let mut worst = 0.0;
+    let is_known = most > 0.0 && most.is_finite();
+    let mut worst = Moved::NOT;
     for ((correction, square), root) in parts() {
-        let share = match most > 0.0 && most.is_finite() {
-            true => correction * root / (length(*square) * root).max(SHARE * most),
-            false => correction / length(*square),
+        if correction.is_nan() {
+            return Moved::FAR;
+        }
+        let length = length(*square);
+        let (times, least) = match is_known {
+            true => (*root, SHARE * most),
+            false => (1.0, 0.0),
         };
-        // Zero over zero counts as zero, an unknown correction as unknown.
-        worst = match share > worst || correction.is_nan() {
-            true => share,
-            false => worst,
-        };
+        // Multipliers, and zero over zero.
+        if times == 0.0 || *correction == 0.0 {
+            continue;
+        }
+        let moved = correction * times;
+        let own = length * times;
+        worst = worst.or(Moved {
+            own: moved / own,
+            shared: moved / own.max(least),
+        });
     }
     worst
 }
