@@ -7,7 +7,6 @@ mod checked_points;
 mod continuation_stage;
 mod corrections;
 mod failure;
-mod iteration;
 mod parts;
 pub(crate) mod principal;
 mod reduced;
@@ -29,8 +28,7 @@ pub use verdict::{Anchor, Numbers, Verdict};
 use crate::groups::Group;
 use crate::linalg::Factors;
 use crate::scalar::Real;
-use corrections::{Moved, NextAction};
-use iteration::{Correction, Iteration};
+use corrections::{Corrections, NextAction, Residual};
 use nalgebra::{SMatrix, SVector};
 use reduced::AtRest;
 
@@ -57,9 +55,6 @@ const OLDEST_SCALE: u32 = 256;
 /// The sizes of the terms are also recomputed after this many iterations, because the terms may have grown.
 const LATE: usize = 8;
 
-/// Sizes of terms are current for this many steps, if they decide alone whether an error is rounding.
-const CURRENT_SCALE: u32 = 8;
-
 /// A factored tangent is reused while each correction reduces the residual below this fraction. Otherwise a tangent at
 /// the new trial is cheaper.
 const WORTH_KEEPING: f64 = 0.02;
@@ -68,7 +63,7 @@ const WORTH_KEEPING: f64 = 0.02;
 /// motion by a few step angles.
 const OLDEST_TANGENT: u32 = 8;
 
-/// The next correction may exceed its prediction, from the decrease of the last one, by at most this factor.
+/// The next residual may exceed its prediction, from the rate of the last correction, by at most this factor.
 const FORESIGHT: f64 = 4.0;
 
 /// A converged solution.
@@ -81,6 +76,9 @@ pub struct Solved<G> {
     /// The residual before the last step relative to the size of its terms: the maximum over equations and lanes.
     pub residual: f64,
 }
+
+/// The index of an attempt after which no other follows.
+const LAST_ATTEMPT: u32 = 2;
 
 /// If the terms of an equation are smaller than this fraction of the terms of similar equations, the similar equations
 /// set its scale.
@@ -104,9 +102,11 @@ pub struct Search<T, G, const D: usize, W = G, const E: usize = D> {
     next: u64,
     /// For each equation, the inverse of the size of its terms.
     weights: SVector<T, D>,
-    /// For each part, the factor that gives its length in common units.
-    roots: [T; D],
-    /// The number of steps since `weights` and `roots` were computed.
+    /// For each coordinate, the inverse length of its part of the velocity.
+    lengths: SVector<T, D>,
+    /// For each part, the square of the length below which `weights` and `lengths` are too old.
+    shortest: [T; D],
+    /// The number of steps since `weights` and `lengths` were computed.
     weighed: u32,
     /// The unit of length of each part, and the rounding error of its length.
     units: [f64; D],
@@ -150,7 +150,8 @@ where
             known: 0,
             next: 0,
             weights: SVector::zeros(),
-            roots: [T::zero(); D],
+            lengths: SVector::zeros(),
+            shortest: [T::zero(); D],
             weighed: OLDEST_SCALE,
             units: [1.0; D],
             noise: [0.0; D],
@@ -221,16 +222,31 @@ where
         } else {
             self.start()
         };
+        let attempt = if foreseen { 0 } else { 1 };
         if !foreseen {
             self.weighed = OLDEST_SCALE;
         }
         Newton {
             search: self,
             trial: first,
+            attempt,
             anchor: None,
             residual: SVector::zeros(),
-            iteration: Iteration::new(foreseen),
+            size: f64::NAN,
+            previous: f64::INFINITY,
+            corrections: Corrections::none(),
+            iteration: 0,
+            found: None,
+            renewed: false,
         }
+    }
+
+    /// Whether some part of the velocity is much shorter than when the sizes of the terms were computed.
+    #[inline(always)]
+    fn is_shorter(&self, velocity: &G) -> bool {
+        let squares = squares::<T, G, D>(velocity);
+        let mut parts = 0..G::PARTS.min(D);
+        parts.any(|b| !(self.shortest[b] - squares[b]).nowhere_positive())
     }
 
     /// The last solution, or the neutral element before the first.
@@ -239,18 +255,6 @@ where
             0 => G::identity(),
             _ => self.past[self.newest],
         }
-    }
-
-    /// Forgets all solutions and measurements. Returns false if there were no solutions.
-    #[cold]
-    fn forget(&mut self) -> bool {
-        let begun = self.known > 0;
-        *self = Self {
-            tries: self.tries,
-            last: self.last,
-            ..Self::from_rest()
-        };
-        begun
     }
 
     /// Computes the units of all parts and their rounding errors from a tangent.
@@ -326,14 +330,13 @@ where
 /// [`Group::retract`] at 0, or of [`Group::retract_from_left`]. It is factored once and kept while the
 /// corrections decrease fast.
 ///
-/// A solution is accepted in three cases (see `corrections`):
+/// Each equation is judged by the size of its own terms, its scale. A solution is accepted if the last
+/// correction is rounding of the velocity, for any scales (see `corrections`), and if one of these
+/// conditions holds for all residuals:
 ///
-/// - all residuals are rounding of their terms, and the last correction is rounding of each part of the velocity;
-/// - the next correction and its residuals are certain to be rounding;
-/// - all residuals are rounding of their terms, and corrections no longer decrease or are rounding of longer parts.
-///
-/// A residual is rounding below `16 EPSILON scale`, or below `64 EPSILON scale` without decrease. The scale of an
-/// equation is the size of its own terms.
+/// - they are below `16 EPSILON scale`, and one more correction is made;
+/// - the next correction is certain to bring them below `4 EPSILON scale`;
+/// - they are below `64 EPSILON scale` and no longer decrease.
 ///
 /// Residuals are measured by their real parts, in every lane. From a real solution, one more step makes
 /// the first derivatives exact. Dual numbers therefore get such a step, with a tangent of its own.
@@ -344,9 +347,17 @@ where
 pub struct Newton<'a, T, G, const D: usize, W = G, const E: usize = D> {
     search: &'a mut Search<T, G, D, W, E>,
     trial: G,
+    attempt: u32,
     anchor: Option<Anchor<W, E>>,
     residual: SVector<T, D>,
-    iteration: Iteration,
+    size: f64,
+    previous: f64,
+    corrections: Corrections,
+    iteration: usize,
+    /// The number of iterations of a solution whose remaining unknowns are still needed.
+    found: Option<usize>,
+    /// Whether the iteration was about to end and computed the sizes of the terms anew.
+    renewed: bool,
 }
 
 /// The result of a correction.
@@ -380,7 +391,7 @@ where
     /// at rest, where the bounds of terms with a kink are invalid.
     #[inline(always)]
     pub fn wants_scale(&self) -> bool {
-        self.search.weighed >= OLDEST_SCALE || !self.iteration.is_first()
+        self.search.weighed >= OLDEST_SCALE || self.attempt > 0
     }
 
     /// Takes the sizes of the terms at the trial. For each lane, `rounding` bounds the rounding of each residual, in
@@ -399,53 +410,69 @@ where
             let unit = search.unit.lane(lane).abs();
             let squares = squares::<T, G, D>(&self.trial);
             let lengths = squares.map(|x| x.lane(lane).sqrt());
-            let size = G::DIMENSION.min(D);
             let tangent = scale::Tangent {
                 entry: &|i, j| search.factors.entry(i, j, lane) / unit,
                 part_of: &G::part_of,
                 lengths: &lengths,
             };
-            tangent.raise(&mut scales.as_mut_slice()[..size]);
-            let mut roots = [0.0; D];
-            tangent.roots(size, &mut roots);
+            tangent.raise(&mut scales.as_mut_slice()[..G::DIMENSION.min(D)]);
+            let mut inverses = [0.0; D];
+            tangent.inverse_lengths(&mut inverses[..G::DIMENSION.min(D)]);
+            let mut shortest = [0.0; D];
+            tangent.shortest(&inverses[..G::DIMENSION.min(D)], &mut shortest);
             let search = &mut *self.search;
             for (weight, scale) in search.weights.iter_mut().zip(&scales) {
                 weight.set_lane(lane, T::One::from_f64((1.0 / scale).min(f64::MAX)));
             }
-            for (own, root) in search.roots.iter_mut().zip(roots) {
-                own.set_lane(lane, T::One::from_f64(root));
+            for (own, inverse) in search.lengths.iter_mut().zip(inverses) {
+                own.set_lane(lane, T::One::from_f64(inverse));
+            }
+            for (own, length) in search.shortest.iter_mut().zip(shortest) {
+                own.set_lane(lane, T::One::from_f64(length * length));
             }
         }
         self.search.measured = false;
         self.search.weighed = 0;
     }
 
-    /// Starts the step again without the solutions and measurements of earlier steps. Returns false if this attempt
-    /// already does so.
-    #[cold]
-    #[inline(never)]
-    pub fn begin_afresh(&mut self) -> bool {
-        if !self.search.forget() {
-            return false;
-        }
-        self.iteration.restart_at_last();
-        self.anchor = None;
-        self.begin_at(G::identity());
-        true
-    }
-
-    fn begin_at(&mut self, trial: G) {
+    pub(super) fn begin_at(&mut self, trial: G) {
         self.trial = trial;
         self.search.weighed = OLDEST_SCALE;
         self.search.age = OLDEST_TANGENT;
+        self.previous = f64::INFINITY;
+        self.corrections = Corrections::none();
+        self.iteration = 0;
+        self.found = None;
     }
 
     /// Takes the residual at the trial; returns whether it needs the tangent there.
     #[inline(always)]
     pub fn assess(&mut self, residual: SVector<T, D>) -> bool {
-        let size = largest(&residual.component_mul(&self.search.weights));
+        self.size = largest(&residual.component_mul(&self.search.weights));
         self.residual = residual;
-        self.iteration.wants_tangent::<T>(size, self.search.age)
+        if T::ORDER > 0 {
+            return true;
+        }
+        if self.iteration > 0 {
+            return self.size > WORTH_KEEPING * self.previous && !self.polished();
+        }
+        // If the prediction is exact to rounding, the tangent of an earlier step suffices.
+        !(self.size <= CONVERGED_ROUNDINGS * T::EPSILON && self.search.age < OLDEST_TANGENT)
+    }
+
+    /// Whether the trial needs no correction.
+    #[inline(always)]
+    fn polished(&self) -> bool {
+        self.corrections.are_polished::<T>(self.seen())
+    }
+
+    #[inline(always)]
+    fn seen(&self) -> Residual {
+        Residual {
+            size: self.size,
+            previous: self.previous,
+            iteration: self.iteration,
+        }
     }
 
     /// Takes the tangent at the trial.
@@ -482,69 +509,71 @@ where
 
     #[inline(always)]
     fn correct_by<const FROM_LEFT: bool>(&mut self) -> Progress<G> {
-        match self.corrected::<FROM_LEFT>() {
-            Correction::Last { .. } => self.solved(),
-            Correction::Next => Progress::Continue,
-            Correction::Impossible => self.failed(),
+        if self.polished() {
+            return self.solved_unless_outdated();
         }
-    }
-
-    /// Moves the trial by Newton's correction, unless that is rounding.
-    #[inline(always)]
-    fn corrected<const FROM_LEFT: bool>(&mut self) -> Correction {
+        let size = self.size;
         let right = self.residual * self.search.unit;
         let Some(correction) = self.search.factors.solve(&right) else {
-            return Correction::Impossible;
+            return self.failed();
         };
         let step = -correction;
-        let residual = &self.residual;
+        let moved = largest(&step.component_mul(&self.search.lengths));
         let decrement = || {
-            let terms = step.iter().zip(residual);
+            let terms = step.iter().zip(&self.residual);
             let sum = terms.fold(T::zero(), |sum, (x, r)| sum + *x * *r);
             largest(&SVector::<T, 1>::new(sum))
         };
-        let moved = self.relative(&step);
-        let weighed = self.search.weighed;
-        let next = self.iteration.next::<T>(moved, weighed, decrement);
-        match next {
-            NextAction::End => return Correction::Last { moved: false },
-            NextAction::Measure => return self.iteration.measure(&mut self.search.weighed),
-            NextAction::Correct | NextAction::CorrectAndEnd | NextAction::EndIfRounding => {}
+        let next = self.corrections.next::<T>(self.seen(), moved, decrement);
+        if next == NextAction::End {
+            return self.solved_unless_outdated();
         }
         self.trial = match FROM_LEFT {
             true => self.trial.retract_from_left(step.as_slice()),
             false => self.trial.retract(step.as_slice()),
         };
-        self.iteration.corrected(next, &mut self.search.weighed)
-    }
-
-    /// The largest correction of a part of the velocity, over the present length of the part, in all lanes.
-    #[inline(always)]
-    fn relative(&self, step: &SVector<T, D>) -> Moved {
-        let (size, count) = (G::DIMENSION.min(D), G::PARTS.min(D));
-        let squares = squares::<T, G, D>(&self.trial);
-        let mut worst = Moved::NOT;
-        for lane in 0..T::LANES {
-            let mut moved = [0.0; D];
-            for k in 0..size {
-                let own = &mut moved[G::part_of(k)];
-                let x = step[k].lane(lane).abs();
-                *own = if x > *own || x.is_nan() { x } else { *own };
-            }
-            let squares = squares.map(|x| x.lane(lane));
-            let roots = self.search.roots.map(|x| x.lane(lane));
-            let own = scale::relative(&moved[..count], &squares[..count], &roots[..count]);
-            worst = worst.or(own);
+        if next == NextAction::CorrectAndEnd && !self.is_outdated() {
+            return self.solved(self.iteration + 1);
         }
-        worst
+        self.previous = size;
+        self.iteration += 1;
+        if self.iteration == LATE {
+            self.search.weighed = OLDEST_SCALE;
+        }
+        if self.iteration == MOST_ITERATIONS || !size.is_finite() {
+            return self.failed();
+        }
+        Progress::Continue
+    }
+
+    /// Whether the scales are too large for this trial: they were computed for a longer velocity. They must be computed
+    /// anew before the iteration ends, but only once: velocities that are only rounding never agree. Later attempts
+    /// compute them at every trial.
+    #[inline(always)]
+    fn is_outdated(&mut self) -> bool {
+        let is_shorter = || self.search.is_shorter(&self.trial);
+        let outdated = self.attempt == 0 && !self.renewed && is_shorter();
+        if outdated {
+            self.renewed = true;
+            self.search.weighed = OLDEST_SCALE;
+        }
+        outdated
     }
 
     #[inline(always)]
-    fn solved(&self) -> Progress<G> {
+    fn solved_unless_outdated(&mut self) -> Progress<G> {
+        match self.is_outdated() {
+            true => Progress::Continue,
+            false => self.solved(self.iteration),
+        }
+    }
+
+    #[inline(always)]
+    fn solved(&self, iterations: usize) -> Progress<G> {
         Progress::Solved(Solved {
             element: self.trial,
-            iterations: self.iteration.count(),
-            residual: self.iteration.size(),
+            iterations,
+            residual: self.size,
         })
     }
 }

@@ -9,15 +9,19 @@ mod saved;
 
 pub use chart::{Chart, Lane};
 
-use super::corrections::{Moved, NextAction};
-use super::iteration::{Correction, Iteration};
+use super::corrections::{Corrections, NextAction, Residual};
 use super::principal::{Fold, Traced, trace};
-use super::scale::{self, Tangent, measure};
+use super::scale::{Tangent, measure};
 use super::{
-    BOUND_ROUNDINGS, LEAST_SHARE, NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT,
-    Progress, REMEMBERED, Solved,
+    BOUND_ROUNDINGS, CONVERGED_ROUNDINGS, LAST_ATTEMPT, LATE, LEAST_SHARE, MOST_ITERATIONS,
+    NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT, Progress, REMEMBERED, Solved,
+    WORTH_KEEPING,
 };
 use crate::linalg::{Dense, DenseFactors, Reals};
+use crate::scalar::Real;
+
+/// The rounding unit of plain numbers.
+const UNIT: f64 = <f64 as Real>::EPSILON;
 
 /// A principal root to be polished, with the distance within which a polished solution must stay.
 #[derive(Clone, Debug)]
@@ -33,7 +37,8 @@ pub struct AnySearch<C: Chart> {
     past: Vec<C::Element>,
     next: u64,
     weights: Vec<f64>,
-    roots: Vec<f64>,
+    lengths: Vec<f64>,
+    shortest: Vec<f64>,
     weighed: u32,
     units: Vec<f64>,
     noise: Vec<f64>,
@@ -66,7 +71,8 @@ impl<C: Chart> AnySearch<C> {
             past: Vec::new(),
             next: 0,
             weights: vec![0.0; dimension],
-            roots: vec![0.0; dimension],
+            lengths: vec![0.0; dimension],
+            shortest: Vec::new(),
             weighed: OLDEST_SCALE,
             units: Vec::new(),
             noise: Vec::new(),
@@ -89,7 +95,8 @@ impl<C: Chart> AnySearch<C> {
     pub fn measure_as(&mut self, other: &Self) {
         self.next = other.next;
         self.weights.clone_from(&other.weights);
-        self.roots.clone_from(&other.roots);
+        self.lengths.clone_from(&other.lengths);
+        self.shortest.clone_from(&other.shortest);
         self.weighed = other.weighed;
         self.units.clone_from(&other.units);
         self.noise.clone_from(&other.noise);
@@ -102,7 +109,8 @@ impl<C: Chart> AnySearch<C> {
     fn forget(&mut self) {
         self.past.clear();
         self.weights.fill(0.0);
-        self.roots.fill(0.0);
+        self.lengths.fill(0.0);
+        self.shortest.clear();
         self.weighed = OLDEST_SCALE;
         self.units.clear();
         self.noise.clear();
@@ -141,8 +149,14 @@ impl<C: Chart> AnySearch<C> {
             search: self,
             chart,
             whole,
+            attempt: u32::from(!foreseen),
             anchor: None,
-            iteration: Iteration::new(foreseen),
+            size: f64::NAN,
+            previous: f64::INFINITY,
+            corrections: Corrections::none(),
+            iteration: 0,
+            found: None,
+            renewed: false,
             has_moved: false,
         }
     }
@@ -189,8 +203,14 @@ pub struct AnyNewton<'a, C: Chart> {
     search: &'a mut AnySearch<C>,
     chart: &'a C,
     whole: &'a C,
+    attempt: u32,
     anchor: Option<Anchor<C::Element>>,
-    iteration: Iteration,
+    size: f64,
+    previous: f64,
+    corrections: Corrections,
+    iteration: usize,
+    found: Option<usize>,
+    renewed: bool,
     /// Whether the last call of [`correct`](Self::correct) moved the trial.
     has_moved: bool,
 }
@@ -220,7 +240,7 @@ impl<C: Chart> AnyNewton<'_, C> {
     /// Whether the sizes of the terms are unknown or too old.
     #[must_use]
     pub fn wants_scale(&self) -> bool {
-        self.search.weighed >= OLDEST_SCALE || !self.iteration.is_first()
+        self.search.weighed >= OLDEST_SCALE || self.attempt > 0
     }
 
     /// Takes the sizes of the terms at the trial: `rounding` bounds the rounding of each residual.
@@ -243,12 +263,15 @@ impl<C: Chart> AnyNewton<'_, C> {
             lengths: &lengths,
         };
         tangent.raise(&mut scales);
-        let roots = &mut self.search.roots;
-        roots.resize(parts.count(), 0.0);
-        tangent.roots(scales.len(), roots);
+        let mut inverses = vec![0.0; scales.len()];
+        tangent.inverse_lengths(&mut inverses);
+        let mut shortest = vec![0.0; parts.count()];
+        tangent.shortest(&inverses, &mut shortest);
         for (weight, scale) in self.search.weights.iter_mut().zip(&scales) {
             *weight = (1.0 / scale).min(f64::MAX);
         }
+        self.search.lengths = inverses;
+        self.search.shortest = shortest.iter().map(|x| x * x).collect();
         self.search.measured = false;
         self.search.weighed = 0;
     }
@@ -276,7 +299,7 @@ impl<C: Chart> AnyNewton<'_, C> {
                 if self.anchor.is_some() {
                     return Ok(Settled::Unpolished);
                 }
-                self.iteration.restart_finally();
+                self.attempt = LAST_ATTEMPT;
                 self.begin_at(self.chart.part(self.whole, &root));
                 self.anchor = Some(Anchor { root, reach });
                 Ok(Settled::Again)
@@ -292,7 +315,7 @@ impl<C: Chart> AnyNewton<'_, C> {
             return false;
         }
         self.search.forget();
-        self.iteration.restart_at_last();
+        self.attempt = 1;
         self.anchor = None;
         self.begin_at(self.chart.identity());
         true
@@ -306,14 +329,34 @@ impl<C: Chart> AnyNewton<'_, C> {
     fn begin_again(&mut self) {
         self.search.weighed = OLDEST_SCALE;
         self.search.age = OLDEST_TANGENT;
+        self.previous = f64::INFINITY;
+        self.corrections = Corrections::none();
+        self.iteration = 0;
+        self.found = None;
     }
 
     /// Takes the residual at the trial; returns whether it needs the tangent there.
     pub fn assess(&mut self, residual: &[f64]) -> bool {
-        let size = largest_of(residual, &self.search.weights);
+        self.size = largest_of(residual, &self.search.weights);
         self.search.work.residual.clear();
         self.search.work.residual.extend_from_slice(residual);
-        self.iteration.wants_tangent::<f64>(size, self.search.age)
+        if self.iteration > 0 {
+            return self.size > WORTH_KEEPING * self.previous && !self.polished();
+        }
+        // If the prediction is exact to rounding, the tangent of an earlier step suffices.
+        !(self.size <= CONVERGED_ROUNDINGS * UNIT && self.search.age < OLDEST_TANGENT)
+    }
+
+    fn polished(&self) -> bool {
+        self.corrections.are_polished::<f64>(self.seen())
+    }
+
+    fn seen(&self) -> Residual {
+        Residual {
+            size: self.size,
+            previous: self.previous,
+            iteration: self.iteration,
+        }
     }
 
     /// Takes the tangent at the trial times `unit`, the same number at every step.
@@ -336,59 +379,54 @@ impl<C: Chart> AnyNewton<'_, C> {
     /// Whether the residual is needed. At the last trial, only the remaining unknowns are.
     #[must_use]
     pub fn wants_residual(&self) -> bool {
-        !self.iteration.found
+        self.found.is_none()
     }
 
     /// Like [`correct`](Self::correct), if some unknowns are eliminated; `whole` is the trial with all unknowns.
     pub fn correct_part(&mut self, element: C::Element, from_left: bool) -> Progress<C::Element> {
-        let correction = match self.iteration.found {
-            true => Correction::Last { moved: false },
-            false => self.corrected(from_left),
+        self.has_moved = false;
+        let found = match self.polished() {
+            true if self.is_outdated() => return Progress::Continue,
+            true => Some(self.iteration),
+            false => self.found,
         };
-        match correction {
-            Correction::Last { moved: false } => Progress::Solved(Solved {
+        if let Some(iterations) = found {
+            return Progress::Solved(Solved {
                 element,
-                iterations: self.iteration.count(),
-                residual: self.iteration.size(),
-            }),
-            // The eliminated unknowns of this solution are computed at the next trial.
-            Correction::Last { moved: true } => {
-                self.iteration.found = true;
+                iterations,
+                residual: self.size,
+            });
+        }
+        match self.correct(from_left) {
+            Progress::Solved(solved) => {
+                self.found = Some(solved.iterations);
                 Progress::Continue
             }
-            Correction::Next => Progress::Continue,
-            Correction::Impossible => self.failed(),
+            other => other,
         }
     }
 
     /// Moves the trial by Newton's correction, or ends.
     pub fn correct(&mut self, from_left: bool) -> Progress<C::Element> {
-        match self.corrected(from_left) {
-            Correction::Last { .. } => self.solved(),
-            Correction::Next => Progress::Continue,
-            Correction::Impossible => self.failed(),
-        }
-    }
-
-    fn corrected(&mut self, from_left: bool) -> Correction {
         self.has_moved = false;
+        if self.polished() {
+            return self.solved_unless_outdated();
+        }
+        let size = self.size;
         let residual = &self.search.work.residual;
         let right: Reals = residual.iter().map(|x| x * self.search.unit).collect();
         let Some(correction) = self.search.factors.solve(&right) else {
-            return Correction::Impossible;
+            return self.failed();
         };
         let step: Reals = correction.iter().map(|x| -x).collect();
+        let moved = largest_of(&step, &self.search.lengths);
         let decrement = || {
             let terms = step.iter().zip(residual);
             f64::abs(terms.fold(0.0, |sum, (x, r)| sum + x * r))
         };
-        let moved = self.relative(&step);
-        let weighed = self.search.weighed;
-        let next = self.iteration.next::<f64>(moved, weighed, decrement);
-        match next {
-            NextAction::End => return Correction::Last { moved: false },
-            NextAction::Measure => return self.iteration.measure(&mut self.search.weighed),
-            NextAction::Correct | NextAction::CorrectAndEnd | NextAction::EndIfRounding => {}
+        let next = self.corrections.next::<f64>(self.seen(), moved, decrement);
+        if next == NextAction::End {
+            return self.solved_unless_outdated();
         }
         let Work { trial, moved, .. } = &mut self.search.work;
         match from_left {
@@ -397,42 +435,68 @@ impl<C: Chart> AnyNewton<'_, C> {
         }
         core::mem::swap(trial, moved);
         self.has_moved = true;
-        self.iteration.corrected(next, &mut self.search.weighed)
-    }
-
-    /// The largest correction of a part of the velocity, over the present length of the part.
-    fn relative(&self, step: &[f64]) -> Moved {
-        let parts = self.chart.parts();
-        let squares = self.chart.squares(self.trial());
-        let mut moved = Reals::from_elem(0.0, squares.len());
-        for (k, x) in step.iter().enumerate() {
-            let own = &mut moved[parts.part_of(k)];
-            let x = x.abs();
-            *own = if x > *own || x.is_nan() { x } else { *own };
+        if next == NextAction::CorrectAndEnd && !self.is_outdated() {
+            return self.solved(self.iteration + 1);
         }
-        scale::relative(&moved, &squares, &self.search.roots)
+        self.previous = size;
+        self.iteration += 1;
+        if self.iteration == LATE {
+            self.search.weighed = OLDEST_SCALE;
+        }
+        if self.iteration == MOST_ITERATIONS || !size.is_finite() {
+            return self.failed();
+        }
+        Progress::Continue
     }
 
-    fn solved(&self) -> Progress<C::Element> {
+    /// Whether the scales were computed for a longer velocity and must be computed anew before the iteration ends.
+    fn is_outdated(&mut self) -> bool {
+        if self.attempt > 0 || self.renewed {
+            return false;
+        }
+        let squares = self.chart.squares(self.trial());
+        let mut parts = self.search.shortest.iter().zip(&squares);
+        let outdated = parts.any(|(shortest, [square, _])| !(shortest - square).nowhere_positive());
+        if outdated {
+            self.renewed = true;
+            self.search.weighed = OLDEST_SCALE;
+        }
+        outdated
+    }
+
+    fn solved_unless_outdated(&mut self) -> Progress<C::Element> {
+        match self.is_outdated() {
+            true => Progress::Continue,
+            false => self.solved(self.iteration),
+        }
+    }
+
+    fn solved(&self, iterations: usize) -> Progress<C::Element> {
         Progress::Solved(Solved {
             element: self.trial().clone(),
-            iterations: self.iteration.count(),
-            residual: self.iteration.size(),
+            iterations,
+            residual: self.size,
         })
     }
 
     #[cold]
     fn failed(&mut self) -> Progress<C::Element> {
-        if self.iteration.is_first() {
-            self.iteration.restart_at_last();
+        if self.attempt == 0 {
+            self.attempt = 1;
             self.search.begin_at(self.chart, 1);
             self.begin_again();
             return Progress::Continue;
         }
-        if !self.iteration.is_final() && self.begin_afresh() {
+        if self.attempt < LAST_ATTEMPT && self.begin_afresh() {
             return Progress::Continue;
         }
-        let (failure, iterations) = self.iteration.failure();
+        let (failure, iterations) = if !self.size.is_finite() {
+            (NewtonFailure::NotFinite, self.iteration.saturating_sub(1))
+        } else if self.iteration == MOST_ITERATIONS {
+            (NewtonFailure::NotConverged, MOST_ITERATIONS)
+        } else {
+            (NewtonFailure::SingularTangent, self.iteration)
+        };
         Progress::Failed(self.error(failure, iterations))
     }
 
@@ -453,7 +517,7 @@ impl<C: Chart> AnyNewton<'_, C> {
     #[cold]
     #[must_use]
     pub fn unpolished(&self) -> NewtonError {
-        self.error(NewtonFailure::NotConverged, self.iteration.count())
+        self.error(NewtonFailure::NotConverged, self.iteration)
     }
 
     /// The error if the principal root does not exist; `failure` is the cause of an earlier failure.

@@ -1,10 +1,9 @@
-//! Decides when a velocity is found: the last correction must be rounding of the velocity at its own scale, and each
-//! residual rounding of its terms. Takes the corrections in order, each relative to the present length of its part of the
-//! velocity, and the residuals relative to the sizes of their terms. Neither alone ends an iteration: sizes of terms can
-//! be old, and far from a root a long velocity hides its corrections.
+//! Decides when a velocity is found: the last correction must be rounding of the velocity at its own scale. Takes the
+//! corrections in order, each relative to the length of its part of the velocity. The scales of residuals are not used,
+//! so a wrong scale cannot end an iteration.
 
 use super::{CONVERGED_ROUNDINGS, FORESIGHT, POLISHED_ROUNDINGS, STAGNATED_ROUNDINGS};
-use crate::scalar::{Real, larger};
+use crate::scalar::Real;
 
 /// Corrections below this many roundings of their part of the velocity are rounding. With a badly conditioned tangent,
 /// solving alone leaves a few roundings.
@@ -32,47 +31,6 @@ pub(super) struct Residual {
     pub iteration: usize,
 }
 
-impl Residual {
-    /// Whether the residual is rounding of its terms, if their sizes are current.
-    #[inline(always)]
-    fn is_rounding<T: Real>(self) -> bool {
-        self.size <= CONVERGED_ROUNDINGS * T::EPSILON
-            || (self.size <= STAGNATED_ROUNDINGS * T::EPSILON && self.size >= 0.5 * self.previous)
-    }
-}
-
-/// A correction over the length of its part of the velocity: the maximum over all parts.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Moved {
-    /// Each part has its own length.
-    pub own: f64,
-    /// The length is at least a share of the longest part.
-    pub shared: f64,
-}
-
-impl Moved {
-    /// No correction.
-    pub const NOT: Self = Self {
-        own: 0.0,
-        shared: 0.0,
-    };
-
-    /// A correction that cannot be compared with a length.
-    pub const FAR: Self = Self {
-        own: f64::INFINITY,
-        shared: f64::INFINITY,
-    };
-
-    /// The larger of each.
-    #[inline(always)]
-    pub fn or(self, other: Self) -> Self {
-        Self {
-            own: larger(self.own, other.own),
-            shared: larger(self.shared, other.shared),
-        }
-    }
-}
-
 /// The next action after a correction is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NextAction {
@@ -80,20 +38,26 @@ pub(super) enum NextAction {
     Correct,
     /// Apply the correction and stop.
     CorrectAndEnd,
-    /// Apply the correction and stop, if the sizes of the terms are of this step: some part of the velocity is only
-    /// rounding of longer parts, or corrections no longer decrease.
-    EndIfRounding,
-    /// Compute the sizes of the terms at this trial, and evaluate the equations again.
-    Measure,
     /// Stop without the correction: the error is already at rounding level, and the correction would add its own
     /// rounding.
     End,
 }
 
+/// The assessment of a correction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum CorrectionAssessment {
+    /// Another correction is needed.
+    More,
+    /// The correction is rounding of the velocity, and therefore the last.
+    Last,
+    /// Corrections no longer decrease, because of rounding in an ill-conditioned problem. This is also the last.
+    Noise,
+}
+
 /// The corrections of one iteration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corrections {
-    last: Moved,
+    last: f64,
     /// The last decrement that was below a quarter of the previous minimum: its correction was half as long.
     least: f64,
     /// The number of corrections since then.
@@ -104,106 +68,103 @@ impl Corrections {
     /// No corrections yet.
     pub const fn none() -> Self {
         Self {
-            last: Moved::FAR,
+            last: f64::INFINITY,
             least: f64::INFINITY,
             without_fall: 0,
         }
     }
 
-    /// Whether the next correction is rounding with the factored tangent, too.
+    /// Whether the residual and any further correction would be pure rounding. A predicted velocity is corrected at
+    /// least once.
     #[inline(always)]
-    pub fn are_small(&self) -> bool {
-        self.last.shared <= SMALL
+    pub fn are_polished<T: Real>(&self, r: Residual) -> bool {
+        T::ORDER == 0
+            && r.iteration > 0
+            && r.size <= POLISHED_ROUNDINGS * T::EPSILON
+            && self.leave_rounding::<T>(r.size / r.previous)
     }
 
-    /// Takes a correction and its residual. `decrement` is Newton's decrement, the scalar product of both. Its unit is an
-    /// action for all equations, and it does not depend on their scales.
+    /// Takes a correction over the length of its part of the velocity, and its residual. `decrement` is Newton's
+    /// decrement, the scalar product of both. Its unit is an action for all equations, and it does not depend on their
+    /// scales.
     #[inline(always)]
     pub fn next<T: Real>(
         &mut self,
         r: Residual,
-        moved: Moved,
+        moved: f64,
         decrement: impl FnOnce() -> f64,
     ) -> NextAction {
-        let before = self.last;
+        // If no velocity was known, as at rest, every correction counts as large.
+        let before = self.last.min(1.0);
+        let fall = moved / before;
         self.last = moved;
-        let is_rounding = r.is_rounding::<T>();
-        // A predicted velocity is corrected at least once, and derivatives become exact by a correction.
-        let may_end = T::ORDER == 0 && r.iteration > 0;
         let unit = T::EPSILON;
-        if is_rounding && moved.own <= ROUNDINGS * unit {
-            let is_exact =
-                moved.own <= LEFT_ROUNDINGS * unit && r.size <= POLISHED_ROUNDINGS * unit;
-            return match may_end && is_exact {
-                true => NextAction::End,
-                false => NextAction::CorrectAndEnd,
-            };
+        let is_rounding = r.size <= CONVERGED_ROUNDINGS * unit
+            || (r.size <= STAGNATED_ROUNDINGS * unit && r.size >= 0.5 * r.previous);
+        let judged = match is_rounding {
+            true => self.judged::<T>(decrement),
+            false => CorrectionAssessment::More,
+        };
+        // A correction is needed to make derivatives exact.
+        let may_end = T::ORDER == 0 && r.iteration > 0;
+        if may_end && r.size <= POLISHED_ROUNDINGS * unit && judged == CorrectionAssessment::Last {
+            return NextAction::End;
         }
-        if may_end && is_foreseen::<T>(r, moved.own, before.own) {
-            return NextAction::CorrectAndEnd;
-        }
-        // A part that still comes nearer to its own root is not rounding, neither of longer parts nor of its terms.
-        let falls = moved.own < 0.25 * before.own;
-        let ends = is_rounding
-            && (self.stand_still(decrement()) || moved.shared <= ROUNDINGS * unit)
-            && !falls;
-        match ends {
-            true => NextAction::EndIfRounding,
+        // Predicts the residual after this correction, if it is as good as the last one. The decrease of the residual
+        // alone can be too optimistic: if one equation dominated at the first trial, it hides the others. The tangent may
+        // belong to the last trial: its relative error is then the length of the last correction.
+        let factor = FORESIGHT * (r.size / r.previous).max(fall).max(before);
+        let is_foreseen = may_end && r.size * factor <= POLISHED_ROUNDINGS * unit;
+        match judged != CorrectionAssessment::More
+            || (is_foreseen && self.leave_rounding::<T>(factor))
+        {
+            true => NextAction::CorrectAndEnd,
             false => NextAction::Correct,
         }
     }
 
-    /// Whether the corrections no longer decrease.
+    /// Judges the last correction, if the residual is rounding.
     #[inline(always)]
-    fn stand_still(&mut self, decrement: f64) -> bool {
+    fn judged<T: Real>(&mut self, decrement: impl FnOnce() -> f64) -> CorrectionAssessment {
+        if self.last <= ROUNDINGS * T::EPSILON {
+            return CorrectionAssessment::Last;
+        }
+        let decrement = decrement();
         if decrement < 0.25 * self.least {
             self.least = decrement;
             self.without_fall = 0;
         } else {
             self.without_fall += 1;
         }
-        (self.last.shared <= SMALL && self.without_fall > 0)
-            || (self.without_fall >= MOST_WITHOUT_FALL && self.last.shared.is_finite())
+        let stands_still = (self.last <= SMALL && self.without_fall > 0)
+            || (self.without_fall >= MOST_WITHOUT_FALL && self.last.is_finite());
+        match stands_still {
+            true => CorrectionAssessment::Noise,
+            false => CorrectionAssessment::More,
+        }
     }
-}
 
-/// Whether the correction after this one would be rounding, and its residual too: both decrease as the last ones. The
-/// decrease of residuals alone can be too optimistic: if one equation dominated at the first trial, it hides the others. The
-/// tangent may belong to the last trial: its relative error is then the length of the last correction.
-#[inline(always)]
-fn is_foreseen<T: Real>(r: Residual, moved: f64, before: f64) -> bool {
-    // If no velocity was known, as at rest, every correction counts as large.
-    let before = before.min(1.0);
-    let factor = FORESIGHT * (r.size / r.previous).max(moved / before).max(before);
-    r.size * factor <= POLISHED_ROUNDINGS * T::EPSILON
-        && moved * factor <= LEFT_ROUNDINGS * T::EPSILON
+    /// Whether the next correction can be skipped, if it is smaller than the last one by the factor of the residuals.
+    #[inline(always)]
+    fn leave_rounding<T: Real>(&self, factor: f64) -> bool {
+        self.last * factor <= LEFT_ROUNDINGS * T::EPSILON
+            || (self.without_fall > 0 && self.last <= SMALL)
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Corrections, Moved, NextAction, ROUNDINGS, Residual};
+    use super::{CorrectionAssessment, Corrections, NextAction, ROUNDINGS, Residual};
     use crate::groups::{Additive, Group};
     use crate::solvers::newton::{Solved, solve};
     use nalgebra::SMatrix;
 
-    /// The number of these corrections, for a velocity of this length, after which the iteration ends. All residuals
-    /// are rounding of their terms.
+    /// The number of these corrections, for a velocity of this length, after which the iteration may end.
     fn ends(length: f64, moved: &[f64]) -> Option<usize> {
         let mut corrections = Corrections::none();
-        let mut each = moved.iter().enumerate();
-        let found = each.position(|(iteration, moved)| {
-            let r = Residual {
-                size: 0.0,
-                previous: 0.0,
-                iteration,
-            };
-            let relative = moved / length;
-            let relative = Moved {
-                own: relative,
-                shared: relative,
-            };
-            let next = corrections.next::<f64>(r, relative, || moved * moved);
-            next != NextAction::Correct
+        let found = moved.iter().position(|m| {
+            corrections.last = *m / length;
+            corrections.judged::<f64>(|| m * m) != CorrectionAssessment::More
         });
         found.map(|i| i + 1)
     }
@@ -212,8 +173,6 @@ mod tests {
     fn only_rounding_ends_an_iteration() {
         assert_eq!(ends(1.0, &[0.0]), Some(1));
         assert_eq!(ends(1.0, &[1.0, 1e-3, 1e-7, 1e-15]), Some(4));
-        // The fourth correction would be at most 1e-16.
-        assert_eq!(ends(1.0, &[1.0, 1e-5, 1e-12, 1e-20]), Some(3));
         // The start of Newton's method if a cubic term dominates: each correction is two thirds of the previous one.
         let slow: Vec<f64> = (0..20).map(|i| 0.5 * f64::powi(2.0 / 3.0, i)).collect();
         assert_eq!(ends(1.0, &slow), None);
@@ -236,10 +195,6 @@ mod tests {
                     previous: [f64::INFINITY, sizes[0]][iteration],
                     iteration,
                 };
-                let moved = Moved {
-                    own: moved,
-                    shared: moved,
-                };
                 found = corrections.next::<f64>(r, moved, || 1.0);
             }
             found
@@ -251,8 +206,7 @@ mod tests {
         // At zero velocity, the first correction cannot be compared with a length.
         assert_eq!(next([4.7e307, 1.1e-6]), NextAction::Correct);
         // Corrections that decrease as much as the residual are not rounding.
-        assert_eq!(next([1e-10, 1e-13]), NextAction::CorrectAndEnd);
-        assert_eq!(next([1e-13, 1e-26]), NextAction::End);
+        assert_eq!(next([1e-13, 1e-26]), NextAction::CorrectAndEnd);
         // Two velocities multiply each other. The first correction found one and moved the other by a quarter. The second
         // correction uses the tangent of the first trial, which is wrong by that quarter.
         let decrease = next_of([0.1, 2.1e-9], [0.24, 3.8e-9]);

@@ -2,7 +2,7 @@
 //! possible from the same state.
 //! Takes the last residual and a way to try other steps; gives the error.
 
-use super::{Fold, Found, Newton, Progress, Search};
+use super::{Fold, Found, LAST_ATTEMPT, MOST_ITERATIONS, Newton, Progress, Search};
 use crate::groups::{Coordinate, Group};
 use crate::number_format::{AtMost, Plain, Times, in_lane, instead};
 use crate::scalar::Real;
@@ -244,23 +244,60 @@ impl fmt::Display for NewtonError {
 
 impl std::error::Error for NewtonError {}
 
+impl<T: Real, G, const D: usize, W: Group<T>, const E: usize> Search<T, G, D, W, E>
+where
+    G: Group<T> + Found<W>,
+{
+    /// Forgets all solutions and measurements. Returns false if there were no solutions.
+    #[cold]
+    fn forget(&mut self) -> bool {
+        let begun = self.known > 0;
+        *self = Self {
+            tries: self.tries,
+            last: self.last,
+            ..Self::from_rest()
+        };
+        begun
+    }
+}
+
 impl<T: Real, G, const D: usize, W: Group<T>, const E: usize> Newton<'_, T, G, D, W, E>
 where
     G: Group<T> + Found<W>,
 {
+    /// Starts the step again without the solutions and measurements of earlier steps. Returns false if this attempt
+    /// already does so.
+    #[cold]
+    #[inline(never)]
+    pub fn begin_afresh(&mut self) -> bool {
+        if !self.search.forget() {
+            return false;
+        }
+        self.attempt = 1;
+        self.anchor = None;
+        self.begin_at(G::identity());
+        true
+    }
+
     /// Starts the next attempt, or returns the error of the last attempt.
     #[cold]
     #[inline(never)]
     pub(super) fn failed(&mut self) -> Progress<G> {
-        if self.iteration.is_first() {
-            self.iteration.restart_at_last();
+        if self.attempt == 0 {
+            self.attempt = 1;
             self.begin_at(self.search.start());
             return Progress::Continue;
         }
-        if !self.iteration.is_final() && self.begin_afresh() {
+        if self.attempt < LAST_ATTEMPT && self.begin_afresh() {
             return Progress::Continue;
         }
-        let (failure, iterations) = self.iteration.failure();
+        let (failure, iterations) = if !self.size.is_finite() {
+            (NewtonFailure::NotFinite, self.iteration.saturating_sub(1))
+        } else if self.iteration == MOST_ITERATIONS {
+            (NewtonFailure::NotConverged, MOST_ITERATIONS)
+        } else {
+            (NewtonFailure::SingularTangent, self.iteration)
+        };
         let looked_at = G::DIMENSION.min(D);
         let residual = self.residual.as_slice().get(..looked_at).unwrap_or(&[]);
         Progress::Failed(NewtonError {
@@ -285,7 +322,7 @@ where
             tried: self.search.tries(),
             ..NewtonError::of(
                 NewtonFailure::NotConverged,
-                self.iteration.count(),
+                self.iteration,
                 residual,
                 self.search.weights.as_slice(),
                 &G::coordinate,

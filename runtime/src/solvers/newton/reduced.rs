@@ -2,7 +2,7 @@
 //! with all unknowns; gives the unknowns that Newton's method finds.
 
 use super::parts::{SlowPartTest, comes_near, with_kinds};
-use super::{Correction, Newton, Progress, Solved};
+use super::{Newton, Progress, Solved};
 use crate::groups::{Group, RigidMotion, Rotation};
 use crate::linalg::Factors;
 use crate::saved::{Saved, Words};
@@ -96,19 +96,19 @@ where
     /// Whether the residual is needed. At the last trial, only the remaining unknowns are.
     #[inline(always)]
     pub fn wants_residual(&self) -> bool {
-        !self.iteration.found
+        self.found.is_none()
     }
 
     /// Like [`correct`](Newton::correct), if some unknowns are eliminated; `whole` is the trial with all unknowns.
     #[inline(always)]
     pub fn correct_part(&mut self, whole: W) -> Progress<W> {
-        self.completed::<false>(whole)
+        self.completed(whole, Newton::correct)
     }
 
     /// Like `correct_part`, for [`correct_from_left`](Newton::correct_from_left).
     #[inline(always)]
     pub fn correct_part_from_left(&mut self, whole: W) -> Progress<W> {
-        self.completed::<true>(whole)
+        self.completed(whole, Newton::correct_from_left)
     }
 
     /// [`is_principal`](Newton::is_principal) for all unknowns: `tangent` is the tangent of all equations at rest.
@@ -128,27 +128,31 @@ where
     }
 
     #[inline(always)]
-    fn completed<const FROM_LEFT: bool>(&mut self, element: W) -> Progress<W> {
-        let correction = match self.iteration.found {
-            true => Correction::Last { moved: false },
-            false => self.corrected::<FROM_LEFT>(),
+    fn completed(
+        &mut self,
+        element: W,
+        correct: impl FnOnce(&mut Self) -> Progress<G>,
+    ) -> Progress<W> {
+        let found = match self.polished() {
+            true if self.is_outdated() => return Progress::Continue,
+            true => Some(self.iteration),
+            false => self.found,
         };
-        match correction {
-            Correction::Last { moved: false } => Progress::Solved(Solved {
+        if let Some(iterations) = found {
+            return Progress::Solved(Solved {
                 element,
-                iterations: self.iteration.count(),
-                residual: self.iteration.size(),
-            }),
+                iterations,
+                residual: self.size,
+            });
+        }
+        match correct(self) {
+            Progress::Continue => Progress::Continue,
             // The eliminated unknowns of this solution are computed at the next trial.
-            Correction::Last { moved: true } => {
-                self.iteration.found = true;
+            Progress::Solved(solved) => {
+                self.found = Some(solved.iterations);
                 Progress::Continue
             }
-            Correction::Next => Progress::Continue,
-            Correction::Impossible => match self.failed() {
-                Progress::Failed(e) => Progress::Failed(e),
-                _ => Progress::Continue,
-            },
+            Progress::Failed(e) => Progress::Failed(e),
         }
     }
 }

@@ -12,7 +12,8 @@ impl<G: Group<f64> + Saved, const D: usize, W, const E: usize> Saved for Search<
             known,
             next,
             weights,
-            roots,
+            lengths,
+            shortest,
             weighed,
             units,
             noise,
@@ -31,7 +32,8 @@ impl<G: Group<f64> + Saved, const D: usize, W, const E: usize> Saved for Search<
         *known = words.count(*known, super::REMEMBERED);
         next.words(words);
         weights.words(words);
-        roots.words(words);
+        lengths.words(words);
+        shortest.words(words);
         weighed.words(words);
         whole.words(words);
         units.words(words);

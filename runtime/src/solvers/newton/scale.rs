@@ -3,7 +3,6 @@
 //! terms suggest. Takes the absolute values of the last factored tangent, and scales; raises the scales. Gives the
 //! lengths for corrections.
 
-use super::corrections::Moved;
 use super::parts::{Kinds, SlowPartTest};
 use crate::scalar::larger;
 
@@ -52,6 +51,10 @@ pub(super) fn measure(
     }
 }
 
+/// The scales are computed anew if a part of the velocity is shorter than this fraction of its length at that time:
+/// otherwise, even cubic terms are at least four tenths as large as then.
+const SHORTER: f64 = 0.75;
+
 /// The tangent of the equations, with the lengths of the parts of the velocity.
 pub(super) struct Tangent<'a> {
     /// The absolute value of the tangent at an equation and a coordinate; zero if it is unknown.
@@ -69,13 +72,47 @@ impl Tangent<'_> {
         self.constraints(scales);
     }
 
-    /// For each part, the root of the largest diagonal entry of the tangent; zero if it is unknown, and for multipliers.
-    /// Lengths times these roots have the same unit for all parts, the root of an action.
-    pub fn roots(&self, size: usize, out: &mut [f64]) {
-        out.fill(0.0);
-        for k in 0..size {
-            if let Some(most) = out.get_mut((self.part_of)(k)) {
-                *most = most.max((self.entry)(k, k).sqrt());
+    /// The inverse lengths for corrections of coordinates. The length is the length of the part of the velocity, or
+    /// [`SHARE`] times the longest part in common units, whichever is larger. The inverse is zero for multipliers,
+    /// which vanish without a constraint force. Every correction of a part of length zero is large.
+    pub fn inverse_lengths(&self, out: &mut [f64]) {
+        let parts = 0..out.len();
+        let root = |part: usize| {
+            let own = parts.clone().filter(|k| (self.part_of)(*k) == part);
+            own.fold(0.0, |most: f64, k| most.max((self.entry)(k, k).sqrt()))
+        };
+        let length = |part: usize| self.lengths.get(part).copied().unwrap_or(0.0);
+        // The number of parts is at most the number of coordinates.
+        let most = (parts.clone()).fold(0.0, |most: f64, p| most.max(length(p) * root(p)));
+        let known = most > 0.0 && most.is_finite();
+        for (i, inverse) in out.iter_mut().enumerate() {
+            let part = (self.part_of)(i);
+            let own = root(part);
+            if own == 0.0 && known {
+                *inverse = 0.0;
+                continue;
+            }
+            let least = if known { SHARE * most / own } else { 0.0 };
+            let length = length(part).max(least);
+            *inverse = match length.is_finite() {
+                true => (1.0 / length).min(f64::MAX),
+                // An element without coordinates, such as a half turn.
+                false => 1.0,
+            };
+        }
+    }
+
+    /// The length of each part below which its scales are computed anew. `inverses` are the inverse lengths of the
+    /// coordinates. The result is zero if corrections of a part are not measured by its own length.
+    pub fn shortest(&self, inverses: &[f64], out: &mut [f64]) {
+        for (i, inverse) in inverses.iter().enumerate() {
+            let part = (self.part_of)(i);
+            let length = self.lengths.get(part).copied().unwrap_or(0.0);
+            if let Some(shortest) = out.get_mut(part) {
+                *shortest = match length * inverse > 0.5 {
+                    true => SHORTER * length.min(1.0 / inverse),
+                    false => 0.0,
+                };
             }
         }
     }
@@ -128,48 +165,6 @@ impl Tangent<'_> {
             .filter(|x| x.is_finite())
             .fold(length, f64::max)
     }
-}
-
-/// The largest correction of a part over the part's length: `corrections` are the largest coordinates, `squares` the
-/// squared lengths, `roots` as in [`Tangent::roots`]. A shared length is at least [`SHARE`] times the longest part in
-/// common units. Multipliers do not count, because they vanish without a constraint force. Every correction of a part of
-/// length zero is large, and so is a correction that is NaN.
-#[inline(always)]
-pub(super) fn relative(corrections: &[f64], squares: &[f64], roots: &[f64]) -> Moved {
-    let parts = || corrections.iter().zip(squares).zip(roots);
-    // The length of a half turn is infinite.
-    let length = |square: f64| {
-        if square.is_finite() {
-            square.sqrt()
-        } else {
-            1.0
-        }
-    };
-    let common = parts().map(|((_, square), root)| length(*square) * root);
-    let most = common.fold(0.0, larger);
-    let is_known = most > 0.0 && most.is_finite();
-    let mut worst = Moved::NOT;
-    for ((correction, square), root) in parts() {
-        if correction.is_nan() {
-            return Moved::FAR;
-        }
-        let length = length(*square);
-        let (times, least) = match is_known {
-            true => (*root, SHARE * most),
-            false => (1.0, 0.0),
-        };
-        // Multipliers, and zero over zero.
-        if times == 0.0 || *correction == 0.0 {
-            continue;
-        }
-        let moved = correction * times;
-        let own = length * times;
-        worst = worst.or(Moved {
-            own: moved / own,
-            shared: moved / own.max(least),
-        });
-    }
-    worst
 }
 
 #[cfg(test)]

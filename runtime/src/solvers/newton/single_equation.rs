@@ -1,7 +1,7 @@
 //! Solves a single equation that does not belong to a trajectory. Takes a guess, the size of the terms, the residual
 //! and its tangent; gives a converged element or an error.
 
-use super::{BOUND_ROUNDINGS, NewtonError, Progress, REMEMBERED, Search, Solved};
+use super::{BOUND_ROUNDINGS, LAST_ATTEMPT, NewtonError, Progress, REMEMBERED, Search, Solved};
 use crate::groups::Group;
 use crate::scalar::Real;
 use nalgebra::{SMatrix, SVector};
@@ -22,7 +22,7 @@ pub fn solve<T: Real, G: Group<T>, const D: usize>(
     (search.known, search.next) = (1, 1);
     let mut newton = search.begin(1);
     // Makes a single attempt.
-    newton.iteration.restart_finally();
+    newton.attempt = LAST_ATTEMPT;
     let rounding = SVector::repeat(scale * BOUND_ROUNDINGS * f64::EPSILON / 2.0);
     loop {
         let trial = newton.trial();

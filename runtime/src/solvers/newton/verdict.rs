@@ -4,7 +4,7 @@
 
 use super::parts::{comes_near, varies_little};
 use super::principal::{Equations, Fold, OnGroup, Traced, trace};
-use super::{Found, Newton, OLDEST_TANGENT};
+use super::{Found, LAST_ATTEMPT, Newton, OLDEST_TANGENT};
 use crate::groups::Group;
 use crate::scalar::{OfScalars, Real};
 use nalgebra::SVector;
@@ -75,7 +75,7 @@ where
         if self.anchor.is_some() {
             return false;
         }
-        self.iteration.restart_finally();
+        self.attempt = LAST_ATTEMPT;
         self.begin_at(G::within(&anchor.root));
         self.anchor = Some(anchor);
         true

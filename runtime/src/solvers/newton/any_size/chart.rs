@@ -40,19 +40,17 @@ pub trait Chart {
     /// See [`Group::compared`](crate::groups::Group::compared).
     fn compared(&self, of: &Self::Element, xi: &[f64], out: &mut [[f64; 2]]);
 
-    /// The square of the length of each part of a velocity.
-    fn squares(&self, of: &Self::Element) -> Reals {
-        let mut both = Squares::from_elem([0.0; 2], self.parts().count());
-        self.compared(of, &[], &mut both);
-        both.iter().map(|[square, _]| *square).collect()
+    /// The square of the length of each part of a velocity, twice.
+    fn squares(&self, of: &Self::Element) -> Squares {
+        let mut squares = Squares::from_elem([0.0; 2], self.parts().count());
+        self.compared(of, &[], &mut squares);
+        squares
     }
 
     /// The length of each part of a velocity.
     fn lengths(&self, of: &Self::Element) -> Reals {
-        self.squares(of)
-            .iter()
-            .map(|square| square.sqrt())
-            .collect()
+        let squares = self.squares(of);
+        squares.iter().map(|[square, _]| square.sqrt()).collect()
     }
 
     /// See [`Group::is_within`](crate::groups::Group::is_within).

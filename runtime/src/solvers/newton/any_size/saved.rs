@@ -17,7 +17,8 @@ impl<C: Chart> AnySearch<C> {
             past,
             next,
             weights,
-            roots,
+            lengths,
+            shortest,
             weighed,
             units,
             noise,
@@ -37,7 +38,8 @@ impl<C: Chart> AnySearch<C> {
         past.iter_mut().for_each(|g| element(g, words));
         next.words(words);
         weights.words(words);
-        roots.words(words);
+        lengths.words(words);
+        shortest.words(words);
         weighed.words(words);
         optional(whole, words, || {
             Some((DenseFactors::none(0, true), Vec::new()))
