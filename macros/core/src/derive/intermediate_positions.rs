@@ -2,8 +2,9 @@
 //! its expansion consists of large terms that cancel if the field oscillates fast. Takes expressions; gives a form that
 //! is reduced with each of these sums as a letter.
 //!
-//! Products of such a sum with the increment of the same field are expanded: in the momentum of a mass that depends on
-//! the position, their largest terms cancel exactly if the increment is long.
+//! Terms linear in such a sum are expanded, so that they combine with other linear terms. Products with the increment of
+//! the same field are expanded, too: in the momentum of a mass that depends on the position, their largest terms cancel
+//! exactly if the increment is long.
 
 use super::action::summands;
 use crate::algebra::Algebra;
@@ -36,7 +37,7 @@ pub(super) fn reduced(algebra: &Algebra, e: &Expr) -> Option<Expr> {
     let defined = |e: &Expr| expr::substitute(&names.symbols, e, &names.definitions);
     let (mixed, apart): (Vec<Expr>, Vec<Expr>) = summands(&names.symbols, &reduced)
         .into_iter()
-        .partition(|term| names.mixes(term));
+        .partition(|term| names.mixes(term) || names.is_linear(term));
     if apart.is_empty() {
         return None;
     }
@@ -64,6 +65,17 @@ impl Names {
         };
         let mut within = named.flat_map(|(_, definition)| increments(definition));
         within.any(|increment| letters.contains(&increment))
+    }
+
+    /// Whether such a position occurs in a term only once, as a factor.
+    fn is_linear(&self, term: &Expr) -> bool {
+        let is_named = |l: &Letter| self.definitions.iter().any(|(named, _)| named == l);
+        let found = expr::parts(term);
+        let numbers = found.numbers.iter().map(|(factor, q)| (factor, q.is_one()));
+        let factors = numbers.chain(found.matrices.iter().map(|factor| (factor, true)));
+        let mut within = factors.filter(|(factor, _)| expr::letters(factor).iter().any(is_named));
+        let only = (within.next(), within.next());
+        matches!(only, (Some((factor, true)), None) if matches!(factor.node(), Node::Letter(_)))
     }
 
     fn replace(&mut self, e: &Expr) -> Expr {
