@@ -279,7 +279,7 @@ pub fn shorter(algebra: &Algebra, e: Expr) -> Expr {
     if algebra.exhausted() || !preferred {
         return e;
     }
-    let in_between = intermediate_positions::reduced(algebra, &e);
+    let in_between = intermediate_positions::reduced(algebra, &e, &reduced);
     let in_between = in_between.filter(|form| form.size() <= e.size().max(reduced.size()));
     cancellation::nearer(algebra, in_between.unwrap_or(reduced), e)
 }

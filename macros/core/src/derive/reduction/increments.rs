@@ -56,8 +56,8 @@ pub(super) fn gathered(spec: &Spec, algebra: &Algebra, ends: &[(Letter, Expr)]) 
         return spec.lagrangian.clone();
     }
     let stated = expr::substitute(s, &expr::sum(apart, Shape::SCALAR), ends);
-    let together = intermediate_positions::reduced(algebra, &stated);
-    let together = together.unwrap_or_else(|| algebra.shortest(&stated));
+    let short = algebra.shortest(&stated);
+    let together = intermediate_positions::reduced(algebra, &stated, &short).unwrap_or(short);
     // A remainder at a node would be taken for a term that was stated there, and divided between its edges.
     let stays = split(s, &together).1.is_zero();
     match !algebra.exhausted() && stays && values(&together) < values(&stated) {
