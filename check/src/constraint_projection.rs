@@ -11,7 +11,6 @@ use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::sites::{Moving, all_moving, varied};
 use crate::stated::{Role, Side, Stated};
-use clebsch_core::syntax::ast::Model;
 
 /// The largest residual of a constraint, relative to its terms, that is corrected. A larger residual is a mistake,
 /// which the model reports. The model accepts 1e-9 of a larger measure: it adds to the terms their change with each
@@ -42,12 +41,10 @@ pub struct ProjectedStart {
 /// # Errors
 /// Why the statement cannot be evaluated.
 pub fn onto_constraints(
-    model: &Model,
-    sizes: &[(String, usize)],
+    stated: &Stated,
     setup: &Setup,
     node: &[f64],
 ) -> Result<Option<ProjectedStart>, String> {
-    let stated = Stated::read(model, sizes)?;
     let mut holds = stated.holds.iter();
     if stated.holds.is_empty() || holds.any(|h| h.of_sums && is_long(&stated, setup, h)) {
         return Ok(None);

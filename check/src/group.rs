@@ -121,7 +121,7 @@ impl Group {
         let both = before.iter().zip(numbers).enumerate();
         let open = both.filter(|(k, _)| is_open(*k));
         let most = open.fold(0.0, |most, (_, (a, b))| larger(most, (a - b).abs()));
-        let entries = element.entries.iter_mut().enumerate();
+        let entries = element.entries_mut().iter_mut().enumerate();
         for (_, x) in entries.filter(|(k, _)| is_open(*k)) {
             x.error += OF_AN_INCREMENT * UNIT * most;
         }

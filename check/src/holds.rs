@@ -3,7 +3,7 @@
 
 use crate::evaluate::Here;
 use crate::judge::Part;
-use crate::number::{Number, UNIT, larger};
+use crate::number::{UNIT, larger};
 use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::sites::{Moving, indices};
@@ -36,13 +36,10 @@ pub fn held(
     for hold in &stated.holds {
         let own = parts.len();
         for (index, value) in values(scene, stated, setup, (hold, moving), node)? {
-            let entries: Vec<Number> = match value {
-                Value::Known(m) => m.entries,
-                Value::Open(_) => {
-                    return Err(format!("the constraint `{}` has no size", hold.name));
-                }
+            let Value::Known(m) = value else {
+                return Err(format!("the constraint `{}` has no size", hold.name));
             };
-            for x in entries {
+            for x in m.entries.iter() {
                 let slopes = x
                     .slopes
                     .iter()
@@ -102,7 +99,7 @@ pub fn gradients(
                 return Err(format!("the constraint `{}` has no size", hold.name));
             };
             let site = index.and_then(|i| usize::try_from(i).ok());
-            for x in m.entries {
+            for x in m.entries.iter() {
                 let slopes = x.slopes.iter();
                 let gradient = slopes.filter_map(|s| Some((usize::try_from(s.of).ok()?, s.value)));
                 out.push(Rate {

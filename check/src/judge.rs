@@ -10,8 +10,8 @@ use crate::sites::{Moving, moving, varied};
 use crate::stated::{Role, Side, Stated};
 use crate::statements;
 use crate::two_frames::{Rounding, TwoFrames};
-use clebsch_core::syntax::ast::Model;
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Roundings of the terms of an equation that a solver may leave, in addition to the rounding of the evaluation.
 pub const LEFT_BY_SOLVERS: f64 = 8.0;
@@ -131,17 +131,16 @@ impl Judged {
 /// Judges steps of one model and case.
 #[derive(Clone, Debug)]
 pub struct Judge {
-    stated: Stated,
+    stated: Arc<Stated>,
     setup: Setup,
 }
 
 impl Judge {
-    /// For a model with these sizes by name.
+    /// For a statement and the data of a case.
     ///
     /// # Errors
     /// Why it cannot be judged.
-    pub fn new(model: &Model, sizes: &[(String, usize)], setup: Setup) -> Result<Self, String> {
-        let stated = Stated::read(model, sizes)?;
+    pub fn new(stated: Arc<Stated>, setup: Setup) -> Result<Self, String> {
         match stated.functionals.is_empty() {
             true => Ok(Self { stated, setup }),
             false => Err("functionals of all sites are not supported here".to_owned()),

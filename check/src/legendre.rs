@@ -16,8 +16,8 @@ use crate::setup::Setup;
 use crate::sites::{Moving, all_moving, varied};
 use crate::small_step_limit::{Block, limit};
 use crate::stated::{Role, Stated};
-use clebsch_core::syntax::ast::Model;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// The angle of the first rotation.
 const FIRST: f64 = 0.25;
@@ -61,7 +61,7 @@ impl From<String> for NoMomentum {
 /// Gives momenta to velocities, for one model and case.
 #[derive(Clone, Debug)]
 pub struct Legendre {
-    stated: Stated,
+    stated: Arc<Stated>,
     setup: Setup,
 }
 
@@ -69,18 +69,17 @@ pub struct Legendre {
 pub type Velocities = BTreeMap<String, Velocity>;
 
 impl Legendre {
-    /// For a model with these sizes by name. The observables of the setup are the initial values.
-    ///
-    /// # Errors
-    /// Why it cannot be evaluated.
-    pub fn new(model: &Model, sizes: &[(String, usize)], setup: Setup) -> Result<Self, String> {
-        let mut stated = Stated::read(model, sizes)?;
+    /// For a statement and the data of a case. The observables of the setup are the initial values.
+    #[must_use]
+    pub fn new(mut stated: Arc<Stated>, setup: Setup) -> Self {
         // Functionals of all sites appear in terms of a node, which vanish with the step.
-        let functionals = std::mem::take(&mut stated.functionals);
-        stated
-            .terms
-            .retain(|term| !functionals.iter().any(|name| term.value.has(name)));
-        Ok(Self { stated, setup })
+        if !stated.functionals.is_empty() {
+            let own = Arc::make_mut(&mut stated);
+            let functionals = std::mem::take(&mut own.functionals);
+            own.terms
+                .retain(|term| !functionals.iter().any(|name| term.value.has(name)));
+        }
+        Self { stated, setup }
     }
 
     /// The momenta of configurations at a node with these velocities. If a configuration is not named, it is at rest.

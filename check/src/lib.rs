@@ -50,4 +50,5 @@ pub use legendre::{Legendre, Momentum, NoMomentum, Velocities};
 pub use number::{Number, Slope, UNIT};
 pub use run::{Chosen, StepSelection, Verdict};
 pub use setup::{Field, Setup};
+pub use stated::Stated;
 pub use undefined::Undefined;

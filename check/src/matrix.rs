@@ -1,6 +1,7 @@
 //! Small matrices of numbers with derivatives, by rows. The result is missing if sizes do not fit.
 
 use crate::number::Number;
+use std::rc::Rc;
 
 /// A matrix; a number has one row and one column, a vector one column.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,8 +10,8 @@ pub struct Matrix {
     pub rows: usize,
     /// Number of columns.
     pub cols: usize,
-    /// The entries, row by row.
-    pub entries: Vec<Number>,
+    /// The entries, row by row. Copies of a matrix share them.
+    pub entries: Rc<Vec<Number>>,
 }
 
 impl Matrix {
@@ -26,21 +27,28 @@ impl Matrix {
                 entries.push(of(i, j));
             }
         }
+        Self::of_rows(rows, cols, entries)
+    }
+
+    /// The matrix with these entries, row by row.
+    #[must_use]
+    pub fn of_rows(rows: usize, cols: usize, entries: Vec<Number>) -> Self {
         Self {
             rows,
             cols,
-            entries,
+            entries: Rc::new(entries),
         }
+    }
+
+    /// The entries, row by row, to be changed.
+    pub fn entries_mut(&mut self) -> &mut [Number] {
+        Rc::make_mut(&mut self.entries).as_mut_slice()
     }
 
     /// A number.
     #[must_use]
     pub fn number(n: Number) -> Self {
-        Self {
-            rows: 1,
-            cols: 1,
-            entries: vec![n],
-        }
+        Self::of_rows(1, 1, vec![n])
     }
 
     /// The identity.
@@ -73,22 +81,15 @@ impl Matrix {
     /// Applies a function to each entry.
     #[must_use]
     pub fn map(&self, of: impl Fn(&Number) -> Number) -> Self {
-        Self {
-            rows: self.rows,
-            cols: self.cols,
-            entries: self.entries.iter().map(of).collect(),
-        }
+        Self::of_rows(self.rows, self.cols, self.entries.iter().map(of).collect())
     }
 
     /// The sum of two matrices of the same size.
     #[must_use]
     pub fn plus(&self, other: &Self) -> Option<Self> {
-        let both = self.entries.iter().zip(&other.entries);
-        (self.size() == other.size()).then(|| Self {
-            rows: self.rows,
-            cols: self.cols,
-            entries: both.map(|(a, b)| a.plus(b)).collect(),
-        })
+        let both = self.entries.iter().zip(other.entries.iter());
+        let sum = || both.map(|(a, b)| a.plus(b)).collect();
+        (self.size() == other.size()).then(|| Self::of_rows(self.rows, self.cols, sum()))
     }
 
     /// The opposite.
@@ -115,19 +116,39 @@ impl Matrix {
         (self.cols == other.rows).then(|| {
             Self::from_entries(self.rows, other.cols, |i, j| {
                 let mut sum = Number::default();
-                for k in 0..self.cols {
-                    let (Some(a), Some(b)) = (
-                        self.entries.get(i * self.cols + k),
-                        other.entries.get(k * other.cols + j),
-                    ) else {
-                        continue;
-                    };
-                    if !a.is_zero() && !b.is_zero() {
-                        sum = sum.plus(&a.times(b));
-                    }
-                }
+                self.add_product_entry(other, i, j, &mut sum);
                 sum
             })
+        })
+    }
+
+    /// Adds an entry of the product with `other` to `sum`.
+    fn add_product_entry(&self, other: &Self, i: usize, j: usize, sum: &mut Number) {
+        for k in 0..self.cols {
+            let a = self.entries.get(i * self.cols + k);
+            let b = other.entries.get(k * other.cols + j);
+            if let (Some(a), Some(b)) = (a, b)
+                && !a.is_zero()
+                && !b.is_zero()
+            {
+                sum.add_product(a, b);
+            }
+        }
+    }
+
+    /// The trace of the product with a matrix of the transposed size; `None` if an operand is a number.
+    #[must_use]
+    pub fn trace_of_product(&self, other: &Self) -> Option<Number> {
+        let fits = self.size() == (other.cols, other.rows) && self.rows > 1 && self.cols > 1;
+        fits.then(|| {
+            let mut sum = Number::default();
+            for i in 0..self.rows {
+                // Each entry is summed before it is added, as in the trace of the product.
+                let mut entry = Number::default();
+                self.add_product_entry(other, i, i, &mut entry);
+                sum = sum.plus(&entry);
+            }
+            sum
         })
     }
 
@@ -220,11 +241,6 @@ impl Matrix {
             }
         }
         let entries = out.into_iter().flatten().collect();
-        let solved = Self {
-            rows: n,
-            cols: right.cols,
-            entries,
-        };
-        (solved, determinant)
+        (Self::of_rows(n, right.cols, entries), determinant)
     }
 }

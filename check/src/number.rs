@@ -1,6 +1,8 @@
 //! Numbers with derivatives, each with a bound on its rounding error (Higham, Accuracy and Stability, section 3.3). Takes
 //! values with their uncertainty; gives sums, products and quotients of them.
 
+use smallvec::SmallVec;
+
 /// Half the distance from 1 to the next double: the relative error of one rounding.
 pub const UNIT: f64 = f64::EPSILON / 2.0;
 
@@ -20,6 +22,9 @@ pub struct Slope {
     pub error: f64,
 }
 
+/// Derivatives by several variables. Those of one rotation fit without an allocation.
+pub type Slopes = SmallVec<[Slope; 3]>;
+
 /// A number, its derivatives by the variables that it depends on, and bounds on the errors of all of them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Number {
@@ -28,7 +33,7 @@ pub struct Number {
     /// A bound on its error, including the error of the data.
     pub error: f64,
     /// Derivatives, in the order of the variables; missing derivatives are zero.
-    pub slopes: Vec<Slope>,
+    pub slopes: Slopes,
 }
 
 /// The rounding of a sum: zero if a part is zero.
@@ -51,7 +56,7 @@ fn of_product(a: f64, b: f64) -> f64 {
 const SLACK: f64 = 1.0 + 1e-13;
 
 /// A product of two inexact numbers, and a bound on its error.
-fn times((a, ea): (f64, f64), (b, eb): (f64, f64)) -> (f64, f64) {
+pub(crate) fn times((a, ea): (f64, f64), (b, eb): (f64, f64)) -> (f64, f64) {
     let error = a.abs() * eb + ea * b.abs() + ea * eb + of_product(a, b);
     (a * b, error * SLACK)
 }
@@ -90,7 +95,7 @@ impl Number {
         Self {
             value,
             error,
-            slopes: Vec::new(),
+            slopes: Slopes::new(),
         }
     }
 
@@ -100,17 +105,26 @@ impl Number {
         self.value == 0.0 && self.error == 0.0 && self.slopes.is_empty()
     }
 
-    /// Adds a derivative with respect to a variable that comes after all variables so far.
+    /// Adds a derivative with respect to the last variable so far, or to a later one.
+    pub fn add_slope(&mut self, of: u32, value: f64, error: f64) {
+        match self.slopes.last_mut() {
+            Some(last) if last.of == of => {
+                (last.value, last.error) = plus((last.value, last.error), (value, error));
+            }
+            _ if value == 0.0 && error == 0.0 => {}
+            _ => self.slopes.push(Slope { of, value, error }),
+        }
+    }
+
+    /// This number with a derivative with respect to a later variable.
     #[must_use]
     pub fn with_slope(mut self, of: u32, value: f64, error: f64) -> Self {
-        if value != 0.0 || error != 0.0 {
-            self.slopes.push(Slope { of, value, error });
-        }
+        self.add_slope(of, value, error);
         self
     }
 
     /// The value and its error.
-    fn pair(&self) -> (f64, f64) {
+    pub(crate) fn pair(&self) -> (f64, f64) {
         (self.value, self.error)
     }
 
@@ -163,6 +177,29 @@ impl Number {
         }
     }
 
+    /// Adds a product.
+    pub fn add_product(&mut self, x: &Self, y: &Self) {
+        let (a, b) = (x.pair(), y.pair());
+        (self.value, self.error) = plus(self.pair(), times(a, b));
+        let mut at = 0;
+        each(&x.slopes, &y.slopes, |of, da, db| {
+            let (value, error) = plus(times(da, b), times(a, db));
+            while self.slopes.get(at).is_some_and(|own| own.of < of) {
+                at += 1;
+            }
+            match self.slopes.get_mut(at) {
+                Some(own) if own.of == of => {
+                    (own.value, own.error) = plus((own.value, own.error), (value, error));
+                    if own.value == 0.0 && own.error == 0.0 {
+                        self.slopes.remove(at);
+                    }
+                }
+                _ if value == 0.0 && error == 0.0 => {}
+                _ => self.slopes.insert(at, Slope { of, value, error }),
+            }
+        });
+    }
+
     /// The quotient.
     #[must_use]
     pub fn over(&self, other: &Self) -> Self {
@@ -209,16 +246,16 @@ impl Number {
 
 type Pair = (f64, f64);
 
-/// Derivatives of a function of two numbers. A missing derivative is exactly zero.
-fn merged(a: &[Slope], b: &[Slope], with: impl Fn(Pair, Pair) -> Pair) -> Vec<Slope> {
-    let mut out = Vec::with_capacity(a.len().max(b.len()));
+/// Calls `with` with each variable of two numbers, in order, and with both derivatives by it. A missing derivative is
+/// exactly zero.
+fn each(a: &[Slope], b: &[Slope], mut with: impl FnMut(u32, Pair, Pair)) {
     let (mut i, mut j) = (0, 0);
     loop {
         let of = match (a.get(i), b.get(j)) {
             (Some(x), Some(y)) => x.of.min(y.of),
             (Some(x), None) => x.of,
             (None, Some(y)) => y.of,
-            (None, None) => return out,
+            (None, None) => return,
         };
         let take = |list: &[Slope], at: &mut usize| match list.get(*at) {
             Some(s) if s.of == of => {
@@ -228,9 +265,18 @@ fn merged(a: &[Slope], b: &[Slope], with: impl Fn(Pair, Pair) -> Pair) -> Vec<Sl
             _ => (0.0, 0.0),
         };
         let (da, db) = (take(a, &mut i), take(b, &mut j));
+        with(of, da, db);
+    }
+}
+
+/// Derivatives of a function of two numbers.
+fn merged(a: &[Slope], b: &[Slope], with: impl Fn(Pair, Pair) -> Pair) -> Slopes {
+    let mut out = Slopes::with_capacity(a.len().max(b.len()));
+    each(a, b, |of, da, db| {
         let (value, error) = with(da, db);
         if value != 0.0 || error != 0.0 {
             out.push(Slope { of, value, error });
         }
-    }
+    });
+    out
 }

@@ -19,9 +19,24 @@ use std::collections::{BTreeMap, HashMap};
 /// A quantity at a site: its name, and the site if it has any.
 pub type Copy<'a> = (&'a str, Option<usize>);
 
-/// The varied configurations, each with its first variable. The variables of the second node follow the variables of
-/// the first.
-pub type Varied<'a> = BTreeMap<Copy<'a>, u32>;
+/// The varied configurations.
+#[derive(Clone, Debug, Default)]
+pub struct Varied<'a> {
+    /// Each with its first variable. The variables of the second node follow the variables of the first.
+    pub first: BTreeMap<Copy<'a>, u32>,
+    /// Whether configurations vary at the first node only.
+    pub at_first_node_only: bool,
+}
+
+impl Varied<'_> {
+    /// The first variable of a configuration, if it varies at this node.
+    fn at(&self, node: usize, name: &str, site: Option<usize>) -> Option<u32> {
+        match self.at_first_node_only && node > 0 {
+            true => None,
+            false => self.first.get(&(name, site)).copied(),
+        }
+    }
+}
 
 type Key<'a> = (&'a str, Option<usize>, i32, Option<usize>);
 
@@ -198,7 +213,7 @@ impl<'a> Scene<'a> {
                 if let Some(before) = self.before(own, node) {
                     group.add_rounding_of_increment(&mut element, before, numbers);
                 }
-                let first = self.varied.get(&(q.name.as_str(), site)).filter(|_| moves);
+                let first = self.varied.at(node, &q.name, site).filter(|_| moves);
                 Ok(Value::Known(match first {
                     Some(first) => {
                         varied_element(&element, *group, *side, first + of_node(*group, node))
@@ -207,7 +222,7 @@ impl<'a> Scene<'a> {
                 }))
             }
             (Role::Field(layout), Some(own)) => {
-                let first = self.varied.get(&(q.name.as_str(), site)).filter(|_| moves);
+                let first = self.varied.at(node, &q.name, site).filter(|_| moves);
                 let numbers = own.of(self.nodes[node]);
                 let first = first.map(|f| f + small(numbers.len() * node));
                 let before = self.before(own, node);
@@ -274,7 +289,7 @@ impl<'a> Scene<'a> {
             return Ok(Value::Known(identity));
         }
         if let Some(node) = here.carried {
-            let first = self.varied.get(&(q.name.as_str(), site));
+            let first = self.varied.at(node, &q.name, site);
             return Ok(Value::Known(match first {
                 Some(first) => {
                     varied_element(&identity, *group, *side, first + of_node(*group, node))
@@ -306,11 +321,8 @@ impl<'a> Scene<'a> {
             };
             return Ok(Value::Known(Matrix::from_entries(4, 4, unit)));
         }
-        Ok(Value::Known(Matrix {
-            rows: own.rows,
-            cols: own.cols,
-            entries: numbers.iter().map(|x| Number::exact(*x)).collect(),
-        }))
+        let entries = numbers.iter().map(|x| Number::exact(*x)).collect();
+        Ok(Value::Known(Matrix::of_rows(own.rows, own.cols, entries)))
     }
 }
 

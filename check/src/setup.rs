@@ -3,6 +3,7 @@
 
 use crate::stated::{Sites, Stated};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// The position of the numbers of a quantity, and their shape.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +39,12 @@ pub struct Setup {
     pub periodic: bool,
     /// The end conditions at the first and at the last site.
     pub ends: [usize; 2],
+    data: Arc<Data>,
+}
+
+/// The numbers of the parameters, and where each quantity has its numbers. They do not depend on the step size.
+#[derive(Debug, Default)]
+struct Data {
     parameters: HashMap<String, Numbers>,
     given: Vec<f64>,
     observables: HashMap<String, Numbers>,
@@ -50,10 +57,7 @@ impl Setup {
         parameters: impl Iterator<Item = (Field<'a>, &'a [f64])>,
         observables: impl Iterator<Item = Field<'a>>,
     ) -> Self {
-        let mut out = Self {
-            h,
-            ..Self::default()
-        };
+        let mut out = Data::default();
         for ((name, rows, cols), numbers) in parameters {
             let from = out.given.len();
             out.given.extend(numbers);
@@ -67,7 +71,11 @@ impl Setup {
                 .insert(name.to_owned(), Numbers { from, rows, cols });
             from += rows * cols;
         }
-        out
+        Self {
+            h,
+            data: Arc::new(out),
+            ..Self::default()
+        }
     }
 
     /// This setup with steps of size `h`.
@@ -88,8 +96,8 @@ impl Setup {
     #[must_use]
     pub fn observed(&self, name: &str, site: Option<usize>) -> Option<&Numbers> {
         match site {
-            None => self.observables.get(name),
-            Some(site) => self.observables.get(&format!("{name}_{site}")),
+            None => self.data.observables.get(name),
+            Some(site) => self.data.observables.get(&format!("{name}_{site}")),
         }
     }
 
@@ -97,16 +105,16 @@ impl Setup {
     #[must_use]
     pub fn momentum(&self, base: &str, name: &str, site: Option<usize>) -> Option<&Numbers> {
         let own = self.observed(&format!("{base}_{name}"), site);
-        own.or_else(|| self.observables.get(base))
+        own.or_else(|| self.data.observables.get(base))
     }
 
     /// The numbers of a parameter.
     #[must_use]
     pub fn parameter(&self, name: &str, site: Option<usize>) -> Option<(&Numbers, &[f64])> {
         let own = match site {
-            None => self.parameters.get(name),
-            Some(site) => self.parameters.get(&format!("{name}_{site}")),
+            None => self.data.parameters.get(name),
+            Some(site) => self.data.parameters.get(&format!("{name}_{site}")),
         }?;
-        Some((own, own.of(&self.given)))
+        Some((own, own.of(&self.data.given)))
     }
 }

@@ -102,7 +102,10 @@ fn moving_at<'a>(
 /// The first variables of all that is judged.
 #[must_use]
 pub fn varied<'a>(all: &[Moving<'a>]) -> Varied<'a> {
-    all.iter().map(|m| ((m.name, m.site), m.first)).collect()
+    Varied {
+        first: all.iter().map(|m| ((m.name, m.site), m.first)).collect(),
+        at_first_node_only: false,
+    }
 }
 
 /// The indices over which a term is summed.

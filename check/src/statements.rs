@@ -20,7 +20,7 @@ pub fn carried(
     (before, after): (&[f64], &[f64]),
     moving: &[Moving<'_>],
 ) -> Result<Vec<Part>, String> {
-    let nothing = crate::scene::Varied::new();
+    let nothing = crate::scene::Varied::default();
     let scene = Scene::new(stated, setup, [before, after], &nothing);
     let mut parts = Vec::new();
     for q in stated.quantities.values() {
@@ -46,7 +46,7 @@ pub fn carried(
             let brought = sized.ok_or_else(|| format!("`{}` changes its shape", q.name))?;
             let numbers = own.of(after);
             let size = numbers.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
-            for (i, (there, here)) in numbers.iter().zip(&brought.entries).enumerate() {
+            for (i, (there, here)) in numbers.iter().zip(brought.entries.iter()).enumerate() {
                 parts.push(Part {
                     what: q.name.clone(),
                     site,

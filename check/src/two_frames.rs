@@ -58,9 +58,6 @@ pub struct Rounding {
 }
 
 fn square(n: usize, numbers: &[f64]) -> Option<Matrix> {
-    (numbers.len() == n * n).then(|| Matrix {
-        rows: n,
-        cols: n,
-        entries: numbers.iter().map(|x| Number::exact(*x)).collect(),
-    })
+    let entries = || numbers.iter().map(|x| Number::exact(*x)).collect();
+    (numbers.len() == n * n).then(|| Matrix::of_rows(n, n, entries()))
 }

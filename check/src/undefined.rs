@@ -11,7 +11,6 @@ use crate::sites::{all_moving, range, varied};
 use crate::stated::{Role, Stated};
 use crate::terms::{Term, TermTime};
 use crate::value::Value;
-use clebsch_core::syntax::ast::Model;
 use std::fmt;
 
 /// A part of the statement that is not finite.
@@ -62,14 +61,8 @@ impl Undefined {
     ///
     /// # Errors
     /// Why the statement cannot be evaluated.
-    pub fn find(
-        model: &Model,
-        sizes: &[(String, usize)],
-        setup: &Setup,
-        node: &[f64],
-    ) -> Result<Option<Self>, String> {
-        let stated = Stated::read(model, sizes)?;
-        let moving = all_moving(&stated, setup);
+    pub fn find(stated: &Stated, setup: &Setup, node: &[f64]) -> Result<Option<Self>, String> {
+        let moving = all_moving(stated, setup);
         let by = varied(&moving);
         let scene = Scene::new(&stated, setup, [node, node], &by);
         // The root of zero is reported only if no part is infinite.

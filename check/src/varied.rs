@@ -1,10 +1,10 @@
 //! Values from the numbers of a state: elements with variations, fields whose numbers are variables, advected
 //! quantities.
 
-use crate::group::{Entries, Group, LEFT};
+use crate::group::{Group, LEFT};
 use crate::judge::LEFT_BY_SOLVERS;
 use crate::matrix::Matrix;
-use crate::number::{Number, UNIT};
+use crate::number::{Number, UNIT, times};
 use crate::setup::Numbers;
 use crate::stated::{Layout, Side};
 use crate::value::Value;
@@ -26,40 +26,28 @@ pub fn stored(own: &Numbers, numbers: &[f64], is_quaternion: bool) -> Value {
         let entry = |i: usize, j: usize| of(LEFT[i][j].1 * numbers[LEFT[i][j].0]);
         return Value::Known(Matrix::from_entries(4, 4, entry));
     }
-    Value::Known(Matrix {
-        rows: own.rows,
-        cols: own.cols,
-        entries: numbers.iter().map(|x| of(*x)).collect(),
-    })
+    let entries = numbers.iter().map(|x| of(*x)).collect();
+    Value::Known(Matrix::of_rows(own.rows, own.cols, entries))
 }
 
 /// An element with its variations: `R (Id + xi)` or `(Id + xi) R`, for the basis of the Lie algebra.
 pub fn varied_element(r: &Matrix, group: Group, side: Side, first: u32) -> Matrix {
-    let mut out = r.clone();
-    for (which, direction) in group.basis().iter().enumerate() {
-        let moved = moved(r, direction, side);
-        let of = first + small(which);
-        let each = out.entries.iter_mut().zip(moved.entries);
-        each.for_each(|(x, by)| {
-            let plain = std::mem::take(x);
-            *x = plain.with_slope(of, by.value, by.error);
-        });
-    }
-    out
-}
-
-fn moved(r: &Matrix, direction: &Entries, side: Side) -> Matrix {
     let n = r.rows;
-    let mut out = Matrix::from_entries(n, n, |_, _| Number::default());
-    for (k, l, c) in direction {
-        for i in 0..n {
-            let (from, to) = match side {
-                Side::Body => ((i, *k), (i, *l)),
-                Side::Space => ((*l, i), (*k, i)),
-            };
-            let by = r.at(from.0, from.1).constant().times(&Number::exact(*c));
-            if let Some(entry) = out.entries.get_mut(to.0 * n + to.1) {
-                *entry = entry.plus(&by);
+    let mut out = r.clone();
+    let entries = out.entries_mut();
+    for (which, direction) in group.basis().iter().enumerate() {
+        let of = first + small(which);
+        for (k, l, c) in direction {
+            for i in 0..n {
+                let (from, to) = match side {
+                    Side::Body => ((i, *k), (i, *l)),
+                    Side::Space => ((*l, i), (*k, i)),
+                };
+                let by = r.entries.get(from.0 * n + from.1);
+                if let (Some(x), Some(by)) = (entries.get_mut(to.0 * n + to.1), by) {
+                    let (value, error) = times(by.pair(), (*c, 0.0));
+                    x.add_slope(of, value, error);
+                }
             }
         }
     }

@@ -109,7 +109,10 @@ impl Legendre {
         let mut out = Vec::with_capacity(moving.len());
         for part in moving.chunks(TOGETHER) {
             let part = renumbered(part);
-            let by = varied(&part);
+            let by = Varied {
+                at_first_node_only: true,
+                ..varied(&part)
+            };
             let slopes = derivatives(&self.stated, setup, [node, after], &part, &by)?;
             for m in &part {
                 let first = usize::try_from(m.first).unwrap_or(usize::MAX);
@@ -154,7 +157,7 @@ impl Legendre {
             })?;
             put(&mut after, own.from, &numbers);
         }
-        let nothing = Varied::new();
+        let nothing = Varied::default();
         let with_configurations = after.clone();
         let scene = Scene::new(&self.stated, setup, [node, &with_configurations], &nothing);
         for q in self.stated.quantities.values() {

@@ -2,9 +2,10 @@
 //! detected.
 
 use clebsch::card::{Card, Field, Kind, Settings};
-use clebsch_check::{Judge, Judged, Setup, Verdict};
+use clebsch_check::{Judge, Judged, Setup, Stated, Verdict};
 use clebsch_core::pipeline::parse_source;
 use clebsch_models::{Case, gallery};
+use std::sync::Arc;
 
 /// The number of steps of each case.
 const STEPS: u64 = 12;
@@ -22,7 +23,8 @@ fn judge(card: &Card, case: &Case) -> Result<Judge, String> {
     let fields = card.parameters.iter().map(|f| (f.name, f.rows, f.cols));
     let parameters = fields.zip(case.parameters.iter().map(Vec::as_slice));
     let observables = card.observables.iter().map(|f| (f.name, f.rows, f.cols));
-    Judge::new(&model, &sizes, Setup::new(case.h, parameters, observables))
+    let stated = Arc::new(Stated::read(&model, &sizes)?);
+    Judge::new(stated, Setup::new(case.h, parameters, observables))
 }
 
 /// The nodes of a few steps.
@@ -209,7 +211,8 @@ fn a_step_of_a_wrong_equation_is_told() {
         ("body_momentum_R", 3, 1),
     ];
     let setup = Setup::new(0.1, parameters.into_iter(), observables.into_iter());
-    let judge = Judge::new(&model, &[], setup).expect("is judged");
+    let stated = Arc::new(Stated::read(&model, &[]).expect("is read"));
+    let judge = Judge::new(stated, setup).expect("is judged");
     let node = |q: f64, p: f64| {
         let mut out = vec![q, p];
         out.extend(unit);
@@ -271,7 +274,8 @@ fn a_clock_that_stands_still_is_told() {
     let observables = [("q", 1, 1), ("momentum", 1, 1), ("t", 1, 1)];
     let (m, h) = (1.3_f64, 0.1_f64);
     let setup = Setup::new(h, parameters.into_iter(), observables.into_iter());
-    let judge = Judge::new(&model, &[], setup).expect("is judged");
+    let stated = Arc::new(Stated::read(&model, &[]).expect("is read"));
+    let judge = Judge::new(stated, setup).expect("is judged");
     let force = |q: f64, t: f64| -(1.0 + t.sin()) * q.sin();
     let judged = |later: f64| {
         let (q, p, t) = (0.3, 0.4, 0.7);

@@ -1,8 +1,9 @@
 //! Steps written by hand, in plain double arithmetic, hold whatever the size of their numbers, and errors of a hundred
 //! roundings are detected.
 
-use clebsch_check::{Judge, Part, Setup, UNIT};
+use clebsch_check::{Judge, Part, Setup, Stated, UNIT};
 use clebsch_core::pipeline::parse_source;
+use std::sync::Arc;
 
 type Square = [[f64; 3]; 3];
 
@@ -17,7 +18,8 @@ fn judge(
         .iter()
         .map(|(name, n, all)| ((*name, *n, *n), *all));
     let observed = observed.iter().map(|(name, n)| (*name, *n, *n));
-    Judge::new(&model, &[], Setup::new(h, given, observed)).expect("it can be judged")
+    let stated = Arc::new(Stated::read(&model, &[]).expect("it can be read"));
+    Judge::new(stated, Setup::new(h, given, observed)).expect("it can be judged")
 }
 
 fn worst(judge: &Judge, before: &[f64], after: &[f64]) -> Part {

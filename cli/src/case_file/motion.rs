@@ -10,13 +10,13 @@ use crate::models::gallery::Case;
 use crate::words::number::short;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_check::{
-    Legendre, NoMomentum, Setup, Undefined, Velocities, Velocity, onto_constraints,
+    Legendre, NoMomentum, Setup, Stated, Undefined, Velocities, Velocity, onto_constraints,
 };
 use clebsch_core::lattice::ChainConfig;
 use clebsch_core::pipeline;
-use clebsch_core::syntax::ast::Model;
 use std::cell::RefCell;
 use std::collections::{BTreeSet, HashMap, HashSet};
+use std::sync::Arc;
 
 /// The largest number of momenta at rest that are reported.
 const MOST_TOLD: usize = 4;
@@ -481,20 +481,17 @@ pub(super) fn elements(fields: &[Field]) -> HashMap<usize, usize> {
     each.collect()
 }
 
-/// A model, its sizes by name, and the data of a case.
-pub(crate) type Statement = (Model, Vec<(String, usize)>, Setup);
-
-/// The model of a case, its sizes, and the data of the case, with these fields as state. `None` if its text is
-/// unavailable.
+/// The statement of the model of a case, and the data of the case with these fields as state.
+///
+/// # Errors
+/// Why the statement cannot be evaluated.
 pub(crate) fn statement(
     card: &Card,
     choice: Option<&ChainConfig>,
     case: &Case,
     state: &[Field],
-) -> Option<Statement> {
-    let model = parsed(card.source)?;
-    let sizes = card.dimensions.iter();
-    let sizes: Vec<_> = sizes.map(|d| (d.name.to_owned(), d.value)).collect();
+) -> Result<(Arc<Stated>, Setup), String> {
+    let stated = stated(card)?;
     let fields = card.parameters.iter().map(|f| (f.name, f.rows, f.cols));
     let parameters = fields.zip(case.parameters.iter().map(Vec::as_slice));
     let state = state.iter().map(|f| (f.name, f.rows, f.cols));
@@ -503,35 +500,44 @@ pub(crate) fn statement(
         setup.counts.clone_from(&choice.counts);
         (setup.periodic, setup.ends) = (choice.periodic, choice.ends);
     }
-    Some((model, sizes, setup))
+    Ok((stated, setup))
 }
+
+/// The sizes of a model by name.
+type Sizes = Vec<(String, usize)>;
+
+/// A text with its sizes, and its statement or the reason why it cannot be evaluated.
+type Read = (&'static str, Sizes, Result<Arc<Stated>, String>);
 
 thread_local! {
-    /// The model that this thread parsed last. All cases of a sweep have the same model.
-    static PARSED: RefCell<Option<(&'static str, Model)>> = const { RefCell::new(None) };
+    /// The statement that this thread read last. All cases of a sweep have the same model.
+    static READ: RefCell<Option<Read>> = const { RefCell::new(None) };
 }
 
-/// The model of a card's text.
-fn parsed(source: &'static str) -> Option<Model> {
-    let known = PARSED.with_borrow(|last| {
-        let found = last
-            .as_ref()
-            .filter(|(text, _)| std::ptr::eq(*text, source));
-        found.map(|(_, model)| model.clone())
+/// The statement of a card's text.
+fn stated(card: &Card) -> Result<Arc<Stated>, String> {
+    let sizes = card.dimensions.iter();
+    let sizes: Sizes = sizes.map(|d| (d.name.to_owned(), d.value)).collect();
+    let known = READ.with_borrow(|last| {
+        let is_own = |(text, own, _): &&Read| std::ptr::eq(*text, card.source) && *own == sizes;
+        last.as_ref()
+            .filter(is_own)
+            .map(|(.., found)| found.clone())
     });
-    if known.is_some() {
-        return known;
+    if let Some(found) = known {
+        return found;
     }
-    let model = pipeline::parse_source(source).ok()?;
-    PARSED.set(Some((source, model.clone())));
-    Some(model)
+    let model = pipeline::parse_source(card.source);
+    let model = model.map_err(|_| "the text of the model is not available".to_owned());
+    let found = model.and_then(|model| Ok(Arc::new(Stated::read(&model, &sizes)?)));
+    READ.set(Some((card.source, sizes, found.clone())));
+    found
 }
 
 /// The Legendre transform of a case, which evaluates its action.
 fn legendre(card: &Card, choice: Option<&ChainConfig>, case: &Case) -> Result<Legendre, String> {
-    let found = statement(card, choice, case, card.initial);
-    let (model, sizes, setup) = found.ok_or_else(|| "its text is not available".to_owned())?;
-    Legendre::new(&model, &sizes, setup)
+    let (stated, setup) = statement(card, choice, case, card.initial)?;
+    Ok(Legendre::new(stated, setup))
 }
 
 /// Moves a configuration onto its constraints if its digits were rounded too far to satisfy them. Returns the
@@ -541,9 +547,9 @@ fn onto(card: &Card, choice: Option<&ChainConfig>, case: &mut Case) -> Option<St
     if !card.source.contains("hold") {
         return None;
     }
-    let (model, sizes, setup) = statement(card, choice, case, card.initial)?;
+    let (stated, setup) = statement(card, choice, case, card.initial).ok()?;
     let node: Vec<f64> = case.initial.iter().flatten().copied().collect();
-    let moved = onto_constraints(&model, &sizes, &setup, &node).ok()??;
+    let moved = onto_constraints(&stated, &setup, &node).ok()??;
     let mut numbers = moved.node.into_iter();
     for own in &mut case.initial {
         for (x, found) in own.iter_mut().zip(numbers.by_ref()) {
@@ -562,7 +568,7 @@ pub(crate) fn undefined(
     choice: Option<&ChainConfig>,
     case: &Case,
 ) -> Option<Undefined> {
-    let (model, sizes, setup) = statement(card, choice, case, card.initial)?;
+    let (stated, setup) = statement(card, choice, case, card.initial).ok()?;
     let node: Vec<f64> = case.initial.iter().flatten().copied().collect();
-    Undefined::find(&model, &sizes, &setup, &node).ok()?
+    Undefined::find(&stated, &setup, &node).ok()?
 }

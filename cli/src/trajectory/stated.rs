@@ -63,10 +63,8 @@ fn judge(card: &Card, plan: &Plan) -> Result<Judge, String> {
     if let Some(order) = modified {
         return Err(format!("a step of order {order} uses modified moments"));
     }
-    let found = statement(card, plan.choice.as_ref(), &plan.case, card.observables);
-    let (model, sizes, setup) =
-        found.ok_or_else(|| "the text of the model is not available".to_owned())?;
-    Judge::new(&model, &sizes, setup)
+    let (stated, setup) = statement(card, plan.choice.as_ref(), &plan.case, card.observables)?;
+    Judge::new(stated, setup)
 }
 
 impl Trajectory for JudgedTrajectory {

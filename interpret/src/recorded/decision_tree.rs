@@ -74,12 +74,18 @@ impl OutcomeTape {
     }
 }
 
+/// Evaluations of a function before its first recording. A recording costs as much as tens of evaluations, which a call
+/// for a few steps never saves.
+const WARM_UP: u32 = 8;
+
 /// The tapes of one function, one for each outcome, the last used at the end, and the number of outcomes that may
 /// still be recorded.
 #[derive(Debug)]
 pub struct TapesByOutcome {
     known: Vec<OutcomeTape>,
     left: usize,
+    /// Evaluations left before the first recording.
+    warm_up: u32,
 }
 
 impl TapesByOutcome {
@@ -88,6 +94,7 @@ impl TapesByOutcome {
         TapesByOutcome {
             known: Vec::new(),
             left: if records { MOST } else { 0 },
+            warm_up: WARM_UP,
         }
     }
 
@@ -96,7 +103,8 @@ impl TapesByOutcome {
         self.known.is_empty() && self.left == 0
     }
 
-    /// The tapes that have just computed the function at a node. If no tape fits, a new one is recorded.
+    /// The tapes that have just computed the function at a node. If no tape fits, a new one is recorded. Returns `None` if
+    /// the function itself must run: during its first evaluations, and if it cannot be recorded.
     pub fn found(
         &mut self,
         mut node: Node,
@@ -114,6 +122,10 @@ impl TapesByOutcome {
                 TapeOutcome::Elsewhere => {}
                 TapeOutcome::Unsolved => return None,
             }
+        }
+        if self.left > 0 && self.warm_up > 0 {
+            self.warm_up -= 1;
+            return None;
         }
         self.left = self.left.checked_sub(1)?;
         let mut made = make(node.places)?;
