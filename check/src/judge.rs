@@ -4,6 +4,7 @@ use crate::group::{Group, MOST_OF_A_DEFECT};
 use crate::holds;
 use crate::lagrangian::derivatives;
 use crate::number::{Number, UNIT, larger};
+use crate::run::FAR_BELOW;
 use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::sites::{Moving, moving, varied};
@@ -23,10 +24,6 @@ pub const LEFT_OF_WHAT_IS_HELD: f64 = 128.0;
 /// Products of numbers larger than this may overflow.
 const LARGE: f64 = 1e150;
 
-/// The largest number of significant bits for which sums and products are exact. A zero residual of such terms proves
-/// nothing.
-const EXACT_BITS: u32 = 26;
-
 /// The residual of one equation.
 #[derive(Clone, Debug)]
 pub struct Part {
@@ -44,8 +41,6 @@ pub struct Part {
     pub bound: f64,
     /// The sum of the sizes of its terms.
     pub terms: f64,
-    /// Whether the residual may be exactly zero.
-    pub is_exact: bool,
 }
 
 impl Part {
@@ -61,7 +56,7 @@ impl Part {
     /// Whether the equation tests anything, that is, whether its terms can have rounding errors.
     #[must_use]
     pub fn tests(&self) -> bool {
-        self.terms > 0.0 && !self.is_exact
+        self.terms > 0.0
     }
 
     /// The residual in roundings of its own terms.
@@ -81,7 +76,6 @@ impl Part {
             residual: x.value,
             bound: LEFT_OF_WHAT_IS_HELD * x.error,
             terms: 0.0,
-            is_exact: true,
         }
     }
 }
@@ -106,6 +100,13 @@ impl Judged {
             tested: 0,
             roundings: 0.0,
         }
+    }
+
+    /// Whether all residuals are far below the rounding of their terms. They are if the arithmetic of a step is exact, as for
+    /// forces that balance.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        self.tested > 0 && self.roundings < FAR_BELOW
     }
 
     /// The judgement of both sets of equations.
@@ -177,16 +178,24 @@ impl Judge {
         if numbers.any(is_large) && parts.iter().any(|p| p.ratio().is_nan()) {
             return Err("terms of the action exceed the largest double".to_owned());
         }
-        // If nothing moves, every step repeats the same zeros.
-        let is_still = before == after;
-        let tested = parts.iter().filter(|p| p.tests() && !is_still);
+        let tested = parts.iter().filter(|p| p.tests());
         let mut out = Judged {
             worst: None,
             tested: tested.clone().count() as u64,
             roundings: tested.map(Part::roundings).fold(0.0, larger),
         };
+        if out.is_exact() && self.detects(&changed(after), &setup, step, before) {
+            out.tested = 0;
+        }
         parts.into_iter().for_each(|part| out.take(part));
         Ok(out)
+    }
+
+    /// Whether some equation rejects a step to these numbers, or cannot be evaluated there.
+    fn detects(&self, changed: &[f64], setup: &Setup, step: u64, before: &[f64]) -> bool {
+        let is_rejected = |p: &Part| p.tests() && (p.ratio() > 1.0 || p.ratio().is_nan());
+        let parts = self.parts_of(setup, step, before, changed);
+        parts.map_or(true, |parts| parts.iter().any(is_rejected))
     }
 
     /// The residuals of all equations of a step.
@@ -239,8 +248,6 @@ impl Judge {
                             + UNIT * residual.abs()
                             + LEFT_BY_SOLVERS * UNIT * rounded,
                         terms,
-                        // At an equilibrium, forces and reactions may cancel exactly.
-                        is_exact: is_short(*p),
                     });
                 }
             }
@@ -269,7 +276,6 @@ impl Judge {
             residual: group.defect(own.of(numbers)),
             bound: MOST_OF_A_DEFECT * UNIT,
             terms: 0.0,
-            is_exact: true,
         })
     }
 
@@ -320,8 +326,17 @@ struct Momentum {
     rounding: Rounding,
 }
 
-/// Whether a number has so few bits that sums and products of such numbers are exact.
-fn is_short(x: f64) -> bool {
-    let bits = x.to_bits() & ((1 << 52) - 1);
-    x == 0.0 || 53 - bits.trailing_zeros().min(52) <= EXACT_BITS
+/// A change of the state that a check must detect, relative to the numbers.
+const CHANGE: f64 = 1e-6;
+
+/// The numbers of a node with an error in each.
+fn changed(numbers: &[f64]) -> Vec<f64> {
+    let most = numbers.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let least = if most > 0.0 { CHANGE * most } else { CHANGE };
+    let mut sign = -1.0;
+    let each = numbers.iter().map(|x| {
+        sign = -sign;
+        x + sign * (CHANGE * x.abs()).max(CHANGE * least)
+    });
+    each.collect()
 }

@@ -56,7 +56,6 @@ pub fn carried(
                     // The stored value was computed from an element and an initial value.
                     bound: here.error + 4.0 * UNIT * size,
                     terms: 0.0,
-                    is_exact: true,
                 });
             }
         }

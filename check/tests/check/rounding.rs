@@ -1,7 +1,7 @@
 //! Steps written by hand, in plain double arithmetic, hold whatever the size of their numbers, and errors of a hundred
 //! roundings are detected.
 
-use clebsch_check::{Judge, Part, Setup, Stated, UNIT};
+use clebsch_check::{Judge, Part, Setup, Stated, UNIT, Verdict};
 use clebsch_core::pipeline::parse_source;
 use std::sync::Arc;
 
@@ -169,4 +169,24 @@ fn momenta_of_linear_maps_with_entries_of_every_size_hold() {
             (q, space) = (moved, brought);
         }
     }
+}
+
+/// A free particle from the origin: all products and sums are exact. The check detects a change of the state, so it has
+/// measured the steps.
+#[test]
+fn steps_with_exact_arithmetic_hold() {
+    let text = "model Free {
+        param m: Real;
+        field x: Real;
+        lagrangian = m*(next(x) - x)^2/(2*h);
+    }";
+    let (m, h, p) = (2.0, 0.25, 1.0 / 3.0);
+    let judge = judge(text, h, &[("m", 1, &[m])], &[("x", 1), ("momentum", 1)]);
+    let mut verdict = Verdict::default();
+    for step in 1..=20_u32 {
+        let at = |node: u32| [f64::from(node) * (h * p / m), p];
+        let judged = judge.step(step.into(), &at(step - 1), &at(step));
+        verdict.take(step.into(), judged);
+    }
+    assert!(verdict.holds(), "{verdict}");
 }

@@ -24,7 +24,7 @@ pub(crate) const UNFINISHED: &str = "checkpoint.new";
 const MAGIC: &str = "clebsch checkpoint ";
 
 /// The version that is written, and the only version that is read.
-const VERSION: &str = "4";
+const VERSION: &str = "5";
 
 /// Bytes written at once.
 const BUFFER: usize = 1 << 18;
