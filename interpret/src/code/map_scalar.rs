@@ -1,13 +1,29 @@
 //! Operations over another scalar: the same operations, with the functions of the runtime for that scalar.
 
-use super::{Arm, Code, Library, Pattern, Routine};
+use super::{Arm, Code, Evaluated, Library, Pattern, Places, Routine, unfit};
 use crate::map_scalar::map_scalar;
 use crate::value::Value;
 use clebsch::Real;
 use std::sync::{Arc, OnceLock};
 
-/// The largest depth of nested functions.
-const DEEPEST: usize = 64;
+/// The functions that are being changed: a function, and the functions that call it.
+#[derive(Clone, Copy)]
+struct Callers<'a> {
+    own: *const (),
+    outer: Option<&'a Callers<'a>>,
+}
+
+impl Callers<'_> {
+    fn include(&self, routine: *const ()) -> bool {
+        self.own == routine || self.outer.is_some_and(|outer| outer.include(routine))
+    }
+}
+
+/// A call of a function by itself, which only a refused step makes. If it runs over another scalar, clebsch computes with
+/// plain numbers instead.
+fn recursive<T: Real>(_: &mut Places<T>, _: &[Code<T>]) -> Evaluated<T> {
+    unfit(None)
+}
 
 impl<T: Real> Routine<T> {
     /// The function over another scalar; nothing if it loops or calls what that scalar lacks.
@@ -22,18 +38,19 @@ impl<T: Real> Routine<T> {
 impl<T: Real> Code<T> {
     /// As [`Routine::over`].
     pub fn map_scalar<U: Library>(&self, change: fn(T) -> U) -> Option<Code<U>> {
-        Change { change, depth: 0 }.code(self)
+        let callers = None;
+        Change { change, callers }.code(self)
     }
 }
 
 /// A change of the scalar.
 #[derive(Clone, Copy)]
-struct Change<T, U> {
+struct Change<'a, T, U> {
     change: fn(T) -> U,
-    depth: usize,
+    callers: Option<&'a Callers<'a>>,
 }
 
-impl<T: Real, U: Library> Change<T, U> {
+impl<T: Real, U: Library> Change<'_, T, U> {
     #[inline(never)]
     fn value(self, value: &Value<T>) -> Option<Value<U>> {
         map_scalar(value, &mut |x| (self.change)(x))
@@ -107,15 +124,23 @@ impl<T: Real, U: Library> Change<T, U> {
     }
 
     #[inline(never)]
-    fn routine(self, routine: &OnceLock<Routine<T>>) -> Option<Arc<OnceLock<Routine<U>>>> {
-        let deeper = Change {
-            depth: self.depth + 1,
-            ..self
+    fn call(self, routine: &Arc<OnceLock<Routine<T>>>, given: &[Code<T>]) -> Option<Code<U>> {
+        let own = Arc::as_ptr(routine).cast::<()>();
+        if self.callers.is_some_and(|callers| callers.include(own)) {
+            return Some(Code::Special(recursive, Vec::new(), "recursive".into()));
+        }
+        let inside = Change {
+            change: self.change,
+            callers: Some(&Callers {
+                own,
+                outer: self.callers,
+            }),
         };
-        let routine = routine.get().filter(|_| deeper.depth < DEEPEST)?;
-        let body = deeper.code(&routine.body)?;
+        let routine = routine.get()?;
+        let body = inside.code(&routine.body)?;
         let places = routine.places;
-        Some(Arc::new(OnceLock::from(Routine { places, body })))
+        let changed = Arc::new(OnceLock::from(Routine { places, body }));
+        Some(Code::Routine(changed, self.all(given)?))
     }
 
     fn code(self, code: &Code<T>) -> Option<Code<U>> {
@@ -136,7 +161,7 @@ impl<T: Real, U: Library> Change<T, U> {
             Code::Special(_, list, name) => {
                 Code::Special(U::special(name)?, self.all(list)?, name.clone())
             }
-            Code::Routine(routine, list) => Code::Routine(self.routine(routine)?, self.all(list)?),
+            Code::Routine(routine, list) => self.call(routine, list)?,
             Code::Closure(places, body) => Code::Closure(places.clone(), self.boxed(body)?),
             Code::Iterate(iterate) => Code::Iterate(U::iterate(iterate.clone().recorded())?),
             Code::Block(all) => Code::Block(self.all(all)?),

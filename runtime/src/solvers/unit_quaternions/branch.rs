@@ -45,7 +45,8 @@ pub(super) fn turn<T: Real>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<Turn<
     if !a.is_finite() {
         return None;
     }
-    let easy = one - (a - body.easy).where_positive(one);
+    let beyond = a - body.easy;
+    let easy = one - beyond.where_positive(one);
     let long = (a - body.moderate).where_positive(one);
     // Recomputed, because storing it would slow down short steps.
     let equation = Equation::new::<false>(body, u);
@@ -54,7 +55,7 @@ pub(super) fn turn<T: Real>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<Turn<
     for _ in 0..T::ORDER {
         s = equation.improved(s);
     }
-    if easy.least() <= 0.0 {
+    if !beyond.nowhere_positive() {
         let mut more = s;
         for _ in 0..(1 + u32::from(wide::<T>())) {
             more = equation.improved(more);
