@@ -87,17 +87,16 @@ fn a_wrong_sign_in_any_term_is_seen() {
     }
 }
 
-/// Slow: derives and emits every chain twice.
+/// The engine reads tokens, so it emits the same code for texts with the same tokens.
 #[test]
 fn the_compiled_statements_are_those_of_the_files() {
-    let emitted = |text: &str| {
-        let mut model = clebsch_core::pipeline::parse_source(text).expect("a model");
-        model.public = true;
-        let items = clebsch_core::pipeline::emitted_line(&model, "").expect("items");
-        items.to_string()
+    let tokens = |text: &str| {
+        let tokens: proc_macro2::TokenStream = text.parse().expect("tokens");
+        tokens.to_string()
     };
     for (file, compiled) in STATEMENTS.into_iter().chain(fluids::STATEMENTS) {
-        assert!(emitted(file) == emitted(compiled), "{file}");
+        let compiled = compiled.replacen("pub model", "model", 1);
+        assert_eq!(tokens(file), tokens(&compiled));
     }
 }
 

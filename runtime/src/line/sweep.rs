@@ -61,19 +61,41 @@ pub(super) fn try_in_parts<P: Part, E: Send>(
 ) -> Result<(), (usize, E)> {
     #[cfg(feature = "rayon")]
     if let Some(share) = threads.share(all.count()) {
-        let (mut parts, mut rest, mut first) = (Vec::new(), all, 0);
-        while rest.count() > share {
-            let (part, others) = rest.split(share);
-            parts.push((first, part));
-            (rest, first) = (others, first + share);
-        }
-        parts.push((first, rest));
-        let all = parts.into_par_iter().map(|(first, part)| done(first, part));
-        let all: Vec<_> = all.collect();
-        return all.into_iter().collect();
+        return try_shared(share, all, &done);
     }
     let _ = threads;
     done(0, all)
+}
+
+/// A part of a loop that may run on any thread.
+#[cfg(feature = "rayon")]
+type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
+
+/// Runs tasks on the threads of the pool. This function is not generic, so a model compiles the code of `rayon` once and not once
+/// for each of its loops.
+#[cfg(feature = "rayon")]
+fn run_all(tasks: Vec<Task<'_>>) {
+    tasks.into_par_iter().for_each(|task| task());
+}
+
+/// Calls `done` on several threads for parts of `share` sites each.
+#[cfg(feature = "rayon")]
+#[inline(never)]
+fn try_shared<P: Part, E: Send>(
+    share: usize,
+    all: P,
+    done: &(impl Fn(usize, P) -> Result<(), (usize, E)> + Sync),
+) -> Result<(), (usize, E)> {
+    let mut made: Vec<_> = (0..all.count().div_ceil(share)).map(|_| Ok(())).collect();
+    let (mut tasks, mut rest, mut first): (Vec<Task<'_>>, _, _) = (Vec::new(), all, 0);
+    for made in &mut made {
+        let here = share.min(rest.count());
+        let (part, others) = rest.split(here);
+        tasks.push(Box::new(move || *made = done(first, part)));
+        (rest, first) = (others, first + share);
+    }
+    run_all(tasks);
+    made.into_iter().collect()
 }
 
 #[inline(always)]

@@ -49,16 +49,22 @@ impl<const N: usize> Dual<N> {
     /// A function with value `real` and derivative `slope` at `self.real`.
     #[inline(always)]
     fn chain(self, real: f64, slope: f64) -> Self {
-        Self {
-            real,
-            dual: self.dual.map(|d| d * slope),
+        let mut dual = self.dual;
+        match N > IN_PLACE {
+            true => scale(&mut dual, slope),
+            false => dual.iter_mut().for_each(|d| *d *= slope),
         }
+        Self { real, dual }
     }
 
     /// `alpha * a.dual + beta * b.dual` with the value `real`.
     #[inline(always)]
     fn combine(real: f64, a: Self, alpha: f64, b: Self, beta: f64) -> Self {
         let mut dual = a.dual;
+        if N > IN_PLACE {
+            mix(&mut dual, alpha, &b.dual, beta);
+            return Self { real, dual };
+        }
         for (x, y) in dual.iter_mut().zip(b.dual) {
             *x = *x * alpha + y * beta;
         }
@@ -66,27 +72,37 @@ impl<const N: usize> Dual<N> {
     }
 }
 
+/// With more derivatives than this, an operation calls a function. In place, its loop would be compiled again for every operation
+/// of a model, which takes minutes.
+const IN_PLACE: usize = 8;
+
+/// `a * slope`.
+#[inline(never)]
+fn scale(a: &mut [f64], slope: f64) {
+    a.iter_mut().for_each(|x| *x *= slope);
+}
+
+/// `alpha * a + beta * b`.
+#[inline(never)]
+fn mix(a: &mut [f64], alpha: f64, b: &[f64], beta: f64) {
+    for (x, y) in a.iter_mut().zip(b) {
+        *x = *x * alpha + y * beta;
+    }
+}
+
 impl<const N: usize> Add for Dual<N> {
     type Output = Self;
     #[inline(always)]
-    fn add(mut self, other: Self) -> Self {
-        self.real += other.real;
-        for (x, y) in self.dual.iter_mut().zip(other.dual) {
-            *x += y;
-        }
-        self
+    fn add(self, other: Self) -> Self {
+        Self::combine(self.real + other.real, self, 1.0, other, 1.0)
     }
 }
 
 impl<const N: usize> Sub for Dual<N> {
     type Output = Self;
     #[inline(always)]
-    fn sub(mut self, other: Self) -> Self {
-        self.real -= other.real;
-        for (x, y) in self.dual.iter_mut().zip(other.dual) {
-            *x -= y;
-        }
-        self
+    fn sub(self, other: Self) -> Self {
+        Self::combine(self.real - other.real, self, 1.0, other, -1.0)
     }
 }
 

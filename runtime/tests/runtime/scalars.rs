@@ -11,6 +11,38 @@ fn off(a: DoubleDouble, b: DoubleDouble) -> f64 {
     ((a - b) / b).magnitude()
 }
 
+/// Operations on more than eight derivatives call functions instead of loops in place.
+#[test]
+fn many_derivatives_are_computed_as_few_are() {
+    fn all<const N: usize>() -> Vec<(f64, [f64; 2])> {
+        let [x, y] = [0.7, -1.3].map(|x| x * std::f64::consts::PI);
+        let (x, y) = (Dual::<N>::variable(x, 0), Dual::variable(y, 1));
+        let ended = [
+            x + y,
+            x - y,
+            x * y,
+            x / y,
+            -x,
+            x.sqrt(),
+            x.exp(),
+            y.sin(),
+            y.tanh(),
+        ];
+        let each = ended.into_iter();
+        each.map(|z| (z.real, [z.dual[0], z.dual[1]])).collect()
+    }
+    assert_eq!(all::<2>(), all::<8>());
+    assert_eq!(all::<2>(), all::<9>());
+    assert_eq!(all::<2>(), all::<32>());
+    // A derivative that no operation touches stays zero, and the last one is not left out.
+    let [x, y] = [3, 31].map(|k| Dual::<32>::variable(0.5, k));
+    let product = x * y - y;
+    assert_eq!(
+        (product.dual[0], product.dual[3], product.dual[31]),
+        (0.0, 0.5, -0.5)
+    );
+}
+
 #[test]
 fn double_double_has_thirty_digits() {
     // Constants to 32 digits, as sums of two doubles.
