@@ -28,5 +28,6 @@ mod rounding_of_fields;
 mod singular_starts;
 mod stated_any_dimension;
 mod stated_models;
+mod text_model;
 mod two_numbers;
 mod unit_quaternions;
