@@ -78,6 +78,11 @@ macro_rules! given {
 }
 pub(crate) use given;
 
+/// The card of a text.
+pub(crate) fn card(text: &str) -> Card {
+    clebsch_interpret::card(text).unwrap_or_else(|e| panic!("{text}\n{e}"))
+}
+
 /// A model, read from its text.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TextModel {
@@ -86,8 +91,7 @@ pub(crate) struct TextModel {
 
 impl TextModel {
     pub(crate) fn read(text: &str) -> Self {
-        let card = clebsch_interpret::card(text).unwrap_or_else(|e| panic!("{text}\n{e}"));
-        Self { card }
+        Self { card: card(text) }
     }
 
     /// The same model with another value of its named size.
