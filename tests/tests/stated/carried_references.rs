@@ -117,7 +117,7 @@ fn agree(
     let mut two = TextModel::read(carried).start(H, two).unwrap();
     // The accessor returns the initial value.
     for (name, value) in start {
-        if names.contains(name) {
+        if names.contains(&name.as_str()) {
             let pairs = two.numbers(name).into_iter().zip(value);
             let off = pairs.fold(0.0, |m, (x, y)| worse(m, (x - y).abs()));
             assert!(off < ONCE, "{name}: {off:e}");

@@ -103,9 +103,9 @@ const ROUNDING: f64 = 1e-14;
 
 impl<const N: usize> EllipsoidData<N> {
     /// The parameters and a start; `momentum` is the name of the momentum.
-    fn given(&self, q: Matrix<N>, momentum: &'static str, p: Matrix<N>) -> Given {
+    fn given(&self, q: Matrix<N>, momentum: &str, p: Matrix<N>) -> Given {
         let mut all = given! { C0: self.c0, I0: self.i0, a: self.a, b: self.b, d: self.d, Q: q };
-        all.extend(given! { p: p }.into_iter().map(|(_, p)| (momentum, p)));
+        all.push((momentum.to_owned(), p.transpose().as_slice().to_vec()));
         all
     }
 }

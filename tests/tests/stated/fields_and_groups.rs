@@ -241,7 +241,7 @@ fn four_kinds_keep_their_total_momentum() {
     for h in [1e-1, 1e-4, 1e-8] {
         let (given, mut own) = mixed(&mut source, h);
         for (name, value) in &mut own {
-            if *name == "X" {
+            if name == "X" {
                 *value = vec![0.0; 3];
             }
         }

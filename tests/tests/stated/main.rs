@@ -12,6 +12,7 @@ mod bracket;
 mod carried_momentum;
 mod carried_references;
 mod coordinates;
+mod derived_residual;
 mod dimensions_against_hand;
 mod ellipsoids;
 mod fields;

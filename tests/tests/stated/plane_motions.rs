@@ -91,7 +91,7 @@ fn worst_of(action: &PlaneSum, nodes: &[[Square<f64, 3>; 1]]) -> f64 {
 
 /// The nodes of a run from a random start; `momentum` is the name of the momentum.
 fn run_of(
-    (text, momentum): (&str, &'static str),
+    (text, momentum): (&str, &str),
     action: &PlaneSum,
     source: &mut Source,
 ) -> Vec<[Square<f64, 3>; 1]> {
@@ -101,7 +101,7 @@ fn run_of(
         u: action.lever, z: action.vertical, P0: action.line,
         G: PlaneMotion::new(source.between(-3.0, 3.0), Vector2::from(source.vector())),
     };
-    given.push((momentum, source.vector::<3>().to_vec()));
+    given.push((momentum.to_owned(), source.vector::<3>().to_vec()));
     let mut motion = TextModel::read(text).start(action.h, &given).unwrap();
     let mut nodes = vec![[motion.square("G")]];
     for _ in 0..STEPS {

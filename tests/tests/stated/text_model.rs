@@ -68,12 +68,12 @@ by_matrix! {
 }
 
 /// Parameters and initial values by name.
-pub(crate) type Given = Vec<(&'static str, Vec<f64>)>;
+pub(crate) type Given = Vec<(String, Vec<f64>)>;
 
 /// Values by name, as [`Given`].
 macro_rules! given {
     ($($name:ident: $value:expr),* $(,)?) => {
-        vec![$((stringify!($name), $crate::text_model::Numbers::numbers(&$value))),*]
+        vec![$((stringify!($name).to_owned(), $crate::text_model::Numbers::numbers(&$value))),*]
     };
 }
 pub(crate) use given;
@@ -83,7 +83,7 @@ pub(crate) fn card(text: &str) -> Card {
     clebsch_interpret::card(text).unwrap_or_else(|e| panic!("{text}\n{e}"))
 }
 
-/// A model, read from its text.
+/// A model by its card.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TextModel {
     pub(crate) card: Card,
@@ -92,6 +92,12 @@ pub(crate) struct TextModel {
 impl TextModel {
     pub(crate) fn read(text: &str) -> Self {
         Self { card: card(text) }
+    }
+
+    /// A compiled model of the gallery.
+    pub(crate) fn gallery(kebab: &str) -> Self {
+        let entry = clebsch_models::find(kebab).unwrap_or_else(|| panic!("{kebab}"));
+        Self { card: entry.card }
     }
 
     /// The same model with another value of its named size.
@@ -112,7 +118,7 @@ impl TextModel {
         given: &Given,
     ) -> Result<Motion, OpenError> {
         let value = |field: &Field| {
-            let found = given.iter().find(|(name, _)| *name == field.name);
+            let found = given.iter().find(|(name, _)| name == field.name);
             let found = found.unwrap_or_else(|| panic!("no value for `{}`", field.name));
             found.1.clone()
         };
