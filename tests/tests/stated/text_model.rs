@@ -3,8 +3,10 @@
 
 use clebsch::card::{Card, Field, OpenError, Settings, Trajectory};
 use clebsch::nalgebra::{SMatrix, SVector};
-use clebsch::{Linear, Orthogonal, PlaneMotion, RigidMotion, Rotation, StepCause, StepError};
-use clebsch::{StartError, UnitQuaternion};
+use clebsch::{
+    BodyImpulse, BodyMomentum, PlaneMotion, RigidMotion, Rotation, SpatialMomentum, StartError,
+    StepCause, StepError, UnitQuaternion,
+};
 use clebsch_oracle::oracle::square::Square;
 use std::fmt;
 
@@ -49,23 +51,29 @@ impl Numbers for UnitQuaternion {
     }
 }
 
+/// Momenta of typed models.
+macro_rules! by_components {
+    ($($momentum:ty)*) => {
+        $(impl Numbers for $momentum {
+            fn numbers(&self) -> Vec<f64> {
+                self.0.numbers()
+            }
+        })*
+    };
+}
+by_components! { BodyMomentum SpatialMomentum BodyImpulse }
+
 /// Elements that a card takes as matrices.
 macro_rules! by_matrix {
-    ($([$($size:tt)*] $element:ty,)*) => {
-        $(impl $($size)* Numbers for $element {
+    ($($element:ty)*) => {
+        $(impl Numbers for $element {
             fn numbers(&self) -> Vec<f64> {
                 self.matrix().numbers()
             }
         })*
     };
 }
-by_matrix! {
-    [] Rotation,
-    [] RigidMotion,
-    [] PlaneMotion,
-    [<const N: usize>] Orthogonal<N>,
-    [<const N: usize>] Linear<N>,
-}
+by_matrix! { Rotation RigidMotion PlaneMotion }
 
 /// Parameters and initial values by name.
 pub(crate) type Given = Vec<(String, Vec<f64>)>;
