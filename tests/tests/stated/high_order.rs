@@ -2,6 +2,7 @@
 //! Taylor series, and compositions of coupled bodies and of a top outside the gallery (Newton's method) with much finer steps. Also
 //! tests modified moments for a body outside the gallery, and the error for one-sided models.
 
+use super::text_model::{TextModel, card};
 use clebsch::card::{OpenError, Settings};
 use clebsch::integrate::{Composition, CompositionOrder, Reversible};
 use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
@@ -10,7 +11,6 @@ use clebsch::{BodyMomentum, DoubleDouble, Real, Rotation};
 use clebsch_models::coupled_bodies::{
     CoupledBodies, CoupledBodiesInitial, CoupledBodiesParameters, CoupledBodiesState,
 };
-use clebsch_models::free_body::FreeBody;
 use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters, HeavyTopState};
 use clebsch_oracle::physics::measure::worse;
 
@@ -41,20 +41,18 @@ clebsch::model! {
     }
 }
 
-clebsch::model! {
-    /// The heavy top with its weight at the end of each step.
-    model LateTop {
-        param J: Sym<3>;
-        param gU: Vec<3>;
-        param z: Vec<3>;
-        group Λ: SO<3> velocity Ω;
-        advected Γ: Vec<3> = Λ^T*z;
-        constraint next(Λ) = Λ*Ω;
-        constraint next(Γ) = Ω^T*Γ;
-        node incoming;
-        lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);
-    }
-}
+/// The heavy top with its weight at the end of each step.
+const LATE_TOP: &str = "model LateTop {
+    param J: Sym<3>;
+    param gU: Vec<3>;
+    param z: Vec<3>;
+    group Λ: SO<3> velocity Ω;
+    advected Γ: Vec<3> = Λ^T*z;
+    constraint next(Λ) = Λ*Ω;
+    constraint next(Γ) = Ω^T*Γ;
+    node incoming;
+    lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);
+}";
 
 fn quad<const R: usize, const C: usize>(a: SMatrix<f64, R, C>) -> SMatrix<Quad, R, C> {
     a.map(Quad::from_f64)
@@ -283,7 +281,7 @@ fn cards_open_compositions_of_every_order() {
     let parameters = [matrix(poinsot()), vec![0.1, -0.2, 0.6], vec![0.0, 0.0, 1.0]];
     let mu = Vector3::new(0.2, -0.4, 0.9);
     let initial = [matrix(Matrix3::identity()), mu.as_slice().to_vec()];
-    let card = HeavyTop::CARD;
+    let card = TextModel::gallery("heavy-top").card;
     let time = 4.0;
     let end = |order: u32, steps: u32| {
         let settings = Settings::step(time / f64::from(steps)).of_order(order);
@@ -309,7 +307,7 @@ fn cards_open_compositions_of_every_order() {
 
 #[test]
 fn one_sided_models_offer_no_composition() {
-    let card = LateTop::CARD;
+    let card = card(LATE_TOP);
     assert_eq!((card.orders, card.reversible), (&[1][..], false));
     let matrix = |m: Matrix3<f64>| m.transpose().as_slice().to_vec();
     let parameters = [matrix(poinsot()), vec![0.1, -0.2, 0.6], vec![0.0, 0.0, 1.0]];
@@ -320,7 +318,7 @@ fn one_sided_models_offer_no_composition() {
     assert!(matches!(refused, OpenError::Order { asked: 4, .. }));
     assert!(refused.to_string().contains("node symmetric"), "{refused}");
     // With the weight split evenly between both ends, the same data work.
-    let card = HeavyTop::CARD;
+    let card = TextModel::gallery("heavy-top").card;
     for order in card.orders {
         let settings = Settings::step(0.1).of_order(*order);
         assert!(
@@ -335,7 +333,7 @@ fn compensation_is_made_where_it_is_known_and_refused_elsewhere() {
     let matrix = |m: Matrix3<f64>| m.transpose().as_slice().to_vec();
     let free = [matrix(poinsot())];
     let initial = [matrix(Matrix3::identity()), vec![0.2, -0.4, 0.9]];
-    let card = FreeBody::CARD;
+    let card = TextModel::gallery("free-body").card;
     let open = |order: u32, compensated: bool| {
         let settings = Settings {
             compensated,
@@ -371,6 +369,7 @@ fn compensation_is_made_where_it_is_known_and_refused_elsewhere() {
         compensated: true,
         ..Settings::step(0.1).of_order(4)
     };
-    let refused = (HeavyTop::CARD.open)(&top, &initial, settings).map(|_| ());
+    let composed = TextModel::gallery("heavy-top").card;
+    let refused = (composed.open)(&top, &initial, settings).map(|_| ());
     assert!(matches!(refused, Err(OpenError::Compensation { .. })));
 }
