@@ -1,7 +1,7 @@
 //! The body in any dimension: residual and steps against the oracle, invariants, order, solvability bound, and its solvers against
 //! each other. The Manakov spectrum is computed here and not taken from the card.
 
-use super::text_model::{Given, Motion, TextModel, card, cause, given};
+use super::text_model::{Given, Motion, TextModel, cause, given};
 use clebsch::card::Settings;
 use clebsch::nalgebra::{DMatrix, SMatrix};
 use clebsch::solvers::Method;
