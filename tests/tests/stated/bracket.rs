@@ -1,6 +1,6 @@
 //! Checks that every step is a Poisson map of the derived Lie-Poisson bracket: `D B D^T = B` at the image. Covers models on both
 //! sides, with tensors and with several bodies. A bracket with a wrong sign fails, and so do quantities from different nodes. The
-//! derivatives are differences; `tests/motion/gallery_bracket.rs` takes exact ones of the compiled gallery.
+//! derivatives are differences of steps; the tests of the gallery take exact derivatives.
 
 use super::text_model::{Given, Motion, TextModel, given};
 use clebsch::Rotation;

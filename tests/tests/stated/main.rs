@@ -1,5 +1,5 @@
-//! Steppers of models stated in these tests, on every group and in any dimension, for features that the gallery does not use. A
-//! separate binary from `motion`, so that both compile in parallel.
+//! Steppers of models stated in these tests, on every group and in any dimension, for features that the gallery does not use. Most
+//! models run from their text. Tests of names in a crate, of other scalars and of ensembles compile theirs.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables, confusable_idents)]

@@ -51,6 +51,9 @@ const STIFF_BODY: &str = "model StiffBody {
     lagrangian = -tr(J*Ω)/h - c*tr(J*Ω)^2/h;
 }";
 
+/// The size of the terms of a kinetic energy, from the norms of parameters and a length.
+type Size = fn(&dyn Fn(&str) -> f64, f64) -> f64;
+
 /// A model with a distribution of random problems.
 pub(crate) struct Drawn {
     pub(crate) model: TextModel,
@@ -58,8 +61,7 @@ pub(crate) struct Drawn {
     pub(crate) names: &'static [&'static str],
     /// The data, and the step size of about one radian.
     pub(crate) draw: fn(&mut Draws) -> (Given, f64),
-    /// The size of the terms of the kinetic energy, from the norms of parameters and a length.
-    size: fn(&dyn Fn(&str) -> f64, f64) -> f64,
+    size: Size,
     residual: DerivedResidual,
 }
 
@@ -78,7 +80,7 @@ impl Drawn {
         model: TextModel,
         names: &'static [&'static str],
         draw: fn(&mut Draws) -> (Given, f64),
-        size: fn(&dyn Fn(&str) -> f64, f64) -> f64,
+        size: Size,
     ) -> Self {
         Self {
             model,
