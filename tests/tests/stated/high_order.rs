@@ -1,6 +1,6 @@
-//! Orders above two, by step halving. Compares compositions of a heavy top and of a free body with their Taylor series, and
-//! compositions of coupled bodies and of a top outside the gallery (Newton's method) with much finer steps. Also tests modified
-//! moments in double-double arithmetic for a body outside the gallery, and the error for one-sided models.
+//! Orders above two, by step halving. Compositions of a heavy top and of a free body are compared with their Taylor series.
+//! Compositions of coupled bodies and of a top outside the gallery (Newton's method) are compared with much finer steps. Also tests
+//! modified moments in double-double arithmetic for a body outside the gallery, and the error for one-sided models.
 
 use super::text_model::{Given, TextModel, card, given};
 use clebsch::card::{OpenError, Settings};

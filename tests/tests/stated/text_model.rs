@@ -119,7 +119,7 @@ impl TextModel {
         self.start_with(Settings::step(h), given)
     }
 
-    /// Starts a motion. The names must be those of the parameters and initial values.
+    /// Starts a motion from values of all parameters and initial values.
     pub(crate) fn start_with(
         &self,
         settings: Settings,
