@@ -2,98 +2,75 @@
 //! has ten frames in a ring of springs, all explicit. The other has four bodies, two with a common velocity term: three blocks of
 //! two kinds, one of them spatial. Compared with the variation of the unreduced action and with joint invariants.
 
-use clebsch::integrate::Stepper;
+use super::text_model::{Given, Motion, TextModel, cause, given};
+use clebsch::card::OpenError;
 use clebsch::nalgebra::{Matrix2, Matrix3, Vector3};
-use clebsch::{
-    BodyMomentum, BodyMomentumMatrix, Linear, Rotation, SpatialMomentum, StartError, StepCause,
-};
+use clebsch::{Rotation, StartError, StepCause};
 use clebsch_oracle::oracle::action::{DiscreteAction, Variation, rotations, stationarity};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::square::{Square, constant_column, dot};
+use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 
-clebsch::model! {
-    /// Ten frames, each bound to the next by their axes, the last to the first.
-    model Ring {
-        param J: Sym<3>;
-        param a, b: Vec<3>;
-        param c: Real;
-        group R0: SO<3> velocity V0;
-        group R1: SO<3> velocity V1;
-        group R2: SO<3> velocity V2;
-        group R3: SO<3> velocity V3;
-        group R4: SO<3> velocity V4;
-        group R5: SO<3> velocity V5;
-        group R6: SO<3> velocity V6;
-        group R7: SO<3> velocity V7;
-        group R8: SO<3> velocity V8;
-        group R9: SO<3> velocity V9;
-        constraint next(R0) = R0*V0;
-        constraint next(R1) = R1*V1;
-        constraint next(R2) = R2*V2;
-        constraint next(R3) = R3*V3;
-        constraint next(R4) = R4*V4;
-        constraint next(R5) = R5*V5;
-        constraint next(R6) = R6*V6;
-        constraint next(R7) = R7*V7;
-        constraint next(R8) = R8*V8;
-        constraint next(R9) = R9*V9;
-        lagrangian = -tr(J*(V0 + V1 + V2 + V3 + V4 + V5 + V6 + V7 + V8 + V9))/h
-            + h*c*(dot(R0*a, R1*b) + dot(R1*a, R2*b) + dot(R2*a, R3*b) + dot(R3*a, R4*b)
-                 + dot(R4*a, R5*b) + dot(R5*a, R6*b) + dot(R6*a, R7*b) + dot(R7*a, R8*b)
-                 + dot(R8*a, R9*b) + dot(R9*a, R0*b));
-    }
+/// Ten frames, each bound to the next by their axes, the last to the first.
+fn ring_text() -> String {
+    let each = |line: &dyn Fn(usize) -> String| (0..10).map(line).collect::<Vec<_>>();
+    let frames =
+        each(&|i| format!("group R{i}: SO<3> velocity V{i}; constraint next(R{i}) = R{i}*V{i};"));
+    let velocities = each(&|i| format!("V{i}"));
+    let springs = each(&|i| format!("dot(R{i}*a, R{}*b)", (i + 1) % 10));
+    format!(
+        "model Ring {{ param J: Sym<3>; param a, b: Vec<3>; param c: Real; {}
+            lagrangian = -tr(J*({}))/h + h*c*({}); }}",
+        frames.join(" "),
+        velocities.join(" + "),
+        springs.join(" + ")
+    )
 }
 
-clebsch::model! {
-    /// A body stated in space, a body whose kinetic energy is quartic, and two bodies with a joint.
-    model Kinds {
-        param J: Sym<3>;
-        param a, b: Vec<3>;
-        param c, e: Real;
-        group Q: SO<3> velocity U;
-        group P: SO<3> velocity W;
-        group R: SO<3> velocity V;
-        group S: SO<3> velocity Y;
-        constraint next(Q) = U*Q;
-        constraint next(P) = P*W;
-        constraint next(R) = R*V;
-        constraint next(S) = S*Y;
-        lagrangian = -(tr(J*Q^T*U*Q) + tr(J*W) + tr(J*V) + tr(J*Y))/h
-            + (e/h^3)*tr(Id - W)^2
-            - (e/h)*dot(R*(V - Id)*a, S*(Y - Id)*b)
-            + h*c*(dot(Q*a, P*b) + dot(P*a, R*b) + dot(S*a, Q*b));
-    }
-}
+/// A body stated in space, a body whose kinetic energy is quartic, and two bodies with a joint.
+const KINDS: &str = "model Kinds {
+    param J: Sym<3>;
+    param a, b: Vec<3>;
+    param c, e: Real;
+    group Q: SO<3> velocity U;
+    group P: SO<3> velocity W;
+    group R: SO<3> velocity V;
+    group S: SO<3> velocity Y;
+    constraint next(Q) = U*Q;
+    constraint next(P) = P*W;
+    constraint next(R) = R*V;
+    constraint next(S) = S*Y;
+    lagrangian = -(tr(J*Q^T*U*Q) + tr(J*W) + tr(J*V) + tr(J*Y))/h
+        + (e/h^3)*tr(Id - W)^2
+        - (e/h)*dot(R*(V - Id)*a, S*(Y - Id)*b)
+        + h*c*(dot(Q*a, P*b) + dot(P*a, R*b) + dot(S*a, Q*b));
+}";
 
-clebsch::model! {
-    /// Two bodies, one near the boundary of the domain of its potential.
-    model Brink {
-        param J: Sym<3>;
-        param a, z: Vec<3>;
-        param w, c: Real;
-        group R: SO<3> velocity V;
-        group S: SO<3> velocity Y;
-        constraint next(R) = R*V;
-        constraint next(S) = S*Y;
-        lagrangian = -tr(J*V)/h - tr(J*Y)/h - h*w*log(dot(z, R*a) + c);
-    }
-}
+/// Two bodies, one near the boundary of the domain of its potential.
+const BRINK: &str = "model Brink {
+    param J: Sym<3>;
+    param a, z: Vec<3>;
+    param w, c: Real;
+    group R: SO<3> velocity V;
+    group S: SO<3> velocity Y;
+    constraint next(R) = R*V;
+    constraint next(S) = S*Y;
+    lagrangian = -tr(J*V)/h - tr(J*Y)/h - h*w*log(dot(z, R*a) + c);
+}";
 
-clebsch::model! {
-    /// A plane map that is pushed through det = 0 beside a body, solved by Newton.
-    model Pushed {
-        param J: Sym<3>;
-        param e: Real;
-        group F: GL<2> velocity P;
-        group R: SO<3> velocity V;
-        constraint next(F) = F*P;
-        constraint next(R) = R*V;
-        lagrangian = -tr(J*V)/h + tr((F*(P - Id))*(F*(P - Id))^T)/(2*h)
-            + (e/h^3)*tr((F*(P - Id))*(F*(P - Id))^T)^2;
-    }
-}
+/// A plane map that is pushed through det = 0 beside a body, solved by Newton.
+const PUSHED: &str = "model Pushed {
+    param J: Sym<3>;
+    param e: Real;
+    group F: GL<2> velocity P;
+    group R: SO<3> velocity V;
+    constraint next(F) = F*P;
+    constraint next(R) = R*V;
+    lagrangian = -tr(J*V)/h + tr((F*(P - Id))*(F*(P - Id))^T)/(2*h)
+        + (e/h^3)*tr((F*(P - Id))*(F*(P - Id))^T)^2;
+}";
 
 /// The data of both models.
 struct BlockData {
@@ -115,10 +92,6 @@ impl BlockData {
             c: source.between(-1.0, 1.0),
             e: source.between(0.01, 0.05),
         }
-    }
-
-    fn matrix(&self) -> Matrix3<f64> {
-        Matrix3::from_fn(|i, j| self.j.0[i][j])
     }
 
     fn kinetic<T: Number>(&self, tail: &Square<T, 3>, head: &Square<T, 3>) -> T {
@@ -163,33 +136,6 @@ impl DiscreteAction<3, 4> for BlockData {
     }
 }
 
-fn square(r: &Rotation) -> Square<f64, 3> {
-    let m = r.matrix();
-    Square::from_entries(|i, j| m[(i, j)])
-}
-
-fn rotation(source: &mut Source) -> Rotation {
-    let m: Square<f64, 3> = source.orthogonal();
-    Rotation::from_matrix(&Matrix3::from_fn(|i, j| m.0[i][j])).expect("a rotation")
-}
-
-/// The frames of the ring.
-fn frames(s: &RingState<f64>) -> [Square<f64, 3>; 10] {
-    let all = [
-        s.R0(),
-        s.R1(),
-        s.R2(),
-        s.R3(),
-        s.R4(),
-        s.R5(),
-        s.R6(),
-        s.R7(),
-        s.R8(),
-        s.R9(),
-    ];
-    all.map(|r| square(&r))
-}
-
 /// The largest component of the variation, relative to the size of its terms.
 fn share(variation: &Variation) -> f64 {
     let largest = variation
@@ -200,85 +146,45 @@ fn share(variation: &Variation) -> f64 {
     largest / variation.scale
 }
 
-fn ring(given: &BlockData, source: &mut Source) -> (Ring, RingInitial) {
-    let model = Ring::new(RingParameters {
-        J: given.matrix(),
-        a: Vector3::from(given.a),
-        b: Vector3::from(given.b),
-        c: given.c,
-    });
-    let mut r = || rotation(source);
-    let [r0, r1, r2, r3, r4, r5, r6, r7, r8, r9] = from_fn(|_| r());
-    let mut m = || BodyMomentum(Vector3::from(source.vector()) * 0.5);
-    let initial = RingInitial {
-        R0: r0,
-        body_momentum_R0: m(),
-        R1: r1,
-        body_momentum_R1: m(),
-        R2: r2,
-        body_momentum_R2: m(),
-        R3: r3,
-        body_momentum_R3: m(),
-        R4: r4,
-        body_momentum_R4: m(),
-        R5: r5,
-        body_momentum_R5: m(),
-        R6: r6,
-        body_momentum_R6: m(),
-        R7: r7,
-        body_momentum_R7: m(),
-        R8: r8,
-        body_momentum_R8: m(),
-        R9: r9,
-        body_momentum_R9: m(),
-    };
-    (model.expect("positive"), initial)
+/// The ring with random frames and momenta.
+fn ring(given: &BlockData, source: &mut Source) -> Given {
+    let mut all = given! { J: given.j, a: given.a, b: given.b, c: given.c };
+    all.extend((0..10).map(|i| (format!("R{i}"), source.orthogonal::<3>().0.concat())));
+    all.extend((0..10).map(|i| {
+        let momentum = source.vector::<3>().map(|x| x * 0.5);
+        (format!("body_momentum_R{i}"), momentum.to_vec())
+    }));
+    all
 }
 
-fn kinds(given: &BlockData, source: &mut Source) -> (Kinds, KindsInitial) {
-    let model = Kinds::new(KindsParameters {
-        J: given.matrix(),
-        a: Vector3::from(given.a),
-        b: Vector3::from(given.b),
-        c: given.c,
-        e: given.e,
-    });
-    let [q, p, r, s] = from_fn(|_| rotation(source));
+fn kinds(given: &BlockData, source: &mut Source) -> Given {
+    let [q, p, r, s] = from_fn(|_| source.orthogonal::<3>());
     let mut m = || Vector3::from(source.vector()) * 0.3;
-    let initial = KindsInitial {
-        Q: q,
-        spatial_momentum_Q: SpatialMomentum(m()),
-        P: p,
-        body_momentum_P: BodyMomentum(m()),
-        R: r,
-        body_momentum_R: BodyMomentum(m()),
-        S: s,
-        body_momentum_S: BodyMomentum(m()),
-    };
-    (model.expect("positive"), initial)
+    given! {
+        J: given.j, a: given.a, b: given.b, c: given.c, e: given.e,
+        Q: q, spatial_momentum_Q: m(), P: p, body_momentum_P: m(),
+        R: r, body_momentum_R: m(), S: s, body_momentum_S: m(),
+    }
 }
 
-/// Steps of a motion; `look` receives three consecutive nodes.
-fn along<M: Stepper<Scalar = f64>>(
-    model: &M,
-    start: M::State,
-    h: f64,
+/// Steps of a motion; `look` receives the frames at three consecutive nodes.
+fn along<const G: usize>(
+    motion: &mut Motion,
+    frames: [&str; G],
     steps: usize,
-    mut look: impl FnMut(&[M::State; 3]),
-) where
-    M::State: Copy,
-{
-    let mut work = model.workspace(&start, h).expect("solvable");
-    let mut past = [start; 3];
+    mut look: impl FnMut(&[[Square<f64, 3>; G]; 3]),
+) {
+    let mut past = [frames.map(|name| motion.square(name)); 3];
     for step in 0..steps {
-        let mut state = past[2];
-        model.advance(&mut state, &mut work).expect("solvable");
-        past = [past[1], past[2], state];
+        motion.steps(1);
+        past = [past[1], past[2], frames.map(|name| motion.square(name))];
         if step > 0 {
             look(&past);
         }
     }
 }
+
+const RING: [&str; 10] = ["R0", "R1", "R2", "R3", "R4", "R5", "R6", "R7", "R8", "R9"];
 
 /// A thousand rounding errors, relative to the size of the terms.
 const ROUNDING: f64 = 2e-13;
@@ -287,23 +193,24 @@ const ROUNDING: f64 = 2e-13;
 fn each_kind_of_block_solves_the_unreduced_equations() {
     let basis = rotations();
     let mut source = Source::seeded(11);
+    let [of_ring, of_kinds] = [&ring_text(), KINDS].map(TextModel::read);
     for h in [0.02, 0.1, 0.2] {
         for _ in 0..20 {
             let given = BlockData::random(&mut source, h);
-            let (model, initial) = ring(&given, &mut source);
-            let (start, _) = model.start(initial, h).expect("solvable");
+            let mut motion = of_ring
+                .start(h, &ring(&given, &mut source))
+                .expect("solvable");
             let mut worst = 0.0f64;
-            along(&model, start, h, 6, |past| {
-                let nodes = past.map(|s| frames(&s));
-                worst = worst.max(share(&stationarity(&given, &nodes, &basis)));
+            along(&mut motion, RING, 6, |nodes| {
+                worst = worst.max(share(&stationarity(&given, nodes, &basis)));
             });
             assert!(worst < ROUNDING, "ring: {worst:e}");
-            let (model, initial) = kinds(&given, &mut source);
-            let (start, _) = model.start(initial, h).expect("solvable");
+            let mut motion = of_kinds
+                .start(h, &kinds(&given, &mut source))
+                .expect("solvable");
             let mut worst = 0.0f64;
-            along(&model, start, h, 6, |past| {
-                let nodes = past.map(|s| [s.Q(), s.P(), s.R(), s.S()].map(|r| square(&r)));
-                worst = worst.max(share(&stationarity(&given, &nodes, &basis)));
+            along(&mut motion, ["Q", "P", "R", "S"], 6, |nodes| {
+                worst = worst.max(share(&stationarity(&given, nodes, &basis)));
             });
             assert!(worst < ROUNDING, "kinds: {worst:e}");
         }
@@ -316,13 +223,14 @@ fn the_oracle_notices_a_spring_that_is_missing() {
     let mut source = Source::seeded(12);
     let mut given = BlockData::random(&mut source, 0.1);
     given.c = 0.5;
-    let (model, initial) = ring(&given, &mut source);
-    let (start, _) = model.start(initial, given.h).expect("solvable");
+    let start = ring(&given, &mut source);
+    let mut motion = TextModel::read(&ring_text())
+        .start(given.h, &start)
+        .expect("solvable");
     given.c = 0.5 * (1.0 + 1e-6);
     let mut least = f64::INFINITY;
-    along(&model, start, given.h, 6, |past| {
-        let nodes = past.map(|s| frames(&s));
-        least = least.min(share(&stationarity(&given, &nodes, &basis)));
+    along(&mut motion, RING, 6, |nodes| {
+        least = least.min(share(&stationarity(&given, nodes, &basis)));
     });
     assert!(least > ROUNDING, "{least:e}");
 }
@@ -332,29 +240,20 @@ fn frames_that_act_on_one_another_keep_their_angular_momentum() {
     let mut source = Source::seeded(13);
     for h in [1e-1, 1e-4, 1e-8] {
         let given = BlockData::random(&mut source, h);
-        let (model, initial) = ring(&given, &mut source);
-        let (start, _) = model.start(initial, h).expect("solvable");
-        let momenta = |s: &RingState<f64>| {
-            [
-                s.spatial_momentum_R0(),
-                s.spatial_momentum_R1(),
-                s.spatial_momentum_R2(),
-                s.spatial_momentum_R3(),
-                s.spatial_momentum_R4(),
-                s.spatial_momentum_R5(),
-                s.spatial_momentum_R6(),
-                s.spatial_momentum_R7(),
-                s.spatial_momentum_R8(),
-                s.spatial_momentum_R9(),
-            ]
+        let start = ring(&given, &mut source);
+        let mut motion = TextModel::read(&ring_text())
+            .start(h, &start)
+            .expect("solvable");
+        let momenta = |motion: &Motion| {
+            RING.map(|name| motion.vector::<3>(&format!("spatial_momentum_{name}")))
         };
-        let total =
-            |s: &RingState<f64>| momenta(s).iter().fold(Vector3::zeros(), |sum, m| sum + m.0);
-        let size: f64 = momenta(&start).iter().map(|m| m.0.norm()).sum();
-        let (first, mut worst) = (total(&start), 0.0f64);
-        along(&model, start, h, 2000, |past| {
-            worst = worst.max((total(&past[2]) - first).norm() / size);
-        });
+        let total = |m: &Motion| momenta(m).iter().sum::<Vector3<f64>>();
+        let size: f64 = momenta(&motion).iter().map(|m| m.norm()).sum();
+        let (first, mut worst) = (total(&motion), 0.0f64);
+        for _ in 0..2000 {
+            motion.steps(1);
+            worst = worse(worst, (total(&motion) - first).norm() / size);
+        }
         // Per step ten sums of two forces with rounding errors of equal size; 2000 steps with random signs.
         assert!(worst < 2e-13, "h = {h:e}: {worst:e}");
     }
@@ -364,93 +263,79 @@ fn frames_that_act_on_one_another_keep_their_angular_momentum() {
 fn a_block_beyond_its_bound_is_refused_with_a_step_that_works() {
     let mut source = Source::seeded(14);
     let given = BlockData::random(&mut source, 0.1);
+    let model = TextModel::read(&ring_text());
     for fast in 0..10 {
-        let (model, mut initial) = ring(&given, &mut source);
-        let momentum = match fast {
-            0 => &mut initial.body_momentum_R0,
-            1 => &mut initial.body_momentum_R4,
-            _ => &mut initial.body_momentum_R9,
+        let mut start = ring(&given, &mut source);
+        let fast = match fast {
+            0 => "body_momentum_R0",
+            1 => "body_momentum_R4",
+            _ => "body_momentum_R9",
         };
-        momentum.0 *= 400.0;
-        let error = model.start(initial, given.h).expect_err("too fast");
-        let StartError::Refused(StepCause::LeftFactor(refused)) = &error else {
+        let momentum = start.iter_mut().find(|(name, _)| name == fast);
+        let momentum = &mut momentum.expect("a momentum").1;
+        momentum.iter_mut().for_each(|x| *x *= 400.0);
+        let error = model.start(given.h, &start).expect_err("too fast");
+        let StepCause::LeftFactor(refused) = cause(&error) else {
             panic!("{error}");
         };
         let offered = refused.largest_step.expect("a step is offered");
         assert!(0.0 < offered && offered < given.h, "{offered}");
         model
-            .start(initial, offered)
+            .start(offered, &start)
             .expect("the step offered is taken");
         model
-            .start(initial, 1.01 * offered)
+            .start(1.01 * offered, &start)
             .expect_err("a longer one is not");
     }
 }
 
 #[test]
 fn the_edge_of_a_domain_is_met_once() {
-    let model = |w: f64, c: f64| {
-        let model = Brink::new(BrinkParameters {
-            J: Matrix3::identity(),
-            a: Vector3::z(),
-            z: Vector3::z(),
-            w,
-            c,
-        });
-        model.expect("admitted")
+    let still = [0.1, 0.2, 0.3];
+    let given = |w: f64, c: f64, turn: f64, momentum: [f64; 3]| {
+        given! {
+            J: Matrix3::<f64>::identity(), a: [0.0, 0.0, 1.0], z: [0.0, 0.0, 1.0], w: w, c: c,
+            R: Rotation::exp(&Vector3::new(turn, 0.0, 0.0)), body_momentum_R: momentum,
+            S: Matrix3::<f64>::identity(), body_momentum_S: still,
+        }
     };
-    let still = BodyMomentum(Vector3::new(0.1, 0.2, 0.3));
-    let at = |turn: f64| BrinkInitial {
-        R: Rotation::exp(&Vector3::new(turn, 0.0, 0.0)),
-        body_momentum_R: still,
-        S: Rotation::identity(),
-        body_momentum_S: still,
-    };
+    let model = TextModel::read(BRINK);
     // Outside the domain from the start: no step size helps, and the solver searches for none.
-    let error = model(1.0, -3.0).start(at(0.0), 0.05).expect_err("outside");
-    assert!(matches!(error, StartError::Initial(_)), "{error}");
+    let outside = given(1.0, -3.0, 0.0, still);
+    let error = model.start(0.05, &outside).expect_err("outside");
+    assert!(
+        matches!(error, OpenError::Start(StartError::Initial(_))),
+        "{error}"
+    );
     // Just inside the domain: the suggested step size works.
     let edge = (-0.5f64).acos();
     for gap in [1e-2, 1e-4, 1e-6] {
-        let mut initial = at(edge - gap);
-        initial.body_momentum_R = BodyMomentum(Vector3::x());
         // So weak that only the boundary of the domain matters.
-        let model = model(1e-30, 0.5);
-        let error = model.start(initial, 0.2).expect_err("over the edge");
-        let StartError::Refused(StepCause::Contact(contact)) = error else {
+        let inside = given(1e-30, 0.5, edge - gap, [1.0, 0.0, 0.0]);
+        let error = model.start(0.2, &inside).expect_err("over the edge");
+        let StepCause::Contact(contact) = cause(&error) else {
             panic!("{error}");
         };
         let works = contact.works().expect("a shorter step");
         model
-            .start(initial, works)
+            .start(works, &inside)
             .expect("the step offered is taken");
     }
 }
 
 #[test]
 fn a_block_that_loses_its_inverse_says_so() {
-    let model = Pushed::new(PushedParameters {
-        J: Matrix3::identity(),
-        e: 1e-3,
-    });
-    let model = model.expect("admitted");
-    let initial = PushedInitial {
-        F: Linear::identity(),
-        body_momentum_F: BodyMomentumMatrix(Matrix2::new(-1.0, 0.0, 0.0, -0.2)),
-        R: Rotation::identity(),
-        body_momentum_R: BodyMomentum(Vector3::new(0.1, 0.2, 0.3)),
+    let given = given! {
+        J: Matrix3::<f64>::identity(), e: 1e-3,
+        F: Matrix2::<f64>::identity(), body_momentum_F: [-1.0, 0.0, 0.0, -0.2],
+        R: Matrix3::<f64>::identity(), body_momentum_R: [0.1, 0.2, 0.3],
     };
     for h in [0.03, 0.2, 0.7] {
-        let (mut state, mut work) = model.start(initial, h).expect("far from singular");
-        let error = loop {
-            if let Err(e) = model.step(&mut state, &mut work) {
-                break e;
-            }
-            assert!(
-                state.node() < 200,
-                "its determinant reaches 0 at about time 1"
-            );
-        };
+        let started = TextModel::read(PUSHED).start(h, &given);
+        let mut motion = started.expect("far from singular");
+        // Its determinant reaches 0 at about time 1.
+        let error = (0..200).find_map(|_| motion.step().err());
+        let error = error.expect("a singular map");
         assert!(
             matches!(error.cause, StepCause::Contact(_)),
             "h = {h}: {error}"

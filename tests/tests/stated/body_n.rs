@@ -1,14 +1,13 @@
 //! The body in any dimension: residual and steps against the oracle, invariants, order, solvability bound, and its solvers against
 //! each other. The Manakov spectrum is computed here and not taken from the card.
 
+use super::text_model::{Given, Motion, TextModel, cause, given};
 use clebsch::card::Settings;
 use clebsch::nalgebra::{DMatrix, SMatrix};
 use clebsch::solvers::Method;
 use clebsch::solvers::left_factor::{LeftFactor, Refusal};
 use clebsch::{BodyMomentumMatrix, Orthogonal, StartError, StepCause};
-use clebsch_models::body_n::{
-    BodyN, BodyNConfiguration, BodyNInitial, BodyNParameters, BodyNState, BodyNWorkspace,
-};
+use clebsch_models::body_n::{BodyN, BodyNConfiguration, BodyNInitial, BodyNParameters};
 use clebsch_oracle::oracle::action::{DiscreteAction, momentum_out, sensitivity, stationarity};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::Source;
@@ -59,37 +58,35 @@ fn factor<const N: usize>(source: &mut Source, symmetric: bool) -> SMatrix<f64, 
     }
 }
 
-/// A model, and a momentum at this fraction of the bound for the step size `H`.
-fn at_fraction<const N: usize>(
+/// The model of the gallery.
+fn body<const N: usize>() -> TextModel {
+    TextModel::gallery("body-n").of_size(N)
+}
+
+/// A random start: attitude, and a momentum at this fraction of the bound for the step size `H`.
+fn drawn<const N: usize>(
     source: &mut Source,
     c: SMatrix<f64, N, N>,
     fraction: f64,
-) -> (BodyN<N>, BodyNInitial<N>) {
+) -> [SMatrix<f64, N, N>; 2] {
     let m = matrix(&source.skew::<N>());
     let reach = LeftFactor::new(c).expect("a factor").reach(&(m * H));
-    let start = matrix(&source.orthogonal::<N>());
-    let model = BodyN::new(BodyNParameters { C: c }).expect("parameters");
-    let initial = BodyNInitial {
-        Λ: Orthogonal::from_matrix(&start).expect("a rotation"),
-        body_momentum: BodyMomentumMatrix(m * (fraction / reach)),
-    };
-    (model, initial)
+    [matrix(&source.orthogonal::<N>()), m * (fraction / reach)]
 }
 
-fn run<const N: usize>(
-    model: &BodyN<N>,
-    state: &mut BodyNState<N>,
-    work: &mut BodyNWorkspace<N>,
-    steps: u64,
-) {
-    for _ in 0..steps {
-        model.step(state, work).expect("solvable");
-    }
+/// Data with such a momentum.
+fn at_fraction<const N: usize>(source: &mut Source, c: SMatrix<f64, N, N>, fraction: f64) -> Given {
+    let [attitude, momentum] = drawn(source, c, fraction);
+    given! { C: c, Λ: attitude, body_momentum: momentum }
+}
+
+fn started<const N: usize>(h: f64, given: &Given) -> Motion {
+    body::<N>().start(h, given).expect("solvable")
 }
 
 fn residual_and_steps<const N: usize>() {
     let mut source = Source::seeded(3);
-    let basis = planes::<N>();
+    let (basis, steps) = (planes::<N>(), body::<N>());
     let mut worst = [0.0f64; 3];
     for point in 0..200 {
         let c = factor::<N>(&mut source, point % 2 == 0);
@@ -110,13 +107,16 @@ fn residual_and_steps<const N: usize>() {
             worst[0] = worse(worst[0], (found - expected).abs() / oracle.scale);
         }
         // Steps from a state solve the equations of the unreduced action.
-        let (model, initial) = at_fraction(&mut source, c, 0.6);
+        let [attitude, momentum] = drawn(&mut source, c, 0.6);
         let system = Body { h: H, c: square(c) };
-        let (mut state, mut work) = model.start(initial, H).expect("solvable");
-        let mut nodes = [[square(state.Λ().matrix())]; 3];
+        let given = given! { C: c, Λ: attitude, body_momentum: momentum };
+        let mut motion = steps
+            .start_with(Settings::step(H).to_inquire(), &given)
+            .expect("solvable");
+        let mut nodes = [[motion.square("Λ")]; 3];
         for node in &mut nodes[1..] {
-            run(&model, &mut state, &mut work, 1);
-            *node = [square(state.Λ().matrix())];
+            motion.steps(1);
+            *node = [motion.square("Λ")];
         }
         let residual = stationarity(&system, &nodes, &basis);
         let sensitive = sensitivity(&nodes, &basis, |n| {
@@ -128,8 +128,10 @@ fn residual_and_steps<const N: usize>() {
         let out = momentum_out(&system, &nodes[0], &nodes[1], &basis);
         let pairs = (0..N).flat_map(|i| (i + 1..N).map(move |j| (i, j)));
         for (found, (i, j)) in out.derivative.iter().zip(pairs) {
-            let given = initial.body_momentum.0[(j, i)];
-            worst[2] = worse(worst[2], (found - given).abs() / (out.scale + sensitive));
+            worst[2] = worse(
+                worst[2],
+                (found - momentum[(j, i)]).abs() / (out.scale + sensitive),
+            );
         }
     }
     println!("n = {N}: {worst:?}");
@@ -162,23 +164,23 @@ fn spectrum<const N: usize>(m: &SMatrix<f64, N, N>, j: &SMatrix<f64, N, N>) -> V
 fn keeps_spectrum<const N: usize>() {
     let mut source = Source::seeded(5);
     let j = factor::<N>(&mut source, true);
-    let (model, initial) = at_fraction(&mut source, j, 0.3);
-    let (mut state, mut work) = model.start(initial, H).expect("solvable");
-    let first = spectrum(&initial.body_momentum.0, &j);
+    let mut motion = started::<N>(H, &at_fraction(&mut source, j, 0.3));
+    let start = motion.matrix::<N, N>("body_momentum");
+    let first = spectrum(&start, &j);
     let (mut worst, mut moved) = (0.0f64, 0.0f64);
     let mut other: f64 = 0.0;
     let wrong = j + matrix(&square(SMatrix::from_diagonal_element(0.1)));
-    let before = spectrum(&initial.body_momentum.0, &wrong);
+    let before = spectrum(&start, &wrong);
     for _ in 0..10_000 {
-        run(&model, &mut state, &mut work, 1);
-        let m = state.body_momentum().0;
+        motion.steps(1);
+        let m = motion.matrix::<N, N>("body_momentum");
         for (a, b) in spectrum(&m, &j).iter().zip(&first) {
             worst = worse(worst, (a - b).abs());
         }
         for (a, b) in spectrum(&m, &wrong).iter().zip(&before) {
             other = worse(other, (a - b).abs());
         }
-        moved = worse(moved, (m - initial.body_momentum.0).amax());
+        moved = worse(moved, (m - start).amax());
     }
     println!("n = {N}: spectrum {worst:e}, of another matrix {other:e}, momentum {moved:e}");
     assert!(worst < 1e-12, "n = {N}: {worst:e}");
@@ -199,21 +201,20 @@ fn spatial_momentum_of_the_edges_is_kept_for_a_hundred_thousand_steps() {
     let mut source = Source::seeded(6);
     for symmetric in [true, false] {
         let c = factor::<4>(&mut source, symmetric);
-        let (model, initial) = at_fraction(&mut source, c, 0.3);
-        let (mut state, mut work) = model.start(initial, H).expect("solvable");
-        let first = state.spatial_momentum().0;
+        let mut motion = started::<4>(H, &at_fraction(&mut source, c, 0.3));
+        let first = motion.matrix::<4, 4>("spatial_momentum");
         let (mut worst, mut group) = (0.0f64, 0.0f64);
-        for step in 0..100_000 {
-            let before = state.Λ().matrix();
-            model.step(&mut state, &mut work).expect("solvable");
-            if step % 64 == 0 {
-                // Computed from the configurations alone, not from stored values.
-                let a = before.transpose() * state.Λ().matrix() * c.transpose() / H;
-                let m = before * (a - a.transpose()) * before.transpose();
-                worst = worse(worst, (m - first).amax() / first.amax());
-                let gram = before.transpose() * before - SMatrix::<f64, 4, 4>::identity();
-                group = worse(group, gram.amax());
-            }
+        // Every 64th of a hundred thousand edges.
+        for _ in 0..1563 {
+            let before = motion.matrix::<4, 4>("Λ");
+            motion.steps(1);
+            // Computed from the configurations alone, not from stored values.
+            let a = before.transpose() * motion.matrix::<4, 4>("Λ") * c.transpose() / H;
+            let m = before * (a - a.transpose()) * before.transpose();
+            worst = worse(worst, (m - first).amax() / first.amax());
+            let gram = before.transpose() * before - SMatrix::<f64, 4, 4>::identity();
+            group = worse(group, gram.amax());
+            motion.steps(63);
         }
         println!("momentum {worst:e}, group {group:e}");
         assert!(worst < 1e-12 && group < 1e-14, "{worst:e} {group:e}");
@@ -224,17 +225,17 @@ fn spatial_momentum_of_the_edges_is_kept_for_a_hundred_thousand_steps() {
 fn order_two() {
     let mut source = Source::seeded(7);
     let c = factor::<4>(&mut source, true);
-    let (model, initial) = at_fraction(&mut source, c, 0.3);
+    let given = at_fraction(&mut source, c, 0.3);
     let at = |h: f64| {
-        let (mut state, mut work) = model.start(initial, h).expect("solvable");
-        run(&model, &mut state, &mut work, (2.0 / h).round() as u64);
-        (state.Λ().matrix(), state.body_momentum().0)
+        let mut motion = started::<4>(h, &given);
+        motion.steps((2.0 / h).round() as usize);
+        ["Λ", "body_momentum"].map(|name| motion.matrix::<4, 4>(name))
     };
     let steps = [0.04, 0.02, 0.01, 0.005].map(at);
     // For order two, differences of neighbours decrease by a factor of four.
     let apart: Vec<(f64, f64)> = steps
         .windows(2)
-        .map(|w| ((w[0].0 - w[1].0).amax(), (w[0].1 - w[1].1).amax()))
+        .map(|w| ((w[0][0] - w[1][0]).amax(), (w[0][1] - w[1][1]).amax()))
         .collect();
     for w in apart.windows(2) {
         let orders = [(w[0].0 / w[1].0).log2(), (w[0].1 / w[1].1).log2()];
@@ -243,38 +244,32 @@ fn order_two() {
     }
 }
 
-clebsch::model! {
-    /// The same body with assumptions about its factor.
-    model Assumed {
-        dim n in 3..=4;
-        param C: Mat<n>;
-        assume C^T == C;
-        group Λ: SO<n> velocity Ω;
-        constraint next(Λ) = Λ*Ω;
-        lagrangian = -tr(C^T*Ω)/h;
-    }
-}
+/// The same body with assumptions about its factor.
+const ASSUMED: &str = "model Assumed {
+    dim n in 3..=4;
+    param C: Mat<n>;
+    assume C^T == C;
+    group Λ: SO<n> velocity Ω;
+    constraint next(Λ) = Λ*Ω;
+    lagrangian = -tr(C^T*Ω)/h;
+}";
 
 #[test]
 fn with_a_factor_assumed_symmetric_steps_are_reversible_and_compose() {
-    let (card, general) = (Assumed::<4>::CARD, BodyN::<4>::CARD);
-    assert!(card.reversible && !general.reversible);
-    assert_eq!((card.order, general.order), (2, 1));
+    let (model, general) = (TextModel::read(ASSUMED).of_size(4), body::<4>().card);
+    assert!(model.card.reversible && !general.reversible);
+    assert_eq!((model.card.order, general.order), (2, 1));
     let mut source = Source::seeded(12);
     let c = factor::<4>(&mut source, true);
-    let (_, initial) = at_fraction(&mut source, c, 0.3);
-    let rows = |m: SMatrix<f64, 4, 4>| m.transpose().as_slice().to_vec();
-    let start = [rows(initial.Λ.matrix()), rows(initial.body_momentum.0)];
+    let [attitude, momentum] = drawn(&mut source, c, 0.3);
+    let given = |c: SMatrix<f64, 4, 4>| given! { C: c, Λ: attitude, body_momentum: momentum };
     let end = |order: u32, h: f64| {
         let settings = Settings::step(h).of_order(order);
-        let mut run = (card.open)(&[rows(c)], &start, settings).expect("a symmetric factor");
-        for _ in 0..(1.0 / h).round() as u64 {
-            run.step().expect("solvable");
-        }
-        let count: usize = card.observables.iter().map(|f| f.count()).sum();
-        let mut out = vec![0.0; count];
-        run.observe(&mut out);
-        out
+        let mut motion = model
+            .start_with(settings, &given(c))
+            .expect("a symmetric factor");
+        motion.steps((1.0 / h).round() as usize);
+        motion.observed()
     };
     let exact = end(8, 0.02);
     for (order, steps) in [(2, [0.05, 0.025]), (4, [0.1, 0.05])] {
@@ -288,23 +283,24 @@ fn with_a_factor_assumed_symmetric_steps_are_reversible_and_compose() {
     }
     // The constructor checks the assumption.
     let turned = factor::<4>(&mut source, false);
-    assert!((card.open)(&[rows(turned)], &start, Settings::step(H)).is_err());
+    assert!(model.start(H, &given(turned)).is_err());
 }
 
 fn bound<const N: usize>() {
     let mut source = Source::seeded(8);
     let c = factor::<N>(&mut source, false);
-    let (model, initial) = at_fraction(&mut source, c, 1.0 + 1e-6);
-    let Err(StartError::Refused(StepCause::LeftFactor(e))) = model.start(initial, H) else {
-        panic!("beyond the bound");
+    let given = at_fraction(&mut source, c, 1.0 + 1e-6);
+    let error = body::<N>().start(H, &given).expect_err("beyond the bound");
+    let StepCause::LeftFactor(e) = cause(&error) else {
+        panic!("{error}");
     };
     assert_eq!(e.refusal, Refusal::BeyondBound);
     assert!((e.ratio - 1.0 - 1e-6).abs() < 1e-9, "{e}");
     let largest = e.largest_step.expect("searched");
     assert!((largest / H - 1.0 + 1e-6).abs() < 1e-9, "{e}");
-    assert!(model.start(initial, largest).is_ok());
-    let (model, initial) = at_fraction(&mut source, c, 1.0 - 1e-6);
-    assert!(model.start(initial, H).is_ok());
+    assert!(body::<N>().start(largest, &given).is_ok());
+    let given = at_fraction(&mut source, c, 1.0 - 1e-6);
+    assert!(body::<N>().start(H, &given).is_ok());
 }
 
 #[test]
@@ -317,13 +313,17 @@ fn steps_beyond_the_bound_are_refused_with_the_largest_that_is_not() {
 fn solvers<const N: usize>(names: &[Method]) {
     let mut source = Source::seeded(9);
     let c = factor::<N>(&mut source, false);
-    let (model, initial) = at_fraction(&mut source, c, 0.5);
+    let given = at_fraction(&mut source, c, 0.5);
     let ends: Vec<_> = names
         .iter()
         .map(|method| {
-            let (mut state, mut work) = model.start_with(initial, H, *method).expect("solvable");
-            run(&model, &mut state, &mut work, 100);
-            state.Λ().matrix()
+            let settings = Settings {
+                solver: Some(*method),
+                ..Settings::step(H)
+            };
+            let mut motion = body::<N>().start_with(settings, &given).expect("solvable");
+            motion.steps(100);
+            motion.matrix::<N, N>("Λ")
         })
         .collect();
     for end in &ends {
@@ -339,7 +339,12 @@ fn solvers_by_name_agree() {
     solvers::<7>(&[Method::LieNewton, Method::Sign, Method::Schur]);
     let mut source = Source::seeded(10);
     let c = factor::<4>(&mut source, true);
-    let (model, initial) = at_fraction(&mut source, c, 0.5);
+    let [attitude, momentum] = drawn(&mut source, c, 0.5);
+    let model = BodyN::<4>::new(BodyNParameters { C: c }).expect("parameters");
+    let initial = BodyNInitial {
+        Λ: Orthogonal::from_matrix(&attitude).expect("a rotation"),
+        body_momentum: BodyMomentumMatrix(momentum),
+    };
     let refused = model.start_with(initial, H, Method::Kappa);
     let Err(StartError::Refused(StepCause::LeftFactor(e))) = refused else {
         panic!("kappa is for three dimensions");

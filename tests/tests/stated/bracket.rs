@@ -1,9 +1,11 @@
-//! Checks that every emitted step is a Poisson map of the derived Lie-Poisson bracket: `D B D^T = B` at the image, with exact
-//! derivatives. Covers models on both sides, with tensors and with several bodies. A bracket with a wrong sign fails, and so do
-//! quantities from different nodes.
+//! Checks that every step is a Poisson map of the derived Lie-Poisson bracket: `D B D^T = B` at the image. Covers models on both
+//! sides, with tensors and with several bodies. A bracket with a wrong sign fails, and so do quantities from different nodes. The
+//! derivatives are differences of steps; the tests of the gallery take exact derivatives.
 
-use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
-use clebsch::{BodyMomentum, Dual, Rotation, SpatialMomentum};
+use super::text_model::{Given, Motion, TextModel, given};
+use clebsch::Rotation;
+use clebsch::card::Settings;
+use clebsch::nalgebra::{DMatrix, Matrix3, Vector3};
 use clebsch_core::derive::bracket::Space;
 use clebsch_core::derive::invariants::Family;
 use clebsch_core::interpret::{Assignment, Matrix, evaluate};
@@ -11,63 +13,58 @@ use clebsch_core::{Derivation, derive_source, expr};
 use clebsch_oracle::physics::measure::worse;
 use clebsch_oracle::physics::random_states::Draws;
 
-clebsch::model! {
-    model Body {
-        param J: Sym<3>;
-        group Λ: SO<3> velocity Ω;
-        constraint next(Λ) = Λ*Ω;
-        lagrangian = -tr(J*Ω)/h;
-    }
-}
-clebsch::model! {
-    model Top {
-        param J: Sym<3>;
-        param gU, z: Vec<3>;
-        group Λ: SO<3> velocity Ω;
-        advected Γ: Vec<3> = Λ^T*z;
-        constraint next(Λ) = Λ*Ω;
-        constraint next(Γ) = Ω^T*Γ;
-        lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);
-    }
-}
-clebsch::model! {
-    model TopInSpace {
-        param w: Real;
-        param z: Vec<3>;
-        group Λ: SO<3> velocity ω;
-        advected J: Sym<3>;
-        advected chi: Vec<3>;
-        constraint next(Λ) = ω*Λ;
-        constraint next(J) = ω*J*ω^T;
-        constraint next(chi) = ω*chi;
-        lagrangian = -tr(ω*J)/h - h*w*dot(chi, z);
-    }
-}
-clebsch::model! {
-    model Joined {
-        param J1, J2: Sym<3>;
-        param d1, d2: Vec<3>;
-        param eps: Real;
-        group Λ1: SO<3> velocity Ω1;
-        group Λ2: SO<3> velocity Ω2;
-        advected R: SO<3> = Λ1^T*Λ2;
-        constraint next(Λ1) = Λ1*Ω1;
-        constraint next(Λ2) = Λ2*Ω2;
-        constraint next(R) = Ω1^T*R*Ω2;
-        lagrangian = -(tr(J1*Ω1) + tr(J2*Ω2) + eps*dot((Ω1 - Id)*d1, R*(Ω2 - Id)*d2))/h;
-    }
-}
+const BODY: &str = "model Body {
+    param J: Sym<3>;
+    group Λ: SO<3> velocity Ω;
+    constraint next(Λ) = Λ*Ω;
+    lagrangian = -tr(J*Ω)/h;
+}";
+const TOP: &str = "model Top {
+    param J: Sym<3>;
+    param gU, z: Vec<3>;
+    group Λ: SO<3> velocity Ω;
+    advected Γ: Vec<3> = Λ^T*z;
+    constraint next(Λ) = Λ*Ω;
+    constraint next(Γ) = Ω^T*Γ;
+    lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);
+}";
+const TOP_IN_SPACE: &str = "model TopInSpace {
+    param w: Real;
+    param z: Vec<3>;
+    group Λ: SO<3> velocity ω;
+    advected J: Sym<3>;
+    advected chi: Vec<3>;
+    constraint next(Λ) = ω*Λ;
+    constraint next(J) = ω*J*ω^T;
+    constraint next(chi) = ω*chi;
+    lagrangian = -tr(ω*J)/h - h*w*dot(chi, z);
+}";
+const JOINED: &str = "model Joined {
+    param J1, J2: Sym<3>;
+    param d1, d2: Vec<3>;
+    param eps: Real;
+    group Λ1: SO<3> velocity Ω1;
+    group Λ2: SO<3> velocity Ω2;
+    advected R: SO<3> = Λ1^T*Λ2;
+    constraint next(Λ1) = Λ1*Ω1;
+    constraint next(Λ2) = Λ2*Ω2;
+    constraint next(R) = Ω1^T*R*Ω2;
+    lagrangian = -(tr(J1*Ω1) + tr(J2*Ω2) + eps*dot((Ω1 - Id)*d1, R*(Ω2 - Id)*d2))/h;
+}";
 
 /// Tolerance relative to the largest entry, well above the rounding error of a product of three matrices with up to twelve rows and
 /// entries of order one.
 const TOLERANCE: f64 = 1e-10;
+
+/// The displacement of the differences. Their error is its sixth power, and the rounding of a step divided by it.
+const APART: f64 = 1e-2;
 
 /// One step: the derivation, the points before and after, and the Jacobian in the coordinates of the bracket.
 struct Step {
     derivation: Derivation,
     before: Assignment,
     after: Assignment,
-    jacobian: Vec<Vec<f64>>,
+    jacobian: DMatrix<f64>,
 }
 
 fn values(m: &Matrix) -> &[f64] {
@@ -86,14 +83,14 @@ fn defect(step: &Step, change: impl Fn(&mut Matrix)) -> f64 {
     };
     let (b, image) = (at(&step.before), at(&step.after));
     let (d, n) = (&step.jacobian, b.rows);
-    assert_eq!(d.len(), n);
+    assert_eq!(d.shape(), (n, n));
     let mut worst = 0.0f64;
     for i in 0..n {
         for j in 0..n {
             let mut sum = -image.get(i, j);
             for k in 0..n {
                 for l in 0..n {
-                    sum += d[i][k] * b.get(k, l) * d[j][l];
+                    sum += d[(i, k)] * b.get(k, l) * d[(j, l)];
                 }
             }
             worst = worse(worst, sum.abs());
@@ -114,41 +111,117 @@ fn wrong_sign(b: &mut Matrix) {
     }
 }
 
-fn constants<const N: usize, const R: usize, const C: usize>(
-    m: &SMatrix<f64, R, C>,
-) -> SMatrix<Dual<N>, R, C> {
-    m.map(Dual::constant)
-}
-
-fn variables<const N: usize>(v: &Vector3<f64>, first: usize) -> Vector3<Dual<N>> {
-    Vector3::from_fn(|i, _| Dual::variable(v[i], first + i))
-}
-
 /// Upper triangle, row by row.
 const UPPER: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
-fn gradients<const N: usize>(x: impl IntoIterator<Item = Dual<N>>) -> Vec<Vec<f64>> {
-    x.into_iter().map(|x| x.dual.to_vec()).collect()
+/// How a quantity varies.
+#[derive(Clone, Copy)]
+enum Varies {
+    /// By all components.
+    Freely,
+    /// As a symmetric matrix.
+    Symmetric,
+    /// As a rotation.
+    Turning,
 }
 
-fn set<const N: usize, const R: usize, const C: usize>(
-    to: &mut Assignment,
-    name: &str,
-    m: &SMatrix<Dual<N>, R, C>,
-) {
-    let rows: Vec<f64> = (0..R * C).map(|k| m[(k / C, k % C)].real).collect();
-    to.set(name, 0, R, C, &rows);
+/// A quantity of a bracket: its name there, the name of its observable, and how it varies.
+type Quantity = (&'static str, &'static str, Varies);
+
+/// A change in the coordinates of the bracket.
+fn coordinates(varies: Varies, value: &[f64], change: &[f64]) -> Vec<f64> {
+    match varies {
+        Varies::Freely => change.to_vec(),
+        Varies::Symmetric => UPPER.map(|(r, c)| change[3 * r + c]).to_vec(),
+        // `X^T dX` as an axial vector.
+        Varies::Turning => {
+            let turned = Matrix3::from_row_slice(value).tr_mul(&Matrix3::from_row_slice(change));
+            vec![turned[(2, 1)], turned[(0, 2)], turned[(1, 0)]]
+        }
+    }
 }
 
-/// `X^T dX` as an axial vector.
-fn turns<const N: usize>(x: &Matrix3<Dual<N>>) -> Vec<Vec<f64>> {
-    let value = x.map(|e| e.real);
-    let entry = |r: usize, c: usize| -> Vec<f64> {
-        (0..N)
-            .map(|k| (value.transpose() * x.map(|e| e.dual[k]))[(r, c)])
-            .collect()
+fn seen(motion: &Motion, quantities: &[Quantity]) -> Vec<Vec<f64>> {
+    quantities
+        .iter()
+        .map(|(_, name, _)| motion.numbers(name))
+        .collect()
+}
+
+/// The derivative of lists of numbers along displacement `k` of `count`, by differences of sixth order.
+fn derivative(k: usize, count: usize, run: &dyn Fn(&[f64]) -> Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let mut sum: Vec<Vec<f64>> = Vec::new();
+    for (away, weight) in [(1.0, 45.0), (2.0, -9.0), (3.0, 1.0)] {
+        for sign in [1.0, -1.0] {
+            let mut moved = vec![0.0; count];
+            moved[k] = sign * away * APART;
+            let found = run(&moved);
+            sum.resize_with(found.len(), Vec::new);
+            for (sum, list) in sum.iter_mut().zip(found) {
+                sum.resize(list.len(), 0.0);
+                for (sum, x) in sum.iter_mut().zip(list) {
+                    *sum += sign * weight * x / (60.0 * APART);
+                }
+            }
+        }
+    }
+    sum
+}
+
+/// A step of a model from the values that `start` gives for displacements. With `late`, pairs the second quantity of the next node
+/// with the first quantity of this node.
+fn step(text: &str, quantities: &[Quantity], late: bool, start: &dyn Fn(&[f64]) -> Given) -> Step {
+    let model = TextModel::read(text);
+    let run = |moved: &[f64]| {
+        let one_step = Settings::step(0.1).to_inquire();
+        let mut motion = model.start_with(one_step, &start(moved)).expect("solvable");
+        let mut nodes = vec![seen(&motion, quantities)];
+        for _ in 0..=usize::from(late) {
+            motion.steps(1);
+            nodes.push(seen(&motion, quantities));
+        }
+        if late {
+            // Both points, and both ends of the derivative, combine the momentum of one node with the vertical of the next; this
+            // map is not Poisson.
+            nodes[0][1] = nodes[1][1].clone();
+            nodes[1][1] = nodes[2][1].clone();
+        }
+        nodes.truncate(2);
+        nodes.concat()
     };
-    vec![entry(2, 1), entry(0, 2), entry(1, 0)]
+    let derivation = derive_source(text).expect("derives");
+    let count = quantities.iter().map(|(.., varies)| match varies {
+        Varies::Symmetric => 6,
+        _ => 3,
+    });
+    let count = count.sum();
+    let values = run(&vec![0.0; count]);
+    let mut columns = [(); 2].map(|()| Vec::new());
+    for k in 0..count {
+        let changes = derivative(k, count, &run);
+        let half = quantities.len();
+        for (node, columns) in columns.iter_mut().enumerate() {
+            for (i, (.., varies)) in quantities.iter().enumerate() {
+                let at = node * half + i;
+                columns.extend(coordinates(*varies, &values[at], &changes[at]));
+            }
+        }
+    }
+    let [before, after] = columns.map(|c| DMatrix::from_vec(count, count, c));
+    let assigned = |from: usize| {
+        let mut out = Assignment::new();
+        for ((name, ..), list) in quantities.iter().zip(&values[from..]) {
+            let cols = if list.len() == 9 { 3 } else { 1 };
+            out.set(name, 0, 3, cols, list);
+        }
+        out
+    };
+    Step {
+        derivation,
+        before: assigned(0),
+        after: assigned(quantities.len()),
+        jacobian: after * before.try_inverse().expect("coordinates"),
+    }
 }
 
 fn vector(draws: &mut Draws) -> Vector3<f64> {
@@ -156,179 +229,78 @@ fn vector(draws: &mut Draws) -> Vector3<f64> {
     Vector3::from_row_slice(&start.body_momentum).normalize() * 0.9
 }
 
-fn rotation<const N: usize>(draws: &mut Draws) -> Rotation<Dual<N>> {
-    let start = draws.heavy_top();
-    let q = start.attitude.0.map(Dual::constant);
-    Rotation::from_quaternion(q).expect("a unit quaternion")
+fn rotation(draws: &mut Draws) -> Rotation {
+    Rotation::from_quaternion(draws.heavy_top().attitude.0).expect("a unit quaternion")
 }
 
 fn poinsot(scale: f64) -> Matrix3<f64> {
     Matrix3::new(1.1, 0.1, 0.0, 0.1, 1.4, -0.2, 0.0, -0.2, 1.9) * scale
 }
 
+/// Three displacements, from the given one on.
+fn three(moved: &[f64], first: usize) -> Vector3<f64> {
+    Vector3::from_row_slice(&moved[first..first + 3])
+}
+
 fn body(draws: &mut Draws) -> Step {
-    type T = Dual<3>;
-    let model = Body::<T>::new(BodyParameters {
-        J: constants(&poinsot(1.0)),
+    let (mu, attitude) = (vector(draws), rotation(draws));
+    let quantities = [("μ", "body_momentum", Varies::Freely)];
+    step(BODY, &quantities, false, &|moved| {
+        given! { J: poinsot(1.0), Λ: attitude, body_momentum: mu + three(moved, 0) }
     })
-    .expect("a body");
-    let mu = variables::<3>(&vector(draws), 0);
-    let initial = BodyInitial {
-        Λ: rotation(draws),
-        body_momentum: BodyMomentum(mu),
-    };
-    let (mut state, mut work) = model.start(initial, T::constant(0.1)).expect("solvable");
-    model.step(&mut state, &mut work).expect("solvable");
-    let (mut before, mut after) = (Assignment::new(), Assignment::new());
-    set(&mut before, "μ", &mu);
-    let moved = state.body_momentum().0;
-    set(&mut after, "μ", &moved);
-    Step {
-        derivation: derive_source(Body::<f64>::SOURCE).expect("derives"),
-        before,
-        after,
-        jacobian: gradients(moved.iter().copied()),
-    }
 }
 
 /// The heavy top. With `late`, pairs the vertical of the next node with the momentum of this node.
 fn top(draws: &mut Draws, late: bool) -> Step {
-    type T = Dual<6>;
-    let attitude = rotation::<6>(draws);
-    let (mu, gamma) = (
-        variables::<6>(&vector(draws), 0),
-        variables::<6>(&vector(draws), 3),
-    );
-    let model = Top::<T>::new(TopParameters {
-        J: constants(&poinsot(1.0)),
-        gU: constants(&Vector3::new(0.4, -0.3, 0.9)),
-        z: attitude.rotate(&gamma),
+    let attitude = rotation(draws);
+    let (mu, gamma) = (vector(draws), vector(draws));
+    let quantities = [
+        ("μ", "body_momentum", Varies::Freely),
+        ("Γ", "Γ", Varies::Freely),
+    ];
+    step(TOP, &quantities, late, &|moved| {
+        given! {
+            J: poinsot(1.0), gU: [0.4, -0.3, 0.9], z: attitude.rotate(&(gamma + three(moved, 3))),
+            Λ: attitude, body_momentum: mu + three(moved, 0),
+        }
     })
-    .expect("a top");
-    let initial = TopInitial {
-        Λ: attitude,
-        body_momentum: BodyMomentum(mu),
-    };
-    let (mut state, mut work) = model.start(initial, T::constant(0.1)).expect("solvable");
-    let (mut before, mut after) = (Assignment::new(), Assignment::new());
-    let mut own = (state.body_momentum().0, model.Γ(&state));
-    model.step(&mut state, &mut work).expect("solvable");
-    let mut moved = (state.body_momentum().0, model.Γ(&state));
-    if late {
-        // Both points, and both ends of the derivative, combine the momentum of one node with the vertical of the next; this map is
-        // not Poisson.
-        own.1 = moved.1;
-        model.step(&mut state, &mut work).expect("solvable");
-        moved.1 = model.Γ(&state);
-    }
-    set(&mut before, "μ", &own.0);
-    set(&mut before, "Γ", &own.1);
-    set(&mut after, "μ", &moved.0);
-    set(&mut after, "Γ", &moved.1);
-    let columns = |pair: &(Vector3<T>, Vector3<T>)| {
-        let rows = gradients(pair.0.iter().chain(&pair.1).copied());
-        SMatrix::<f64, 6, 6>::from_fn(|i, j| rows[i][j])
-    };
-    let d = columns(&moved) * columns(&own).try_inverse().expect("coordinates");
-    Step {
-        derivation: derive_source(Top::<f64>::SOURCE).expect("derives"),
-        before,
-        after,
-        jacobian: (0..6)
-            .map(|i| (0..6).map(|j| d[(i, j)]).collect())
-            .collect(),
-    }
 }
 
 fn top_in_space(draws: &mut Draws) -> Step {
-    type T = Dual<12>;
-    let value = poinsot(1.0);
-    let mut j = constants::<12, 3, 3>(&value);
-    for (k, (r, c)) in UPPER.into_iter().enumerate() {
-        j[(r, c)] = T::variable(value[(r, c)], 3 + k);
-        j[(c, r)] = j[(r, c)];
-    }
-    let (m, chi) = (
-        variables::<12>(&vector(draws), 0),
-        variables::<12>(&vector(draws), 9),
-    );
-    let model = TopInSpace::<T>::new(TopInSpaceParameters {
-        w: T::constant(1.3),
-        z: constants(&Vector3::new(0.0, 0.6, 0.8)),
+    let (m, chi, attitude) = (vector(draws), vector(draws), rotation(draws));
+    let quantities = [
+        ("m", "spatial_momentum", Varies::Freely),
+        ("J", "J", Varies::Symmetric),
+        ("chi", "chi", Varies::Freely),
+    ];
+    step(TOP_IN_SPACE, &quantities, false, &|moved| {
+        let mut j = poinsot(1.0);
+        for ((r, c), x) in UPPER.into_iter().zip(&moved[3..]) {
+            j[(r, c)] += x;
+            j[(c, r)] = j[(r, c)];
+        }
+        given! {
+            w: 1.3, z: [0.0, 0.6, 0.8], Λ: attitude, spatial_momentum: m + three(moved, 0), J: j,
+            chi: chi + three(moved, 9),
+        }
     })
-    .expect("a top");
-    let initial = TopInSpaceInitial {
-        Λ: rotation(draws),
-        spatial_momentum: SpatialMomentum(m),
-        J: j,
-        chi,
-    };
-    let (mut state, mut work) = model.start(initial, T::constant(0.1)).expect("solvable");
-    let (mut before, mut after) = (Assignment::new(), Assignment::new());
-    set(&mut before, "m", &m);
-    set(&mut before, "J", &j);
-    set(&mut before, "chi", &chi);
-    model.step(&mut state, &mut work).expect("solvable");
-    let (m, j, chi) = (
-        state.spatial_momentum().0,
-        model.J(&state),
-        model.chi(&state),
-    );
-    set(&mut after, "m", &m);
-    set(&mut after, "J", &j);
-    set(&mut after, "chi", &chi);
-    let tensor = UPPER.map(|(r, c)| j[(r, c)]);
-    Step {
-        derivation: derive_source(TopInSpace::<f64>::SOURCE).expect("derives"),
-        before,
-        after,
-        jacobian: gradients(m.iter().copied().chain(tensor).chain(chi.iter().copied())),
-    }
 }
 
 fn joined(draws: &mut Draws) -> Step {
-    type T = Dual<9>;
-    let model = Joined::<T>::new(JoinedParameters {
-        J1: constants(&poinsot(1.0)),
-        J2: constants(&poinsot(1.2)),
-        d1: constants(&Vector3::new(0.3, 0.0, 0.5)),
-        d2: constants(&Vector3::new(-0.2, 0.4, 0.1)),
-        eps: T::constant(0.5),
+    let (first, second) = (vector(draws), vector(draws));
+    let [one, two] = [(); 2].map(|()| rotation(draws));
+    let quantities = [
+        ("μ1", "body_momentum_Λ1", Varies::Freely),
+        ("μ2", "body_momentum_Λ2", Varies::Freely),
+        ("R", "R", Varies::Turning),
+    ];
+    step(JOINED, &quantities, false, &|moved| {
+        given! {
+            J1: poinsot(1.0), J2: poinsot(1.2), d1: [0.3, 0.0, 0.5], d2: [-0.2, 0.4, 0.1], eps: 0.5,
+            Λ1: one, body_momentum_Λ1: first + three(moved, 0),
+            Λ2: two * Rotation::exp(&three(moved, 6)), body_momentum_Λ2: second + three(moved, 3),
+        }
     })
-    .expect("two bodies");
-    let (first, second) = (
-        variables::<9>(&vector(draws), 0),
-        variables::<9>(&vector(draws), 3),
-    );
-    let axis = Vector3::from_fn(|i, _| T::variable(0.0, 6 + i));
-    let initial = JoinedInitial {
-        Λ1: rotation(draws),
-        body_momentum_Λ1: BodyMomentum(first),
-        Λ2: rotation::<9>(draws) * Rotation::exp(&axis),
-        body_momentum_Λ2: BodyMomentum(second),
-    };
-    let (mut state, mut work) = model.start(initial, T::constant(0.1)).expect("solvable");
-    let (mut before, mut after) = (Assignment::new(), Assignment::new());
-    set(&mut before, "μ1", &first);
-    set(&mut before, "μ2", &second);
-    set(&mut before, "R", &model.R(&state));
-    model.step(&mut state, &mut work).expect("solvable");
-    let (first, second, r) = (
-        state.body_momentum_Λ1().0,
-        state.body_momentum_Λ2().0,
-        model.R(&state),
-    );
-    set(&mut after, "μ1", &first);
-    set(&mut after, "μ2", &second);
-    set(&mut after, "R", &r);
-    let mut jacobian = gradients(first.iter().chain(&second).copied());
-    jacobian.extend(turns(&r));
-    Step {
-        derivation: derive_source(Joined::<f64>::SOURCE).expect("derives"),
-        before,
-        after,
-        jacobian,
-    }
 }
 
 fn is_poisson(name: &str, step: &Step) {

@@ -2,101 +2,90 @@
 //! back to the identity, and computes body values from it. Covers vectors, symmetric tensors, directions in the frames of moving
 //! bodies, and relative orientations of two bodies, against the same models with definitions.
 
-use clebsch::nalgebra::{Matrix3, Matrix4, Vector3, Vector4, Vector6};
-use clebsch::{BodyImpulse, BodyMomentum, RigidMotion, Rotation};
+use super::text_model::{Given, Motion, TextModel, given};
+use clebsch::nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
+use clebsch::{RigidMotion, Rotation};
 use clebsch_oracle::physics::measure::worse;
 
-clebsch::model! {
-    /// A body in a uniform field and in a field with a gradient, both given in space.
-    model FieldsDefined {
-        param J: Sym<3>;
-        param K: Sym<3>;
-        param g: Vec<3>;
-        param z: Vec<3>;
-        param F: Sym<3>;
-        group Λ: SO<3> velocity Ω;
-        advected Γ: Vec<3> = Λ^T*z;
-        advected S: Sym<3> = Λ^T*F*Λ;
-        constraint next(Λ) = Λ*Ω;
-        constraint next(Γ) = Ω^T*Γ;
-        constraint next(S) = Ω^T*S*Ω;
-        lagrangian = -tr(J*Ω)/h - h*dot(g, Γ) - h*tr(K*S);
-    }
-}
+/// A body in a uniform field and in a field with a gradient, both given in space.
+const FIELDS_DEFINED: &str = "model FieldsDefined {
+    param J: Sym<3>;
+    param K: Sym<3>;
+    param g: Vec<3>;
+    param z: Vec<3>;
+    param F: Sym<3>;
+    group Λ: SO<3> velocity Ω;
+    advected Γ: Vec<3> = Λ^T*z;
+    advected S: Sym<3> = Λ^T*F*Λ;
+    constraint next(Λ) = Λ*Ω;
+    constraint next(Γ) = Ω^T*Γ;
+    constraint next(S) = Ω^T*S*Ω;
+    lagrangian = -tr(J*Ω)/h - h*dot(g, Γ) - h*tr(K*S);
+}";
 
-clebsch::model! {
-    /// The same fields, given in the body frame at node 0.
-    model FieldsGiven {
-        param J: Sym<3>;
-        param K: Sym<3>;
-        param g: Vec<3>;
-        group Λ: SO<3> velocity Ω;
-        advected Γ: Vec<3>;
-        advected S: Sym<3>;
-        constraint next(Λ) = Λ*Ω;
-        constraint next(Γ) = Ω^T*Γ;
-        constraint next(S) = Ω^T*S*Ω;
-        lagrangian = -tr(J*Ω)/h - h*dot(g, Γ) - h*tr(K*S);
-    }
-}
+/// The same fields, given in the body frame at node 0.
+const FIELDS_GIVEN: &str = "model FieldsGiven {
+    param J: Sym<3>;
+    param K: Sym<3>;
+    param g: Vec<3>;
+    group Λ: SO<3> velocity Ω;
+    advected Γ: Vec<3>;
+    advected S: Sym<3>;
+    constraint next(Λ) = Λ*Ω;
+    constraint next(Γ) = Ω^T*Γ;
+    constraint next(S) = Ω^T*S*Ω;
+    lagrangian = -tr(J*Ω)/h - h*dot(g, Γ) - h*tr(K*S);
+}";
 
-clebsch::model! {
-    /// Two bodies with a coupling towards a common orientation, relative to either body.
-    model PairDefined {
-        param J1, J2: Sym<3>;
-        param C: Mat<3>;
-        group A: SO<3> velocity U;
-        group B: SO<3> velocity W;
-        advected R: Mat<3> = A^T*B;
-        constraint next(A) = A*U;
-        constraint next(B) = B*W;
-        constraint next(R) = U^T*R*W;
-        lagrangian = -tr(J1*U)/h - tr(J2*W)/h - h*tr(C*R);
-    }
-}
+/// Two bodies with a coupling towards a common orientation, relative to either body.
+const PAIR_DEFINED: &str = "model PairDefined {
+    param J1, J2: Sym<3>;
+    param C: Mat<3>;
+    group A: SO<3> velocity U;
+    group B: SO<3> velocity W;
+    advected R: Mat<3> = A^T*B;
+    constraint next(A) = A*U;
+    constraint next(B) = B*W;
+    constraint next(R) = U^T*R*W;
+    lagrangian = -tr(J1*U)/h - tr(J2*W)/h - h*tr(C*R);
+}";
 
-clebsch::model! {
-    /// The same, with the initial orientation of one body relative to the other.
-    model PairGiven {
-        param J1, J2: Sym<3>;
-        param C: Mat<3>;
-        group A: SO<3> velocity U;
-        group B: SO<3> velocity W;
-        advected R: Mat<3>;
-        constraint next(A) = A*U;
-        constraint next(B) = B*W;
-        constraint next(R) = U^T*R*W;
-        lagrangian = -tr(J1*U)/h - tr(J2*W)/h - h*tr(C*R);
-    }
-}
+/// The same, with the initial orientation of one body relative to the other.
+const PAIR_GIVEN: &str = "model PairGiven {
+    param J1, J2: Sym<3>;
+    param C: Mat<3>;
+    group A: SO<3> velocity U;
+    group B: SO<3> velocity W;
+    advected R: Mat<3>;
+    constraint next(A) = A*U;
+    constraint next(B) = B*W;
+    constraint next(R) = U^T*R*W;
+    lagrangian = -tr(J1*U)/h - tr(J2*W)/h - h*tr(C*R);
+}";
 
-clebsch::model! {
-    /// A body with weight in a fluid at rest, with the plane of height 0 given in space.
-    model SinkingDefined {
-        param J, M: Sym<3>;
-        param b, Z: Vec<4>;
-        group G: SE<3> velocity V;
-        advected P: Vec<4> = G^T*Z;
-        constraint next(G) = G*V;
-        constraint next(P) = V^T*P;
-        let u = (pos(V) - pos(V^-1))/2;
-        lagrangian = -tr(J*rot(V))/h + dot(u, M*u)/(2*h) - h*dot(b, P);
-    }
-}
+/// A body with weight in a fluid at rest, with the plane of height 0 given in space.
+const SINKING_DEFINED: &str = "model SinkingDefined {
+    param J, M: Sym<3>;
+    param b, Z: Vec<4>;
+    group G: SE<3> velocity V;
+    advected P: Vec<4> = G^T*Z;
+    constraint next(G) = G*V;
+    constraint next(P) = V^T*P;
+    let u = (pos(V) - pos(V^-1))/2;
+    lagrangian = -tr(J*rot(V))/h + dot(u, M*u)/(2*h) - h*dot(b, P);
+}";
 
-clebsch::model! {
-    /// The same, with the plane given in the body frame at node 0.
-    model SinkingGiven {
-        param J, M: Sym<3>;
-        param b: Vec<4>;
-        group G: SE<3> velocity V;
-        advected P: Vec<4>;
-        constraint next(G) = G*V;
-        constraint next(P) = V^T*P;
-        let u = (pos(V) - pos(V^-1))/2;
-        lagrangian = -tr(J*rot(V))/h + dot(u, M*u)/(2*h) - h*dot(b, P);
-    }
-}
+/// The same, with the plane given in the body frame at node 0.
+const SINKING_GIVEN: &str = "model SinkingGiven {
+    param J, M: Sym<3>;
+    param b: Vec<4>;
+    group G: SE<3> velocity V;
+    advected P: Vec<4>;
+    constraint next(G) = G*V;
+    constraint next(P) = V^T*P;
+    let u = (pos(V) - pos(V^-1))/2;
+    lagrangian = -tr(J*rot(V))/h + dot(u, M*u)/(2*h) - h*dot(b, P);
+}";
 
 const H: f64 = 0.05;
 const STEPS: usize = 100;
@@ -108,8 +97,38 @@ const ROUNDING: f64 = 1e-12;
 /// Rounding error of a single pull-back and push-forward.
 const ONCE: f64 = 1e-15 * 8.0;
 
-fn largest<'a>(difference: impl IntoIterator<Item = &'a f64>) -> f64 {
-    difference.into_iter().fold(0.0, |m, x| worse(m, x.abs()))
+/// The largest difference of the values of these names.
+fn apart(one: &Motion, two: &Motion, names: &[&str]) -> f64 {
+    let pairs = names
+        .iter()
+        .flat_map(|name| one.numbers(name).into_iter().zip(two.numbers(name)));
+    pairs.fold(0.0, |m, (x, y)| worse(m, (x - y).abs()))
+}
+
+/// Runs a model with definitions beside the same model without; `also` is another deviation of the second motion.
+fn agree(
+    [defined, carried]: [&str; 2],
+    [one, two]: [&Given; 2],
+    names: &[&str],
+    also: impl Fn(&Motion) -> f64,
+) {
+    let mut one = TextModel::read(defined).start(H, one).unwrap();
+    let start = two;
+    let mut two = TextModel::read(carried).start(H, two).unwrap();
+    // The accessor returns the initial value.
+    for (name, value) in start {
+        if names.contains(&name.as_str()) {
+            let pairs = two.numbers(name).into_iter().zip(value);
+            let off = pairs.fold(0.0, |m, (x, y)| worse(m, (x - y).abs()));
+            assert!(off < ONCE, "{name}: {off:e}");
+        }
+    }
+    for node in 1..=STEPS {
+        one.steps(1);
+        two.steps(1);
+        let worst = worse(apart(&one, &two, names), also(&two));
+        assert!(worst < ROUNDING, "node {node}: {worst:e}");
+    }
 }
 
 fn poinsot() -> Matrix3<f64> {
@@ -120,134 +139,63 @@ fn attitudes() -> [Rotation; 3] {
     [[0.3, -0.2, 0.5], [-1.1, 0.4, 0.8], [0.2, 2.3, -0.6]].map(|v| Rotation::exp(&v.into()))
 }
 
+/// Both lists.
+fn with(one: &Given, other: Given) -> Given {
+    [one.clone(), other].concat()
+}
+
 #[test]
 fn fields_seen_from_the_body() {
-    let (g, z) = (Vector3::new(0.1, -0.2, 0.6), Vector3::new(0.0, 0.6, 0.8));
+    let z = Vector3::new(0.0, 0.6, 0.8);
     let field = Matrix3::new(0.4, 0.1, 0.2, 0.1, -0.3, 0.05, 0.2, 0.05, 0.7);
-    let k = Matrix3::new(0.2, 0.0, 0.1, 0.0, 0.5, 0.0, 0.1, 0.0, 0.3);
-    let told = FieldsDefined::new(FieldsDefinedParameters {
-        J: poinsot(),
-        K: k,
-        g,
-        z,
-        F: field,
-    })
-    .unwrap();
-    let given = FieldsGiven::new(FieldsGivenParameters {
-        J: poinsot(),
-        K: k,
-        g,
-    })
-    .unwrap();
     for attitude in attitudes() {
         let r = attitude.matrix();
-        let momentum = BodyMomentum(Vector3::new(0.2, -0.4, 0.9));
-        let initial = FieldsDefinedInitial {
-            Λ: attitude,
-            body_momentum: momentum,
+        let common = given! {
+            J: poinsot(), K: Matrix3::new(0.2, 0.0, 0.1, 0.0, 0.5, 0.0, 0.1, 0.0, 0.3),
+            g: [0.1, -0.2, 0.6], Λ: attitude, body_momentum: [0.2, -0.4, 0.9],
         };
-        let (mut one, mut work_one) = told.start(initial, H).unwrap();
         let seen = r.tr_mul(&field) * r;
-        let initial = FieldsGivenInitial {
-            Λ: attitude,
-            body_momentum: momentum,
-            Γ: r.tr_mul(&z),
-            // Exactly symmetric.
-            S: (seen + seen.transpose()) / 2.0,
-        };
-        let (mut two, mut work_two) = given.start(initial, H).unwrap();
-        // The accessor returns the initial value.
-        assert!(largest(&(given.Γ(&two) - initial.Γ)) < ONCE);
-        assert!(largest(&(given.S(&two) - initial.S)) < ONCE);
-        for node in 1..=STEPS {
-            told.step(&mut one, &mut work_one).unwrap();
-            given.step(&mut two, &mut work_two).unwrap();
-            let apart = [
-                largest(&(one.Λ().matrix() - two.Λ().matrix())),
-                largest(&(one.body_momentum().0 - two.body_momentum().0)),
-                largest(&(told.Γ(&one) - given.Γ(&two))),
-                largest(&(told.S(&one) - given.S(&two))),
-                // Constant in space.
-                largest(&(two.Λ().matrix() * given.Γ(&two) - z)),
-            ];
-            let worst = apart.into_iter().fold(0.0, worse);
-            assert!(worst < ROUNDING, "node {node}: {apart:?}");
-        }
+        // Exactly symmetric.
+        let seen = (seen + seen.transpose()) / 2.0;
+        agree(
+            [FIELDS_DEFINED, FIELDS_GIVEN],
+            [
+                &with(&common, given! { z: z, F: field }),
+                &with(&common, given! { Γ: r.tr_mul(&z), S: seen }),
+            ],
+            &["Λ", "body_momentum", "Γ", "S"],
+            // Constant in space.
+            |two| {
+                (two.matrix::<3, 3>("Λ") * two.vector::<3>("Γ") - z)
+                    .iter()
+                    .fold(0.0, |m, x| worse(m, x.abs()))
+            },
+        );
     }
 }
 
 #[test]
 fn orientations_of_two_bodies() {
     let [first, second, third] = attitudes();
-    let c = Matrix3::new(0.3, 0.1, 0.0, -0.2, 0.4, 0.1, 0.05, 0.0, 0.2);
-    let other = Matrix3::from_diagonal(&Vector3::new(1.1, 0.8, 0.9));
-    let told = PairDefined::new(PairDefinedParameters {
-        J1: poinsot(),
-        J2: other,
-        C: c,
-    })
-    .unwrap();
-    let given = PairGiven::new(PairGivenParameters {
-        J1: poinsot(),
-        J2: other,
-        C: c,
-    })
-    .unwrap();
     for (a, b) in [(first, second), (second, third), (third, third)] {
-        let momenta = [
-            BodyMomentum(Vector3::new(0.2, -0.4, 0.9)),
-            BodyMomentum(Vector3::new(-0.6, 0.1, 0.3)),
-        ];
-        let initial = PairDefinedInitial {
-            A: a,
-            body_momentum_A: momenta[0],
-            B: b,
-            body_momentum_B: momenta[1],
+        let defined = given! {
+            J1: poinsot(), J2: Matrix3::from_diagonal(&Vector3::new(1.1, 0.8, 0.9)),
+            C: Matrix3::new(0.3, 0.1, 0.0, -0.2, 0.4, 0.1, 0.05, 0.0, 0.2),
+            A: a, body_momentum_A: [0.2, -0.4, 0.9], B: b, body_momentum_B: [-0.6, 0.1, 0.3],
         };
-        let (mut one, mut work_one) = told.start(initial, H).unwrap();
-        let initial = PairGivenInitial {
-            A: a,
-            body_momentum_A: momenta[0],
-            B: b,
-            body_momentum_B: momenta[1],
-            R: a.matrix().tr_mul(&b.matrix()),
-        };
-        let (mut two, mut work_two) = given.start(initial, H).unwrap();
-        assert!(largest(&(given.R(&two) - initial.R)) < ONCE);
-        for node in 1..=STEPS {
-            told.step(&mut one, &mut work_one).unwrap();
-            given.step(&mut two, &mut work_two).unwrap();
-            let apart = [
-                largest(&(one.A().matrix() - two.A().matrix())),
-                largest(&(one.B().matrix() - two.B().matrix())),
-                largest(&(told.R(&one) - given.R(&two))),
-            ];
-            let worst = apart.into_iter().fold(0.0, worse);
-            assert!(worst < ROUNDING, "node {node}: {apart:?}");
-        }
+        let carried = with(&defined, given! { R: a.matrix().tr_mul(&b.matrix()) });
+        agree(
+            [PAIR_DEFINED, PAIR_GIVEN],
+            [&defined, &carried],
+            &["A", "B", "R"],
+            |_| 0.0,
+        );
     }
 }
 
 #[test]
 fn a_plane_seen_from_a_moving_body() {
-    let (b, plane) = (
-        Vector4::new(0.1, 0.0, -0.2, 0.3),
-        Vector4::new(0.0, 0.6, 0.8, 0.4),
-    );
-    let added = Matrix3::from_diagonal(&Vector3::new(1.5, 2.0, 3.0));
-    let told = SinkingDefined::new(SinkingDefinedParameters {
-        J: poinsot(),
-        M: added,
-        b,
-        Z: plane,
-    })
-    .unwrap();
-    let given = SinkingGiven::new(SinkingGivenParameters {
-        J: poinsot(),
-        M: added,
-        b,
-    })
-    .unwrap();
+    let plane = Vector4::new(0.0, 0.6, 0.8, 0.4);
     for attitude in attitudes() {
         let mut matrix = Matrix4::identity();
         matrix
@@ -256,28 +204,18 @@ fn a_plane_seen_from_a_moving_body() {
         matrix[(0, 3)] = 0.5;
         matrix[(2, 3)] = -0.25;
         let motion = RigidMotion::from_matrix(&matrix).unwrap();
-        let impulse = BodyImpulse(Vector6::new(0.2, -0.1, 0.4, 0.3, 0.2, -0.2));
-        let initial = SinkingDefinedInitial {
-            G: motion,
-            body_momentum: impulse,
+        let common = given! {
+            J: poinsot(), M: Matrix3::from_diagonal(&Vector3::new(1.5, 2.0, 3.0)), b: [0.1, 0.0, -0.2, 0.3],
+            G: motion, body_momentum: [0.2, -0.1, 0.4, 0.3, 0.2, -0.2],
         };
-        let (mut one, mut work_one) = told.start(initial, H).unwrap();
-        let initial = SinkingGivenInitial {
-            G: motion,
-            body_momentum: impulse,
-            P: motion.matrix().tr_mul(&plane),
-        };
-        let (mut two, mut work_two) = given.start(initial, H).unwrap();
-        assert!(largest(&(given.P(&two) - initial.P)) < ONCE);
-        for node in 1..=STEPS {
-            told.step(&mut one, &mut work_one).unwrap();
-            given.step(&mut two, &mut work_two).unwrap();
-            let apart = [
-                largest(&(one.G().matrix() - two.G().matrix())),
-                largest(&(told.P(&one) - given.P(&two))),
-            ];
-            let worst = apart.into_iter().fold(0.0, worse);
-            assert!(worst < ROUNDING, "node {node}: {apart:?}");
-        }
+        agree(
+            [SINKING_DEFINED, SINKING_GIVEN],
+            [
+                &with(&common, given! { Z: plane }),
+                &with(&common, given! { P: motion.matrix().tr_mul(&plane) }),
+            ],
+            &["G", "P"],
+            |_| 0.0,
+        );
     }
 }

@@ -1,24 +1,22 @@
 //! Compares the generated free body in n dimensions with the hand-written one: one step from ten thousand random states in four
 //! dimensions and a thousand in eight. A test checks that a body with different inertia fails.
 
-use clebsch::nalgebra::SMatrix;
-use clebsch::{BodyMomentumMatrix, Orthogonal};
+use super::text_model::{TextModel, given};
+use clebsch::card::Settings;
 use clebsch_oracle::handwritten::body_n::BodyN as Written;
 use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::square::Square;
 use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 
-clebsch::model! {
-    /// Free body in n dimensions.
-    model FreeBodyN {
-        dim n in 3..=8;
-        param C: Mat<n>;
-        group Λ: SO<n> velocity Ω;
-        constraint next(Λ) = Λ*Ω;
-        lagrangian = -tr(C^T*Ω)/h;
-    }
-}
+/// Free body in n dimensions.
+const FREE_BODY_N: &str = "model FreeBodyN {
+    dim n in 3..=8;
+    param C: Mat<n>;
+    group Λ: SO<n> velocity Ω;
+    constraint next(Λ) = Λ*Ω;
+    lagrangian = -tr(C^T*Ω)/h;
+}";
 
 /// About thirty rounding errors of numbers of order one, for data without amplification.
 const ONE_STEP: f64 = 1e-14;
@@ -59,21 +57,13 @@ impl<const N: usize> State<N> {
         Some([body.attitude().concat(), body.body_momentum().concat()].concat())
     }
 
-    fn generated(&self) -> Option<Vec<f64>> {
-        let matrix = |m: &Square<f64, N>| SMatrix::<f64, N, N>::from_fn(|r, c| m.0[r][c]);
-        let model = FreeBodyN::<N, f64>::new(FreeBodyNParameters {
-            C: SMatrix::from_fn(|r, c| if r == c { self.j[r] } else { 0.0 }),
-        })
-        .ok()?;
-        let initial = FreeBodyNInitial {
-            Λ: Orthogonal::from_matrix(&matrix(&self.attitude)).ok()?,
-            body_momentum: BodyMomentumMatrix(matrix(&self.momentum)),
-        };
-        let (mut state, mut workspace) = model.start(initial, self.h).ok()?;
-        model.step(&mut state, &mut workspace).ok()?;
-        let entries = |m: SMatrix<f64, N, N>| m.transpose().iter().copied().collect::<Vec<_>>();
-        let momentum = entries(state.body_momentum().0);
-        Some([entries(state.Λ().matrix()), momentum].concat())
+    fn generated(&self, model: &TextModel) -> Option<Vec<f64>> {
+        let factor = Square::<f64, N>::from_entries(|r, c| if r == c { self.j[r] } else { 0.0 });
+        let given = given! { C: factor, Λ: self.attitude, body_momentum: self.momentum };
+        let one_step = Settings::step(self.h).to_inquire();
+        let mut motion = model.start_with(one_step, &given).ok()?;
+        motion.step().ok()?;
+        Some([motion.numbers("Λ"), motion.numbers("body_momentum")].concat())
     }
 }
 
@@ -90,11 +80,13 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 
 /// Largest difference divided by the amplification of changes of momenta or inertia, at least one.
 fn single_steps<const N: usize>(count: u32, mistaken: f64) -> f64 {
+    let model = TextModel::read(FREE_BODY_N).of_size(N);
     let mut source = Source::seeded(41);
     let (mut worst, mut hardest, mut refused) = (0.0_f64, 1.0_f64, 0);
     for _ in 0..count {
         let state = State::<N>::draw(&mut source);
-        match (state.nudged(0.0, mistaken).generated(), state.by_hand()) {
+        let generated = state.nudged(0.0, mistaken).generated(&model);
+        match (generated, state.by_hand()) {
             (Some(generated), Some(hand)) => {
                 let condition = [(NUDGE, 0.0), (0.0, NUDGE)]
                     .into_iter()

@@ -2,52 +2,46 @@
 //! explicit. Compared with the material form, in which the force is the second difference of the placement:
 //! `C0 (Q'' - 2 Q' + Q) I0 = -h² ∇V(Q')`, Störmer-Verlet.
 
-use clebsch::integrate::Stepper;
+use super::text_model::{Given, Motion, TextModel, card, cause, given};
+use clebsch::StepCause;
 use clebsch::nalgebra::SMatrix;
-use clebsch::{BodyMomentumMatrix, Linear, SpatialMomentumMatrix, StartError, StepCause};
 use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::square::Square;
 
-clebsch::model! {
-    /// Stored energy of the stretch in the reference frame.
-    model Convective {
-        dim n in 2..=4;
-        param C0, I0: Sym<n>;
-        param a, b, d: Real;
-        group Q: GL<n> velocity G;
-        advected C: Sym<n> = Q^T*C0*Q;
-        constraint next(Q) = Q*G;
-        constraint next(C) = G^T*C*G;
-        lagrangian = tr(C*(G - Id)*I0*(G - Id)^T)/(2*h) - h*(a*tr(C) + b*tr(C*C) - (d/2)*log(det(C)));
-    }
-}
+/// Stored energy of the stretch in the reference frame.
+const CONVECTIVE: &str = "model Convective {
+    dim n in 2..=4;
+    param C0, I0: Sym<n>;
+    param a, b, d: Real;
+    group Q: GL<n> velocity G;
+    advected C: Sym<n> = Q^T*C0*Q;
+    constraint next(Q) = Q*G;
+    constraint next(C) = G^T*C*G;
+    lagrangian = tr(C*(G - Id)*I0*(G - Id)^T)/(2*h) - h*(a*tr(C) + b*tr(C*C) - (d/2)*log(det(C)));
+}";
 
-clebsch::model! {
-    /// The same energy of the second moments in space.
-    model Spatial {
-        dim n in 2..=4;
-        param C0, I0: Sym<n>;
-        param a, b, d: Real;
-        group Q: GL<n> velocity g;
-        advected S: Sym<n> = Q*I0*Q^T;
-        constraint next(Q) = g*Q;
-        constraint next(S) = g*S*g^T;
-        lagrangian = tr(C0*(g - Id)*S*(g - Id)^T)/(2*h) - h*(a*tr(S) + b*tr(S*S) - (d/2)*log(det(S)));
-    }
-}
+/// The same energy of the second moments in space.
+const SPATIAL: &str = "model Spatial {
+    dim n in 2..=4;
+    param C0, I0: Sym<n>;
+    param a, b, d: Real;
+    group Q: GL<n> velocity g;
+    advected S: Sym<n> = Q*I0*Q^T;
+    constraint next(Q) = g*Q;
+    constraint next(S) = g*S*g^T;
+    lagrangian = tr(C0*(g - Id)*S*(g - Id)^T)/(2*h) - h*(a*tr(S) + b*tr(S*S) - (d/2)*log(det(S)));
+}";
 
-clebsch::model! {
-    /// Quartic in the velocity: not linear, solved by Newton.
-    model Quartic {
-        param C0, I0: Sym<2>;
-        param e: Real;
-        group Q: GL<2> velocity G;
-        advected C: Sym<2> = Q^T*C0*Q;
-        constraint next(Q) = Q*G;
-        constraint next(C) = G^T*C*G;
-        lagrangian = tr(C*(G - Id)*I0*(G - Id)^T)/(2*h) + (e/h^3)*tr((G - Id)*(G - Id)^T)^2;
-    }
-}
+/// Quartic in the velocity: not linear, solved by Newton.
+const QUARTIC: &str = "model Quartic {
+    param C0, I0: Sym<2>;
+    param e: Real;
+    group Q: GL<2> velocity G;
+    advected C: Sym<2> = Q^T*C0*Q;
+    constraint next(Q) = Q*G;
+    constraint next(C) = G^T*C*G;
+    lagrangian = tr(C*(G - Id)*I0*(G - Id)^T)/(2*h) + (e/h^3)*tr((G - Id)*(G - Id)^T)^2;
+}";
 
 type Matrix<const N: usize> = SMatrix<f64, N, N>;
 
@@ -107,21 +101,20 @@ impl<const N: usize> EllipsoidData<N> {
 /// Rounding errors of three placements, two inverses and the force.
 const ROUNDING: f64 = 1e-14;
 
-fn follow<const N: usize, M: Stepper<Scalar = f64>>(
-    model: &M,
-    start: M::State,
-    given: &EllipsoidData<N>,
-    placement: impl Fn(&M::State) -> Matrix<N>,
-    spatial: bool,
-) where
-    M::State: Copy,
-{
-    let mut work = model.workspace(&start, given.h).expect("determined");
-    let mut past = [placement(&start); 3];
-    let mut state = start;
+impl<const N: usize> EllipsoidData<N> {
+    /// The parameters and a start; `momentum` is the name of the momentum.
+    fn given(&self, q: Matrix<N>, momentum: &str, p: Matrix<N>) -> Given {
+        let mut all = given! { C0: self.c0, I0: self.i0, a: self.a, b: self.b, d: self.d, Q: q };
+        all.push((momentum.to_owned(), p.transpose().as_slice().to_vec()));
+        all
+    }
+}
+
+fn follow<const N: usize>(motion: &mut Motion, given: &EllipsoidData<N>, spatial: bool) {
+    let mut past = [motion.matrix("Q"); 3];
     for step in 0..200 {
-        model.advance(&mut state, &mut work).expect("determined");
-        past = [past[1], past[2], placement(&state)];
+        motion.steps(1);
+        past = [past[1], past[2], motion.matrix("Q")];
         if step > 0 {
             let left = given.left(&past, spatial);
             assert!(left < ROUNDING, "n = {N}, step {step}: {left:e}");
@@ -131,41 +124,19 @@ fn follow<const N: usize, M: Stepper<Scalar = f64>>(
 
 fn ellipsoids<const N: usize>(seed: u64) {
     let mut source = Source::seeded(seed);
+    let [convective, spatial] = [CONVECTIVE, SPATIAL].map(|text| TextModel::read(text).of_size(N));
     for h in [1e-3, 1e-2] {
         for _ in 0..20 {
             let given = EllipsoidData::<N>::random(&mut source, h);
             // Near the reference, so that the placement stays invertible.
             let q = Matrix::<N>::identity() + matrix(&source.matrix()) * 0.1;
             let p = matrix(&source.matrix()) * 0.1;
-            let placed = Linear::from_matrix(&q).expect("regular");
-            let model = Convective::<N>::new(ConvectiveParameters {
-                C0: given.c0,
-                I0: given.i0,
-                a: given.a,
-                b: given.b,
-                d: given.d,
-            });
-            let model = model.expect("admitted");
-            let initial = ConvectiveInitial {
-                Q: placed,
-                body_momentum: BodyMomentumMatrix(p),
-            };
-            let (start, _) = model.start(initial, h).expect("determined");
-            follow(&model, start, &given, |s| s.Q().matrix(), false);
-            let model = Spatial::<N>::new(SpatialParameters {
-                C0: given.c0,
-                I0: given.i0,
-                a: given.a,
-                b: given.b,
-                d: given.d,
-            });
-            let model = model.expect("admitted");
-            let initial = SpatialInitial {
-                Q: placed,
-                spatial_momentum: SpatialMomentumMatrix(p),
-            };
-            let (start, _) = model.start(initial, h).expect("determined");
-            follow(&model, start, &given, |s| s.Q().matrix(), true);
+            let start = given.given(q, "body_momentum", p);
+            let mut motion = convective.start(h, &start).expect("determined");
+            follow(&mut motion, &given, false);
+            let start = given.given(q, "spatial_momentum", p);
+            let mut motion = spatial.start(h, &start).expect("determined");
+            follow(&mut motion, &given, true);
         }
     }
 }
@@ -185,28 +156,22 @@ fn four_dimensions() {
     ellipsoids::<4>(23);
 }
 
+fn convective(given: &EllipsoidData<3>, p: Matrix<3>) -> Result<Motion, clebsch::card::OpenError> {
+    let start = given.given(Matrix::identity(), "body_momentum", p);
+    TextModel::read(CONVECTIVE)
+        .of_size(3)
+        .start(given.h, &start)
+}
+
 #[test]
 fn the_material_form_notices_a_wrong_force() {
     let mut source = Source::seeded(24);
     let mut given = EllipsoidData::<3>::random(&mut source, 1e-2);
-    let model = Convective::<3>::new(ConvectiveParameters {
-        C0: given.c0,
-        I0: given.i0,
-        a: given.a,
-        b: given.b,
-        d: given.d,
+    let mut motion = convective(&given, matrix(&source.matrix()) * 0.1).expect("determined");
+    let past = [(); 3].map(|()| {
+        motion.steps(1);
+        motion.matrix("Q")
     });
-    let model = model.expect("admitted");
-    let initial = ConvectiveInitial {
-        Q: Linear::identity(),
-        body_momentum: BodyMomentumMatrix(matrix(&source.matrix()) * 0.1),
-    };
-    let (mut state, mut work) = model.start(initial, given.h).expect("determined");
-    let mut past = [state.Q().matrix(); 3];
-    for _ in 0..3 {
-        model.step(&mut state, &mut work).expect("determined");
-        past = [past[1], past[2], state.Q().matrix()];
-    }
     assert!(given.left(&past, false) < ROUNDING);
     given.d *= 1.0 + 1e-6;
     assert!(given.left(&past, false) > ROUNDING);
@@ -215,24 +180,10 @@ fn the_material_form_notices_a_wrong_force() {
 #[test]
 fn a_form_that_is_singular_is_refused_by_its_factor() {
     let mut source = Source::seeded(25);
-    let given = EllipsoidData::<3>::random(&mut source, 1e-2);
-    let flat = Matrix::<3>::from_diagonal(&[1.0, 1.0, 0.0].into());
-    let model = Convective::<3>::new(ConvectiveParameters {
-        C0: given.c0,
-        I0: flat,
-        a: given.a,
-        b: given.b,
-        d: given.d,
-    });
-    let initial = ConvectiveInitial {
-        Q: Linear::identity(),
-        body_momentum: BodyMomentumMatrix(Matrix::zeros()),
-    };
-    let error = model
-        .expect("finite")
-        .start(initial, given.h)
-        .expect_err("flat");
-    let StartError::Refused(StepCause::Singular(e)) = error else {
+    let mut given = EllipsoidData::<3>::random(&mut source, 1e-2);
+    given.i0 = Matrix::from_diagonal(&[1.0, 1.0, 0.0].into());
+    let error = convective(&given, Matrix::zeros()).expect_err("flat");
+    let StepCause::Singular(e) = cause(&error) else {
         panic!("{error}");
     };
     assert_eq!(e.factor, "I₀");
@@ -240,7 +191,7 @@ fn a_form_that_is_singular_is_refused_by_its_factor() {
 
 #[test]
 fn linear_balances_are_explicit_and_others_are_not() {
-    assert!(Convective::<3>::CARD.solver.starts_with("Explicit"));
-    assert!(Spatial::<3>::CARD.solver.starts_with("Explicit"));
-    assert!(Quartic::<f64>::CARD.solver.starts_with("Newton"));
+    assert!(card(CONVECTIVE).solver.starts_with("Explicit"));
+    assert!(card(SPATIAL).solver.starts_with("Explicit"));
+    assert!(card(QUARTIC).solver.starts_with("Newton"));
 }

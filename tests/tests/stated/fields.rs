@@ -1,33 +1,28 @@
 //! Fields, which are additive vectors, against the variation of the action in flat coordinates by dual numbers. Also tests
 //! classical results: Störmer-Verlet, the centred rotation in a magnetic field, and momenta of translations and rotations.
 
-use clebsch::integrate::Stepper;
+use super::text_model::{Given, Motion, TextModel, given};
 use clebsch::nalgebra::{Vector2, Vector3};
-use clebsch::{Additive, FieldMomentum};
 use clebsch_oracle::oracle::dual::{Dual, Number};
 use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::square::{constant_column, cross, dot};
 use std::array::from_fn;
 
-clebsch::model! {
-    /// A planet about a fixed sun.
-    model Planet {
-        param m, k: Real;
-        field X: Vec<3>;
-        lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + h*m*k/sqrt(dot(X, X));
-    }
-}
+/// A planet about a fixed sun.
+const PLANET: &str = "model Planet {
+    param m, k: Real;
+    field X: Vec<3>;
+    lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + h*m*k/sqrt(dot(X, X));
+}";
 
-clebsch::model! {
-    /// A charge in a magnetic and an electric field.
-    model Charge {
-        param m, q: Real;
-        param B, E: Vec<3>;
-        field X: Vec<3>;
-        lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h)
-            + (q/2)*dot(cross(B, X), next(X) - X) + h*q*dot(E, X);
-    }
-}
+/// A charge in a magnetic and an electric field.
+const CHARGE: &str = "model Charge {
+    param m, q: Real;
+    param B, E: Vec<3>;
+    field X: Vec<3>;
+    lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h)
+        + (q/2)*dot(cross(B, X), next(X) - X) + h*q*dot(E, X);
+}";
 
 /// The action of an edge in flat coordinates, term by term, and the directions of variation at a node.
 pub(super) trait Flat {
@@ -66,25 +61,19 @@ pub(super) fn share<A: Flat>(action: &A, nodes: &[Vec<f64>; 3]) -> f64 {
 }
 
 /// The largest such ratio along several steps.
-pub(super) fn worst<A: Flat, M: Stepper<Scalar = f64>>(
+pub(super) fn worst<A: Flat>(
     action: &A,
-    model: &M,
-    start: M::State,
-    h: f64,
-    flat: impl Fn(&M::State) -> Vec<f64>,
-) -> f64
-where
-    M::State: Copy,
-{
-    let mut work = model.workspace(&start, h).expect("solvable");
-    let mut past = [start; 3];
+    motion: &mut Motion,
+    flat: impl Fn(&Motion) -> Vec<f64>,
+) -> f64 {
+    let mut past = [(); 3].map(|()| flat(motion));
     let mut worst = 0.0f64;
     for step in 0..8 {
-        let mut state = past[2];
-        model.advance(&mut state, &mut work).expect("solvable");
-        past = [past[1], past[2], state];
+        motion.steps(1);
+        past.rotate_left(1);
+        past[2] = flat(motion);
         if step > 0 {
-            worst = worst.max(share(action, &past.map(|s| flat(&s))));
+            worst = worst.max(share(action, &past));
         }
     }
     worst
@@ -162,30 +151,25 @@ impl Flat for OfCharge<'_> {
     }
 }
 
-fn planet(given: &VectorData, source: &mut Source) -> (Planet, PlanetInitial) {
-    let model = Planet::new(PlanetParameters {
-        m: given.m,
-        k: given.k,
-    });
-    let initial = PlanetInitial {
-        X: Additive::new(Vector3::new(1.0, 0.2, -0.1)),
-        momentum: FieldMomentum(Vector3::from(source.vector()) * 0.5),
-    };
-    (model.expect("parameters"), initial)
+fn started(text: &str, h: f64, given: &Given) -> Motion {
+    TextModel::read(text).start(h, given).expect("solvable")
 }
 
-fn charge(given: &VectorData, source: &mut Source) -> (Charge, ChargeInitial) {
-    let model = Charge::new(ChargeParameters {
-        m: given.m,
-        q: given.q,
-        B: Vector3::from(given.b),
-        E: Vector3::from(given.e),
-    });
-    let initial = ChargeInitial {
-        X: Additive::new(Vector3::from(source.vector())),
-        momentum: FieldMomentum(Vector3::from(source.vector())),
+fn planet(given: &VectorData, source: &mut Source) -> Motion {
+    let momentum = Vector3::from(source.vector()) * 0.5;
+    let own = given! { m: given.m, k: given.k, X: [1.0, 0.2, -0.1], momentum: momentum };
+    started(PLANET, given.h, &own)
+}
+
+fn charge(given: &VectorData, source: &mut Source) -> Motion {
+    let own = given! {
+        m: given.m, q: given.q, B: given.b, E: given.e, X: source.vector::<3>(), momentum: source.vector::<3>(),
     };
-    (model.expect("parameters"), initial)
+    started(CHARGE, given.h, &own)
+}
+
+fn place(motion: &Motion) -> Vec<f64> {
+    motion.numbers("X")
 }
 
 #[test]
@@ -194,15 +178,9 @@ fn vectors_solve_the_unreduced_equations() {
     for h in [0.01, 0.1, 0.3] {
         for _ in 0..20 {
             let given = VectorData::random(&mut source, h);
-            let (model, initial) = planet(&given, &mut source);
-            let (start, _) = model.start(initial, h).expect("solvable");
-            let flat = |s: &PlanetState<f64>| s.X().matrix().as_slice().to_vec();
-            let found = worst(&OfPlanet(&given), &model, start, h, flat);
+            let found = worst(&OfPlanet(&given), &mut planet(&given, &mut source), place);
             assert!(found < ROUNDING, "planet: {found:e}");
-            let (model, initial) = charge(&given, &mut source);
-            let (start, _) = model.start(initial, h).expect("solvable");
-            let flat = |s: &ChargeState<f64>| s.X().matrix().as_slice().to_vec();
-            let found = worst(&OfCharge(&given), &model, start, h, flat);
+            let found = worst(&OfCharge(&given), &mut charge(&given, &mut source), place);
             assert!(found < ROUNDING, "charge: {found:e}");
         }
     }
@@ -213,11 +191,9 @@ fn vectors_solve_the_unreduced_equations() {
 fn the_oracle_notices_another_force() {
     let mut source = Source::seeded(32);
     let mut given = VectorData::random(&mut source, 0.1);
-    let (model, initial) = planet(&given, &mut source);
-    let (start, _) = model.start(initial, given.h).expect("solvable");
+    let mut motion = planet(&given, &mut source);
     given.k *= 1.0 + 1e-6;
-    let flat = |s: &PlanetState<f64>| s.X().matrix().as_slice().to_vec();
-    let found = worst(&OfPlanet(&given), &model, start, given.h, flat);
+    let found = worst(&OfPlanet(&given), &mut motion, place);
     assert!(found > ROUNDING, "{found:e}");
 }
 
@@ -229,14 +205,13 @@ fn a_charge_turns_as_boris_has_it() {
     for h in [0.01, 0.2, 3.0] {
         let mut given = VectorData::random(&mut source, h);
         (given.b, given.e) = ([0.0, 0.0, 1.7], [0.0; 3]);
-        let (model, initial) = charge(&given, &mut source);
-        let (start, mut work) = model.start(initial, h).expect("solvable");
-        let mut nodes = [start; 3];
-        for k in 1..3 {
-            nodes[k] = nodes[k - 1];
-            model.step(&mut nodes[k], &mut work).expect("solvable");
-        }
-        let place = nodes.map(|s| s.X().matrix());
+        let mut motion = charge(&given, &mut source);
+        let mut place = || {
+            let place = motion.vector::<3>("X");
+            motion.steps(1);
+            place
+        };
+        let place = [place(), place(), place()];
         let steps = [place[1] - place[0], place[2] - place[1]];
         let plane = steps.map(|d| Vector2::new(d.x, d.y));
         let turned = plane[0].perp(&plane[1]).atan2(plane[0].dot(&plane[1]));
@@ -253,25 +228,21 @@ fn a_charge_turns_as_boris_has_it() {
 fn a_planet_is_stoermer_verlet() {
     let mut source = Source::seeded(34);
     let given = VectorData::random(&mut source, 0.05);
-    let (model, initial) = planet(&given, &mut source);
-    let (mut state, mut work) = model.start(initial, given.h).expect("solvable");
+    let mut motion = planet(&given, &mut source);
     let force = |x: Vector3<f64>| -x * (given.m * given.k / x.norm().powi(3));
-    let (mut x, mut p) = (state.X().matrix(), state.momentum().0);
+    let node = |m: &Motion| (m.vector::<3>("X"), m.vector::<3>("momentum"));
+    let (mut x, mut p) = node(&motion);
     let about = x.cross(&p);
     for _ in 0..1000 {
-        model.step(&mut state, &mut work).expect("solvable");
+        motion.steps(1);
         p += force(x) * (0.5 * given.h);
         x += p * (given.h / given.m);
         p += force(x) * (0.5 * given.h);
     }
+    let (place, momentum) = node(&motion);
     // The motion amplifies rounding, linearly in time for a closed orbit.
-    assert!((state.X().matrix() - x).norm() < 1e-10 * x.norm());
-    assert!((state.momentum().0 - p).norm() < 1e-10 * p.norm());
-    let now = state.X().matrix().cross(&state.momentum().0);
-    let scale = state.X().matrix().norm() * p.norm();
-    assert!(
-        (now - about).norm() < 1e-13 * scale,
-        "{:e}",
-        (now - about).norm() / scale
-    );
+    assert!((place - x).norm() < 1e-10 * x.norm());
+    assert!((momentum - p).norm() < 1e-10 * p.norm());
+    let off = (place.cross(&momentum) - about).norm() / (place.norm() * p.norm());
+    assert!(off < 1e-13, "{off:e}");
 }

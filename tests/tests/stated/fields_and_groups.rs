@@ -2,70 +2,63 @@
 //! kinds, and a rigid motion stated as a rotation and a position.
 
 use super::fields::{Flat, ROUNDING, at_ends, minus, of, worst};
+use super::text_model::{Given, Motion, TextModel, given};
 use clebsch::nalgebra::{Matrix3, Vector3, Vector6};
-use clebsch::{
-    Additive, BodyImpulse, BodyMomentum, FieldMomentum, RigidMotion, Rotation, UnitQuaternion,
-};
+use clebsch::{RigidMotion, Rotation};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::square::{Square, constant_column, cross, dot, hat};
 use std::array::from_fn;
 
-clebsch::model! {
-    /// A rotation, a rigid motion, a unit quaternion and a field, bound by springs; the kinetic energy of
-    /// the field is quartic.
-    model MixedFour {
-        param J, A: Sym<3>;
-        param p, s, e, g: Vec<3>;
-        param m, M, k, b, c: Real;
-        group R: SO<3> velocity V;
-        group G: SE<3> velocity W;
-        group q: SU<2> velocity Y;
-        field X: Vec<3>;
-        constraint next(R) = R*V;
-        constraint next(G) = G*W;
-        constraint next(q) = q*Y;
-        let d = next(X) - X;
-        let y = pos(next(G)) - pos(G);
-        lagrangian = -tr(J*V)/h - tr(A*rot(W))/h + M*dot(y, y)/(2*h) - (4*c/h)*re(Y)
-            + m*dot(d, d)/(2*h) + (b/h^3)*dot(d, d)^2 + h*m*dot(g, X)
-            - (h*k/2)*dot(X - R*p, X - R*p)
-            - (h*k/2)*dot(pos(G) + rot(G)*s - X, pos(G) + rot(G)*s - X)
-            - h*k*dot(rot(q)*e, R*p);
-    }
-}
+/// A rotation, a rigid motion, a unit quaternion and a field, bound by springs; the kinetic energy of
+/// the field is quartic.
+const MIXED_FOUR: &str = "model MixedFour {
+    param J, A: Sym<3>;
+    param p, s, e, g: Vec<3>;
+    param m, M, k, b, c: Real;
+    group R: SO<3> velocity V;
+    group G: SE<3> velocity W;
+    group q: SU<2> velocity Y;
+    field X: Vec<3>;
+    constraint next(R) = R*V;
+    constraint next(G) = G*W;
+    constraint next(q) = q*Y;
+    let d = next(X) - X;
+    let y = pos(next(G)) - pos(G);
+    lagrangian = -tr(J*V)/h - tr(A*rot(W))/h + M*dot(y, y)/(2*h) - (4*c/h)*re(Y)
+        + m*dot(d, d)/(2*h) + (b/h^3)*dot(d, d)^2 + h*m*dot(g, X)
+        - (h*k/2)*dot(X - R*p, X - R*p)
+        - (h*k/2)*dot(pos(G) + rot(G)*s - X, pos(G) + rot(G)*s - X)
+        - h*k*dot(rot(q)*e, R*p);
+}";
 
-clebsch::model! {
-    /// A body in a fluid, by its rigid motion.
-    model Whole {
-        param J, M: Sym<3>;
-        param D: Mat<3>;
-        param c, z: Vec<3>;
-        param w: Real;
-        group G: SE<3> velocity V;
-        constraint next(G) = G*V;
-        let u = (rot(G) + rot(next(G)))^T*(pos(next(G)) - pos(G))/2;
-        let turn = rot(G)^T*rot(next(G));
-        lagrangian = -tr(J*turn)/h + dot(u, M*u)/(2*h) + dot(vee(turn), D*u)/h
-            - h*dot(c, rot(G)^T*z) - h*w*dot(z, pos(G));
-    }
-}
+/// A body in a fluid, by its rigid motion.
+const WHOLE: &str = "model Whole {
+    param J, M: Sym<3>;
+    param D: Mat<3>;
+    param c, z: Vec<3>;
+    param w: Real;
+    group G: SE<3> velocity V;
+    constraint next(G) = G*V;
+    let u = (rot(G) + rot(next(G)))^T*(pos(next(G)) - pos(G))/2;
+    let turn = rot(G)^T*rot(next(G));
+    lagrangian = -tr(J*turn)/h + dot(u, M*u)/(2*h) + dot(vee(turn), D*u)/h
+        - h*dot(c, rot(G)^T*z) - h*w*dot(z, pos(G));
+}";
 
-clebsch::model! {
-    /// The same, stated by its attitude and its position.
-    model Split {
-        param J, M: Sym<3>;
-        param D: Mat<3>;
-        param c, z: Vec<3>;
-        param w: Real;
-        group R: SO<3> velocity V;
-        field x: Vec<3>;
-        constraint next(R) = R*V;
-        let u = (R + R*V)^T*(next(x) - x)/2;
-        lagrangian = -tr(J*V)/h + dot(u, M*u)/(2*h) + dot(vee(V), D*u)/h
-            - h*dot(c, R^T*z) - h*w*dot(z, x);
-    }
-}
+/// The same, stated by its attitude and its position.
+const SPLIT: &str = "model Split {
+    param J, M: Sym<3>;
+    param D: Mat<3>;
+    param c, z: Vec<3>;
+    param w: Real;
+    group R: SO<3> velocity V;
+    field x: Vec<3>;
+    constraint next(R) = R*V;
+    let u = (R + R*V)^T*(next(x) - x)/2;
+    lagrangian = -tr(J*V)/h + dot(u, M*u)/(2*h) + dot(vee(V), D*u)/h
+        - h*dot(c, R^T*z) - h*w*dot(z, x);
+}";
 
 /// Flat coordinates: the rotation (9, row-major), the motion (9 and 3), the quaternion (4), the field (3).
 struct OfMixed {
@@ -170,19 +163,34 @@ impl Flat for OfMixed {
     }
 }
 
-fn nodes_of(s: &MixedFourState<f64>) -> Vec<f64> {
-    let rows = |m: Matrix3<f64>| m.transpose().as_slice().to_vec();
+/// Rotation and position of the rigid motion.
+fn placed(motion: &Motion) -> (Matrix3<f64>, Vector3<f64>) {
+    let g = motion.matrix::<4, 4>("G");
+    let turn = g.fixed_view::<3, 3>(0, 0).into_owned();
+    (turn, g.fixed_view::<3, 1>(0, 3).into_owned())
+}
+
+fn nodes_of(motion: &Motion) -> Vec<f64> {
+    let (turn, place) = placed(motion);
     [
-        rows(s.R().matrix()),
-        rows(s.G().rotation.matrix()),
-        s.G().translation.as_slice().to_vec(),
-        s.q().components().to_vec(),
-        s.X().matrix().as_slice().to_vec(),
+        motion.numbers("R"),
+        turn.transpose().as_slice().to_vec(),
+        place.as_slice().to_vec(),
+        motion.numbers("q"),
+        motion.numbers("X"),
     ]
     .concat()
 }
 
-fn mixed(source: &mut Source, h: f64) -> (OfMixed, MixedFour, MixedFourInitial) {
+fn matrix(a: &Square<f64, 3>) -> Matrix3<f64> {
+    Matrix3::from_fn(|i, j| a.0[i][j])
+}
+
+fn rotation(source: &mut Source) -> Rotation {
+    Rotation::from_matrix(&matrix(&source.orthogonal())).expect("a rotation")
+}
+
+fn mixed(source: &mut Source, h: f64) -> (OfMixed, Given) {
     let given = OfMixed {
         h,
         j: source.positive(),
@@ -197,49 +205,31 @@ fn mixed(source: &mut Source, h: f64) -> (OfMixed, MixedFour, MixedFourInitial) 
         b: source.between(0.01, 0.1),
         c: source.between(0.5, 2.0),
     };
-    let matrix = |a: &Square<f64, 3>| Matrix3::from_fn(|i, j| a.0[i][j]);
-    let model = MixedFour::new(MixedFourParameters {
-        J: matrix(&given.j),
-        A: matrix(&given.a),
-        p: Vector3::from(given.p),
-        s: Vector3::from(given.s),
-        e: Vector3::from(given.e),
-        g: Vector3::from(given.g),
-        m: given.m,
-        M: given.heavy,
-        k: given.k,
-        b: given.b,
-        c: given.c,
-    });
-    let mut rotation = || {
-        let m: Square<f64, 3> = source.orthogonal();
-        Rotation::from_matrix(&matrix(&m)).expect("a rotation")
+    let [r, rotation, q] = [(); 3].map(|()| rotation(source));
+    let own = given! {
+        J: given.j, A: given.a, p: given.p, s: given.s, e: given.e, g: given.g,
+        m: given.m, M: given.heavy, k: given.k, b: given.b, c: given.c,
+        R: r, body_momentum_R: Vector3::from(source.vector()) * 0.3,
+        G: RigidMotion { rotation, translation: Vector3::from(source.vector()) },
+        body_momentum_G: Vector6::from(source.vector()) * 0.3,
+        q: q.quaternion(), body_momentum_q: Vector3::from(source.vector()) * 0.3,
+        X: source.vector::<3>(), momentum_X: Vector3::from(source.vector()) * 0.3,
     };
-    let (r, turn, q) = (rotation(), rotation(), rotation());
-    let initial = MixedFourInitial {
-        R: r,
-        body_momentum_R: BodyMomentum(Vector3::from(source.vector()) * 0.3),
-        G: RigidMotion {
-            rotation: turn,
-            translation: Vector3::from(source.vector()),
-        },
-        body_momentum_G: BodyImpulse(Vector6::from(source.vector()) * 0.3),
-        q: UnitQuaternion::from_components(q.quaternion()).expect("of length 1"),
-        body_momentum_q: BodyMomentum(Vector3::from(source.vector()) * 0.3),
-        X: Additive::new(Vector3::from(source.vector())),
-        momentum_X: FieldMomentum(Vector3::from(source.vector()) * 0.3),
-    };
-    (given, model.expect("parameters"), initial)
+    (given, own)
 }
 
 #[test]
 fn four_kinds_solve_the_unreduced_equations_together() {
     let mut source = Source::seeded(38);
+    let model = TextModel::read(MIXED_FOUR);
     for h in [0.02, 0.1] {
         for _ in 0..10 {
-            let (given, model, initial) = mixed(&mut source, h);
-            let (start, _) = model.start(initial, h).expect("solvable");
-            let found = worst(&given, &model, start, h, nodes_of);
+            let (given, own) = mixed(&mut source, h);
+            let found = worst(
+                &given,
+                &mut model.start(h, &own).expect("solvable"),
+                nodes_of,
+            );
             assert!(found < ROUNDING, "{found:e}");
         }
     }
@@ -249,26 +239,33 @@ fn four_kinds_solve_the_unreduced_equations_together() {
 fn four_kinds_keep_their_total_momentum() {
     let mut source = Source::seeded(39);
     for h in [1e-1, 1e-4, 1e-8] {
-        let (_, model, mut initial) = mixed(&mut source, h);
-        initial.X = Additive::new(Vector3::zeros());
-        let axis = model.parameters().g;
-        let (mut state, mut work) = model.start(initial, h).expect("solvable");
-        let about = |s: &MixedFourState<f64>| {
-            let turned = s.spatial_momentum_R().0 + s.spatial_momentum_q().0;
-            let motion = s.spatial_momentum_G().0.fixed_rows::<3>(0).into_owned();
-            let field = s.X().matrix().cross(&s.momentum_X().0);
-            (turned + motion + field).dot(&axis)
+        let (given, mut own) = mixed(&mut source, h);
+        for (name, value) in &mut own {
+            if name == "X" {
+                *value = vec![0.0; 3];
+            }
+        }
+        let axis = Vector3::from(given.g);
+        let mut motion = TextModel::read(MIXED_FOUR)
+            .start(h, &own)
+            .expect("solvable");
+        let about = |m: &Motion| {
+            let [r, q] = ["R", "q"].map(|name| m.vector::<3>(&format!("spatial_momentum_{name}")));
+            let impulse = m.vector::<6>("spatial_momentum_G");
+            let field = m.vector::<3>("X").cross(&m.vector("momentum_X"));
+            (r + q + impulse.fixed_rows::<3>(0) + field).dot(&axis)
         };
-        let first = about(&state);
+        let first = about(&motion);
         let mut scale = first.abs() + axis.norm();
         for _ in 0..2000 {
-            model.step(&mut state, &mut work).expect("solvable");
-            let reach = state.X().matrix().norm() + state.G().translation.norm();
-            let field = state.momentum_X().0.norm() + state.spatial_momentum_G().0.norm();
+            motion.steps(1);
+            let reach = motion.vector::<3>("X").norm() + placed(&motion).1.norm();
+            let field = motion.vector::<3>("momentum_X").norm()
+                + motion.vector::<6>("spatial_momentum_G").norm();
             scale = scale.max(axis.norm() * (1.0 + reach) * (1.0 + field));
         }
         // Rounding errors of 2000 steps, relative to the size of the momentum.
-        let drift = (about(&state) - first).abs() / scale;
+        let drift = (about(&motion) - first).abs() / scale;
         assert!(drift < 1e-12, "{h:e}: {drift:e}");
     }
 }
@@ -278,57 +275,31 @@ fn four_kinds_keep_their_total_momentum() {
 fn a_rotation_and_a_place_move_as_a_rigid_motion() {
     let mut source = Source::seeded(41);
     for h in [0.02, 0.05] {
-        let matrix = |a: &Square<f64, 3>| Matrix3::from_fn(|i, j| a.0[i][j]);
-        let (j, m) = (matrix(&source.positive()), matrix(&source.positive()));
-        let d = matrix(&source.matrix()) * 0.05;
-        let c = Vector3::from(source.vector()) * 0.2;
-        let z = Vector3::from(source.vector());
-        let w = source.between(-0.3, 0.3);
-        let turn: Square<f64, 3> = source.orthogonal();
-        let turn = Rotation::from_matrix(&matrix(&turn)).expect("a rotation");
+        let common = given! {
+            J: source.positive::<3>(), M: source.positive::<3>(), D: source.matrix::<3>().scaled(0.05),
+            c: Vector3::from(source.vector()) * 0.2, z: source.vector::<3>(), w: source.between(-0.3, 0.3),
+        };
+        let turn = rotation(&mut source);
         let place = Vector3::from(source.vector());
         let [angular, linear] = [(); 2].map(|()| Vector3::from(source.vector()) * 0.3);
-        let whole = Whole::new(WholeParameters {
-            J: j,
-            M: m,
-            D: d,
-            c,
-            z,
-            w,
-        });
-        let split = Split::new(SplitParameters {
-            J: j,
-            M: m,
-            D: d,
-            c,
-            z,
-            w,
-        });
-        let (whole, split) = (whole.expect("parameters"), split.expect("parameters"));
+        let motion = RigidMotion {
+            rotation: turn,
+            translation: place,
+        };
         let mut impulse = Vector6::zeros();
         impulse.fixed_rows_mut::<3>(0).copy_from(&angular);
         impulse.fixed_rows_mut::<3>(3).copy_from(&linear);
-        let one = WholeInitial {
-            G: RigidMotion {
-                rotation: turn,
-                translation: place,
-            },
-            body_momentum: BodyImpulse(impulse),
+        let one = [common.clone(), given! { G: motion, body_momentum: impulse }].concat();
+        let split = given! {
+            R: turn, body_momentum_R: angular, x: place, momentum_x: turn.matrix() * linear,
         };
-        let other = SplitInitial {
-            R: turn,
-            body_momentum_R: BodyMomentum(angular),
-            x: Additive::new(place),
-            momentum_x: FieldMomentum(turn.matrix() * linear),
-        };
-        let (mut one, mut one_work) = whole.start(one, h).expect("solvable");
-        let (mut other, mut other_work) = split.start(other, h).expect("solvable");
-        for _ in 0..100 {
-            whole.step(&mut one, &mut one_work).expect("solvable");
-            split.step(&mut other, &mut other_work).expect("solvable");
-        }
-        let apart = (one.G().translation - other.x().matrix()).norm()
-            + (one.G().rotation.matrix() - other.R().matrix()).norm();
+        let mut one = TextModel::read(WHOLE).start(h, &one).expect("solvable");
+        let other = [common, split].concat();
+        let mut other = TextModel::read(SPLIT).start(h, &other).expect("solvable");
+        one.steps(100);
+        other.steps(100);
+        let (turn, place) = placed(&one);
+        let apart = (place - other.vector("x")).norm() + (turn - other.matrix("R")).norm();
         // A hundred steps with a few rounding errors each, amplified by the motion.
         assert!(apart < 1e-12, "{h}: {apart:e}");
     }

@@ -6,7 +6,7 @@
 #![allow(deprecated)]
 #![deny(unreachable_pub, unused_qualifications, single_use_lifetimes)]
 
-use clebsch::card::Settings;
+use super::text_model::{Numbers, TextModel, card, given};
 use clebsch::nalgebra::{Matrix3, Matrix3x2, Vector3, Vector6};
 use clebsch::{BodyImpulse, BodyMomentum, RigidMotion, Rotation, SpatialMomentum};
 
@@ -41,7 +41,7 @@ clebsch::model! {
     }
 }
 
-// The modules of these models would be called `loop`, `core`, `std` and `clebsch`.
+// The modules of these models would be called `loop`, `core`, `std` and `clebsch`. It suffices that they compile.
 clebsch::model! {
     model Loop {
         param J: Sym<3>;
@@ -191,22 +191,26 @@ macro_rules! count {
     ([$($name:ident)*]) => { [$(stringify!($name)),*].len() };
 }
 
-/// One statement with awkward names, and once more with a single parameter in their place.
+/// One statement with awkward names, and its text with a single parameter in their place.
 macro_rules! twice {
     ($awkward:ident $plain:ident { $($statement:tt)* }) => {
         awkward_names! { awkward_model! $awkward { $($statement)* } }
-        clebsch::model! { model $plain { param weight: Real; $($statement)* } }
+        const $plain: &str = concat!(
+            "model Plain { param weight: Real; ",
+            stringify!($($statement)*),
+            "}"
+        );
     };
 }
 
-twice! { AwkwardFree PlainFree {
+twice! { AwkwardFree PLAIN_FREE {
     param J: Sym<3>;
     group R: SO<3> velocity edge_velocity;
     constraint next(R) = R*edge_velocity;
     assume weight > 0;
     lagrangian = -tr(weight*J*edge_velocity)/h;
 } }
-twice! { AwkwardForced PlainForced {
+twice! { AwkwardForced PLAIN_FORCED {
     param J: Sym<3>;
     param lever, vertical: Vec<3>;
     group R: SO<3> velocity solved2;
@@ -217,7 +221,7 @@ twice! { AwkwardForced PlainForced {
     constraint next(carried) = solved2^T*carried;
     lagrangian = -tr(J*solved2)/h - h*weight*(dot(lever, above) + dot(lever, carried));
 } }
-twice! { AwkwardNewton PlainNewton {
+twice! { AwkwardNewton PLAIN_NEWTON {
     time n_ step tau;
     param J: Sym<3>;
     param lever, vertical: Vec<3>;
@@ -229,7 +233,7 @@ twice! { AwkwardNewton PlainNewton {
     constraint next(carried) = w2^T*carried;
     lagrangian = -(tr(J*w1) + tr(J*w2))/tau - tau*weight*dot(lever, carried) - tau*dot(R1*lever, R2*vertical);
 } }
-twice! { AwkwardSpatial PlainSpatial {
+twice! { AwkwardSpatial PLAIN_SPATIAL {
     time i_ step state2;
     param vertical: Vec<3>;
     group R: SO<3> velocity w;
@@ -241,7 +245,7 @@ twice! { AwkwardSpatial PlainSpatial {
     lagrangian = -tr(w*J)/state2 - state2*weight*dot(carried, vertical);
 } }
 
-twice! { AwkwardMotion PlainMotion {
+twice! { AwkwardMotion PLAIN_MOTION {
     param J, mass: Sym<3>;
     group G: SE<3> velocity V;
     group K: SE<3> velocity W;
@@ -304,92 +308,59 @@ fn weight() -> f64 {
 
 const STEPS: usize = 20;
 
-/// The attitude of an element of either group.
-trait Turned {
-    fn turned(&self) -> [f64; 4];
-}
-
-impl Turned for Rotation {
-    fn turned(&self) -> [f64; 4] {
-        self.quaternion()
-    }
-}
-
-impl Turned for RigidMotion {
-    fn turned(&self) -> [f64; 4] {
-        self.rotation.quaternion()
-    }
-}
-
-/// Steps a model and returns its attitudes.
-macro_rules! attitudes {
-    ($model:expr, $initial:expr, $($element:ident)*) => {{
-        let model = $model;
-        let (mut state, mut work) = model.start($initial, 0.1).unwrap();
-        let mut all = Vec::new();
-        for _ in 0..STEPS {
-            model.step(&mut state, &mut work).unwrap();
-            $(all.extend(state.$element().turned());)*
-        }
-        all
-    }};
-}
-
-/// Runs both statements and compares them to rounding. They are not bitwise equal, because the number of Newton corrections depends
-/// on rounding bounds of the expressions.
+/// Runs both statements, the plain one from its text, and compares them to rounding. They are not bitwise equal, because the number
+/// of Newton corrections depends on rounding bounds of the expressions.
 macro_rules! same_motion {
     (
-        [$awkward:ident $plain:ident] [$awkward_p:ident $plain_p:ident]
-        [$awkward_i:ident $plain_i:ident]
+        [$awkward:ident $plain:ident] [$parameters:ident] [$initial:ident]
         { $($parameter:tt)* } { $($value:tt)* } $($element:ident)*
     ) => {{
         let each = EACH;
-        let awkward = attitudes!(
-            $awkward::new(awkward_names!(filled! $awkward_p, each, { $($parameter)* })).unwrap(),
-            $awkward_i { $($value)* },
-            $($element)*
-        );
-        let plain = attitudes!(
-            $plain::new($plain_p { weight: weight(), $($parameter)* }).unwrap(),
-            $plain_i { $($value)* },
-            $($element)*
-        );
-        assert_eq!(awkward.len(), plain.len());
-        for (x, y) in awkward.iter().zip(&plain) {
-            // About ten rounding errors per step.
-            assert!((x - y).abs() < 1e-13, "{x} {y}");
+        let model = $awkward::new(awkward_names!(filled! $parameters, each, { $($parameter)* }));
+        let model = model.unwrap();
+        let (mut state, mut work) = model.start($initial { $($value)* }, 0.1).unwrap();
+        let given = given! { weight: weight(), $($parameter)*, $($value)* };
+        let mut plain = TextModel::read($plain).start(0.1, &given).unwrap();
+        for _ in 0..STEPS {
+            model.step(&mut state, &mut work).unwrap();
+            plain.steps(1);
+            $(close(&state.$element().numbers(), &plain.numbers(stringify!($element)));)*
         }
     }};
+}
+
+fn close(one: &[f64], other: &[f64]) {
+    assert_eq!(one.len(), other.len());
+    for (x, y) in one.iter().zip(other) {
+        // About ten rounding errors per step.
+        assert!((x - y).abs() < 1e-13, "{x} {y}");
+    }
 }
 
 #[test]
 fn names_that_emitted_code_uses_change_nothing() {
     let (up, arm) = (Vector3::new(0.0, 0.6, 0.8), Vector3::new(0.3, -0.2, 0.9));
-    let carried = Vector3::new(-0.4, 0.1, 0.5);
+    let moved = Vector3::new(-0.4, 0.1, 0.5);
     same_motion!(
-        [AwkwardFree PlainFree] [AwkwardFreeParameters PlainFreeParameters]
-        [AwkwardFreeInitial PlainFreeInitial]
+        [AwkwardFree PLAIN_FREE] [AwkwardFreeParameters] [AwkwardFreeInitial]
         { J: inertia() } { R: attitude(), body_momentum: body_momentum() } R
     );
     same_motion!(
-        [AwkwardForced PlainForced] [AwkwardForcedParameters PlainForcedParameters]
-        [AwkwardForcedInitial PlainForcedInitial]
+        [AwkwardForced PLAIN_FORCED] [AwkwardForcedParameters] [AwkwardForcedInitial]
         { J: inertia(), lever: arm, vertical: up }
-        { R: attitude(), body_momentum: body_momentum(), carried } R
+        { R: attitude(), body_momentum: body_momentum(), carried: moved } R
     );
     same_motion!(
-        [AwkwardNewton PlainNewton] [AwkwardNewtonParameters PlainNewtonParameters]
-        [AwkwardNewtonInitial PlainNewtonInitial]
+        [AwkwardNewton PLAIN_NEWTON] [AwkwardNewtonParameters] [AwkwardNewtonInitial]
         { J: inertia(), lever: arm, vertical: up }
         {
             R1: attitude(), body_momentum_R1: body_momentum(),
-            R2: attitude(), body_momentum_R2: body_momentum(), carried
+            R2: attitude(), body_momentum_R2: body_momentum(), carried: moved
         } R1 R2
     );
     let impulse = BodyImpulse(Vector6::new(0.1, -0.2, 0.8, 0.3, 0.2, -0.1));
     same_motion!(
-        [AwkwardMotion PlainMotion] [AwkwardMotionParameters PlainMotionParameters]
-        [AwkwardMotionInitial PlainMotionInitial]
+        [AwkwardMotion PLAIN_MOTION] [AwkwardMotionParameters] [AwkwardMotionInitial]
         { J: inertia(), mass: inertia() }
         {
             G: RigidMotion::identity(), body_momentum_G: impulse,
@@ -397,12 +368,11 @@ fn names_that_emitted_code_uses_change_nothing() {
         } G K
     );
     same_motion!(
-        [AwkwardSpatial PlainSpatial] [AwkwardSpatialParameters PlainSpatialParameters]
-        [AwkwardSpatialInitial PlainSpatialInitial]
+        [AwkwardSpatial PLAIN_SPATIAL] [AwkwardSpatialParameters] [AwkwardSpatialInitial]
         { vertical: up }
         {
             R: attitude(), spatial_momentum: SpatialMomentum(body_momentum().0),
-            J: inertia(), carried
+            J: inertia(), carried: moved
         } R
     );
 }
@@ -493,26 +463,9 @@ fn models_stand_in_functions_and_next_to_each_other() {
         })
         .is_ok()
     );
-    for card in [
-        Local::CARD,
-        Loop::CARD,
-        Core::CARD,
-        Std::CARD,
-        Clebsch::CARD,
-    ] {
-        let values = [inertia().as_slice().to_vec()];
-        let start = [
-            attitude().matrix().transpose().as_slice().to_vec(),
-            vec![0.1, 0.2, 0.3],
-        ];
-        assert!(
-            (card.open)(&values, &start, Settings::step(0.1)).is_ok(),
-            "{}",
-            card.name
-        );
-    }
-    assert_eq!(Exported::CARD.kebab, "exported");
-    assert_eq!(WithoutDocumentation::CARD.kebab, "without-documentation");
+    assert_eq!(card(Exported::<f64>::SOURCE).kebab, "exported");
+    let kebab = card(WithoutDocumentation::<f64>::SOURCE).kebab;
+    assert_eq!(kebab, "without-documentation");
 }
 
 #[test]

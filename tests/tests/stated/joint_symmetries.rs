@@ -2,95 +2,82 @@
 //! steppers. They are conserved to rounding. If a statement breaks the symmetry, its list omits the momentum and the motion does
 //! not conserve it.
 
+use super::text_model::card;
 use clebsch::card::{Card, Conserved, Settings, Trajectory};
 
-clebsch::model! {
-    /// A quaternion and a rotation in gravity, with coupled axes; each has its own vertical.
-    model TwoVerticals {
-        param I, J: Sym<3>;
-        param a, b, y, z, d, e: Vec<3>;
-        param w: Real;
-        group q: SU<2> velocity W;
-        group Λ: SO<3> velocity Ω;
-        constraint next(q) = q*W;
-        constraint next(Λ) = Λ*Ω;
-        lagrangian = (2/h)*dot(im(W), I*im(W)) - tr(J*Ω)/h
-            - h*dot(a, rot(q)^T*z) - h*dot(b, Λ^T*y) - h*w*dot(rot(q)*d, Λ*e);
-    }
-}
-clebsch::model! {
-    /// The same with one vertical.
-    model OneVertical {
-        param I, J: Sym<3>;
-        param a, b, z, d, e: Vec<3>;
-        param w: Real;
-        group q: SU<2> velocity W;
-        group Λ: SO<3> velocity Ω;
-        constraint next(q) = q*W;
-        constraint next(Λ) = Λ*Ω;
-        lagrangian = (2/h)*dot(im(W), I*im(W)) - tr(J*Ω)/h
-            - h*dot(a, rot(q)^T*z) - h*dot(b, Λ^T*z) - h*w*dot(rot(q)*d, Λ*e);
-    }
-}
-clebsch::model! {
-    /// A rigid motion and a rotation in gravity, coupled by their axes.
-    model MotionAndRotation {
-        param J, K: Sym<3>;
-        param m, g, k: Real;
-        param a, d, z: Vec<3>;
-        group G: SE<3> velocity V;
-        group Λ: SO<3> velocity Ω;
-        constraint next(G) = G*V;
-        constraint next(Λ) = Λ*Ω;
-        let x = pos(next(G)) - pos(G);
-        lagrangian = -tr(J*rot(G)^T*rot(next(G)))/h + m*dot(x, x)/(2*h) - tr(K*Ω)/h
-            - h*m*g*dot(z, pos(G)) - h*k*dot(rot(G)*a, Λ*d);
-    }
-}
-clebsch::model! {
-    /// Two isotropic bodies whose potential depends on their relative rotation in space.
-    model Isotropic {
-        param c, d: Real;
-        param A: Mat<3>;
-        group P: SO<3> velocity U;
-        group Q: SO<3> velocity V;
-        constraint next(P) = P*U;
-        constraint next(Q) = Q*V;
-        lagrangian = -(c*tr(U) + d*tr(V))/h - h*tr(A*P*Q^T);
-    }
-}
-clebsch::model! {
-    /// A potential that depends only on the angle of a rotation.
-    model Angle {
-        param c, k: Real;
-        group Λ: SO<3> velocity Ω;
-        constraint next(Λ) = Λ*Ω;
-        lagrangian = -c*tr(Ω)/h + h*k*tr(Λ);
-    }
-}
-clebsch::model! {
-    /// A charged body in a uniform magnetic field: shifts change the action by a total difference.
-    model Charge {
-        param J: Sym<3>;
-        param m: Real;
-        param B: Vec<3>;
-        group G: SE<3> velocity V;
-        constraint next(G) = G*V;
-        let x = pos(next(G)) - pos(G);
-        lagrangian = -tr(J*rot(G)^T*rot(next(G)))/h + m*dot(x, x)/(2*h) + dot(B, cross(pos(G), pos(next(G))))/2;
-    }
-}
-clebsch::model! {
-    /// An affine body whose potential contains one entry of its configuration.
-    model Affine {
-        param I0: Sym<3>;
-        param a, b: Vec<3>;
-        group Q: GL<3> velocity G;
-        constraint next(Q) = Q*G;
-        let D = next(Q) - Q;
-        lagrangian = tr(D*I0*D^T)/(2*h) - h*dot(a, Q*b)^2;
-    }
-}
+/// A quaternion and a rotation in gravity, with coupled axes; each has its own vertical.
+const TWO_VERTICALS: &str = "model TwoVerticals {
+    param I, J: Sym<3>;
+    param a, b, y, z, d, e: Vec<3>;
+    param w: Real;
+    group q: SU<2> velocity W;
+    group Λ: SO<3> velocity Ω;
+    constraint next(q) = q*W;
+    constraint next(Λ) = Λ*Ω;
+    lagrangian = (2/h)*dot(im(W), I*im(W)) - tr(J*Ω)/h
+        - h*dot(a, rot(q)^T*z) - h*dot(b, Λ^T*y) - h*w*dot(rot(q)*d, Λ*e);
+}";
+/// The same with one vertical.
+const ONE_VERTICAL: &str = "model OneVertical {
+    param I, J: Sym<3>;
+    param a, b, z, d, e: Vec<3>;
+    param w: Real;
+    group q: SU<2> velocity W;
+    group Λ: SO<3> velocity Ω;
+    constraint next(q) = q*W;
+    constraint next(Λ) = Λ*Ω;
+    lagrangian = (2/h)*dot(im(W), I*im(W)) - tr(J*Ω)/h
+        - h*dot(a, rot(q)^T*z) - h*dot(b, Λ^T*z) - h*w*dot(rot(q)*d, Λ*e);
+}";
+/// A rigid motion and a rotation in gravity, coupled by their axes.
+const MOTION_AND_ROTATION: &str = "model MotionAndRotation {
+    param J, K: Sym<3>;
+    param m, g, k: Real;
+    param a, d, z: Vec<3>;
+    group G: SE<3> velocity V;
+    group Λ: SO<3> velocity Ω;
+    constraint next(G) = G*V;
+    constraint next(Λ) = Λ*Ω;
+    let x = pos(next(G)) - pos(G);
+    lagrangian = -tr(J*rot(G)^T*rot(next(G)))/h + m*dot(x, x)/(2*h) - tr(K*Ω)/h
+        - h*m*g*dot(z, pos(G)) - h*k*dot(rot(G)*a, Λ*d);
+}";
+/// Two isotropic bodies whose potential depends on their relative rotation in space.
+const ISOTROPIC: &str = "model Isotropic {
+    param c, d: Real;
+    param A: Mat<3>;
+    group P: SO<3> velocity U;
+    group Q: SO<3> velocity V;
+    constraint next(P) = P*U;
+    constraint next(Q) = Q*V;
+    lagrangian = -(c*tr(U) + d*tr(V))/h - h*tr(A*P*Q^T);
+}";
+/// A potential that depends only on the angle of a rotation.
+const ANGLE: &str = "model Angle {
+    param c, k: Real;
+    group Λ: SO<3> velocity Ω;
+    constraint next(Λ) = Λ*Ω;
+    lagrangian = -c*tr(Ω)/h + h*k*tr(Λ);
+}";
+/// A charged body in a uniform magnetic field: shifts change the action by a total difference.
+const CHARGE: &str = "model Charge {
+    param J: Sym<3>;
+    param m: Real;
+    param B: Vec<3>;
+    group G: SE<3> velocity V;
+    constraint next(G) = G*V;
+    let x = pos(next(G)) - pos(G);
+    lagrangian = -tr(J*rot(G)^T*rot(next(G)))/h + m*dot(x, x)/(2*h) + dot(B, cross(pos(G), pos(next(G))))/2;
+}";
+/// An affine body whose potential contains one entry of its configuration.
+const AFFINE: &str = "model Affine {
+    param I0: Sym<3>;
+    param a, b: Vec<3>;
+    group Q: GL<3> velocity G;
+    constraint next(Q) = Q*G;
+    let D = next(Q) - Q;
+    lagrangian = tr(D*I0*D^T)/(2*h) - h*dot(a, Q*b)^2;
+}";
 
 /// Each operation adds an independent error of 1e-16 of the scale; 500 steps of a few hundred operations reach about 1e-13, and the
 /// margin is a factor of ten.
@@ -204,7 +191,7 @@ fn two_bodies() -> Vec<Vec<f64>> {
 #[test]
 fn quaternion_and_rotation() {
     hold(
-        &OneVertical::<f64>::CARD,
+        &card(ONE_VERTICAL),
         &verticals(None),
         &two_bodies(),
         &["total_momentum_z"],
@@ -213,7 +200,7 @@ fn quaternion_and_rotation() {
 
 /// The largest change of the sum of both spatial momenta along z.
 fn vertical_drift(second: [f64; 3]) -> f64 {
-    let card = &TwoVerticals::<f64>::CARD;
+    let card = &card(TWO_VERTICALS);
     assert!(
         card.invariants
             .iter()
@@ -272,7 +259,7 @@ fn rigid_motion_and_rotation() {
         "spatial_momentum_G_linear_across_z",
         "total_momentum_angular_z",
     ];
-    hold(&MotionAndRotation::<f64>::CARD, &parameters, &start, &names);
+    hold(&card(MOTION_AND_ROTATION), &parameters, &start, &names);
 }
 
 #[test]
@@ -289,7 +276,7 @@ fn isotropic_bodies() {
         vec![-0.4, 0.5, 0.2],
     ];
     hold(
-        &Isotropic::<f64>::CARD,
+        &card(ISOTROPIC),
         &parameters,
         &start,
         &["total_body_momentum"],
@@ -300,7 +287,7 @@ fn isotropic_bodies() {
 fn space_and_body_together() {
     let start = [TILTED.to_vec(), vec![0.3, -0.2, 0.6]];
     hold(
-        &Angle::<f64>::CARD,
+        &card(ANGLE),
         &[vec![0.8], vec![0.5]],
         &start,
         &["joint_momentum"],
@@ -315,7 +302,7 @@ fn charge_in_a_uniform_field() {
         vec![0.3, -0.2, 0.6, 0.5, -0.4, 0.1],
     ];
     hold(
-        &Charge::<f64>::CARD,
+        &card(CHARGE),
         &parameters,
         &start,
         &["spatial_momentum_linear", "spin"],
@@ -335,10 +322,5 @@ fn entries_that_the_potential_does_not_hold() {
         "coordinate_momentum_columns_across_a",
         "coordinate_momentum_rows_across_b",
     ];
-    hold(
-        &Affine::<f64>::CARD,
-        &parameters,
-        &[stretched, rate],
-        &names,
-    );
+    hold(&card(AFFINE), &parameters, &[stretched, rate], &names);
 }

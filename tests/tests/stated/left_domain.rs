@@ -1,146 +1,127 @@
 //! Steps that leave the domain of their model: maps of GL(n) that become singular, and functions outside their domain. Each is an
 //! error with the contact time, leaves the state unchanged, and suggests a step size that works.
 
+use super::text_model::{Given, Motion, TextModel, cause, given};
+use clebsch::card::OpenError;
 use clebsch::domain::Function;
-use clebsch::nalgebra::{Matrix2, Matrix3, Vector1, Vector2, Vector3};
-use clebsch::{
-    Additive, BodyMomentum, BodyMomentumMatrix, Contact, FieldMomentum, Linear, Met, Rotation,
-    SpatialMomentumMatrix, StartError, StepCause, StepError,
-};
+use clebsch::nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
+use clebsch::{Contact, Linear, Met, StepCause, StepError};
 
-clebsch::model! {
-    /// An ellipsoid in space: free for a = 0.
-    model Ellipsoid {
-        param C0: Sym<3>;
-        param a: Real;
-        group Q: GL<3> velocity V;
-        advected I: Sym<3>;
-        constraint next(Q) = V*Q;
-        constraint next(I) = V*I*V^T;
-        lagrangian = tr((V - Id)*I*(V - Id)^T)/(2*h) - h*a/2*tr(C0*I);
-    }
-}
+/// An ellipsoid in space: free for a = 0.
+const ELLIPSOID: &str = "model Ellipsoid {
+    param C0: Sym<3>;
+    param a: Real;
+    group Q: GL<3> velocity V;
+    advected I: Sym<3>;
+    constraint next(Q) = V*Q;
+    constraint next(I) = V*I*V^T;
+    lagrangian = tr((V - Id)*I*(V - Id)^T)/(2*h) - h*a/2*tr(C0*I);
+}";
 
-clebsch::model! {
-    /// The free ellipsoid in the reference frame.
-    model EllipsoidInBody {
-        param I: Sym<3>;
-        group Q: GL<3> velocity V;
-        advected C: Sym<3>;
-        constraint next(Q) = Q*V;
-        constraint next(C) = V^T*C*V;
-        lagrangian = tr(C*(V - Id)*I*(V - Id)^T)/(2*h);
-    }
-}
+/// The free ellipsoid in the reference frame.
+const ELLIPSOID_IN_BODY: &str = "model EllipsoidInBody {
+    param I: Sym<3>;
+    group Q: GL<3> velocity V;
+    advected C: Sym<3>;
+    constraint next(Q) = Q*V;
+    constraint next(C) = V^T*C*V;
+    lagrangian = tr(C*(V - Id)*I*(V - Id)^T)/(2*h);
+}";
 
-clebsch::model! {
-    /// A pressure that pulls inwards.
-    model Collapsing {
-        param w: Real;
-        group Q: GL<3> velocity V;
-        advected I: Sym<3>;
-        constraint next(Q) = V*Q;
-        constraint next(I) = V*I*V^T;
-        lagrangian = tr((V - Id)*I*(V - Id)^T)/(2*h) - h*w*log(det(I));
-    }
-}
+/// A pressure that pulls inwards.
+const COLLAPSING: &str = "model Collapsing {
+    param w: Real;
+    group Q: GL<3> velocity V;
+    advected I: Sym<3>;
+    constraint next(Q) = V*Q;
+    constraint next(I) = V*I*V^T;
+    lagrangian = tr((V - Id)*I*(V - Id)^T)/(2*h) - h*w*log(det(I));
+}";
 
-clebsch::model! {
-    /// A top with a logarithm of its height.
-    model LogTop {
-        param J: Sym<3>;
-        param chi, z: Vec<3>;
-        param w, c: Real;
-        group Λ: SO<3> velocity Ω;
-        advected Γ: Vec<3> = Λ^T*z;
-        constraint next(Λ) = Λ*Ω;
-        constraint next(Γ) = Ω^T*Γ;
-        lagrangian = -tr(J*Ω)/h - h*w*log(dot(chi, Γ) + c);
-    }
-}
+/// A top with a logarithm of its height.
+const LOG_TOP: &str = "model LogTop {
+    param J: Sym<3>;
+    param chi, z: Vec<3>;
+    param w, c: Real;
+    group Λ: SO<3> velocity Ω;
+    advected Γ: Vec<3> = Λ^T*z;
+    constraint next(Λ) = Λ*Ω;
+    constraint next(Γ) = Ω^T*Γ;
+    lagrangian = -tr(J*Ω)/h - h*w*log(dot(chi, Γ) + c);
+}";
 
-clebsch::model! {
-    /// A top with a pole, and a root of a parameter.
-    model PoleTop {
-        param J: Sym<3>;
-        param chi, z: Vec<3>;
-        param w, c: Real;
-        group Λ: SO<3> velocity Ω;
-        advected Γ: Vec<3> = Λ^T*z;
-        constraint next(Λ) = Λ*Ω;
-        constraint next(Γ) = Ω^T*Γ;
-        lagrangian = -tr(J*Ω)/h - h*w/(dot(chi, Γ) + c) - h*w*sqrt(c)*dot(chi, Γ);
-    }
-}
+/// A top with a pole, and a root of a parameter.
+const POLE_TOP: &str = "model PoleTop {
+    param J: Sym<3>;
+    param chi, z: Vec<3>;
+    param w, c: Real;
+    group Λ: SO<3> velocity Ω;
+    advected Γ: Vec<3> = Λ^T*z;
+    constraint next(Λ) = Λ*Ω;
+    constraint next(Γ) = Ω^T*Γ;
+    lagrangian = -tr(J*Ω)/h - h*w/(dot(chi, Γ) + c) - h*w*sqrt(c)*dot(chi, Γ);
+}";
 
-clebsch::model! {
-    /// A top with a root of its height, a power and the inverse of a matrix.
-    model RootTop {
-        param J, K: Sym<3>;
-        param chi, z: Vec<3>;
-        param w, u, c: Real;
-        group Λ: SO<3> velocity Ω;
-        advected Γ: Vec<3> = Λ^T*z;
-        constraint next(Λ) = Λ*Ω;
-        constraint next(Γ) = Ω^T*Γ;
-        lagrangian = -tr(J*Ω)/h - h*w*(dot(chi, Γ) + c)^(3/2) - h*u*dot(chi, inv(K + dot(chi, Γ)*Id)*chi);
-    }
-}
+/// A top with a root of its height, a power and the inverse of a matrix.
+const ROOT_TOP: &str = "model RootTop {
+    param J, K: Sym<3>;
+    param chi, z: Vec<3>;
+    param w, u, c: Real;
+    group Λ: SO<3> velocity Ω;
+    advected Γ: Vec<3> = Λ^T*z;
+    constraint next(Λ) = Λ*Ω;
+    constraint next(Γ) = Ω^T*Γ;
+    lagrangian = -tr(J*Ω)/h - h*w*(dot(chi, Γ) + c)^(3/2) - h*u*dot(chi, inv(K + dot(chi, Γ)*Id)*chi);
+}";
 
-clebsch::model! {
-    /// A kinetic energy with a pole in the velocity.
-    model EdgePole {
-        param J: Sym<3>;
-        param b: Vec<3>;
-        param w: Real;
-        group Λ: SO<3> velocity Ω;
-        constraint next(Λ) = Λ*Ω;
-        lagrangian = -tr(J*Ω)/h + w/(h*(dot(b, Ω*b) - 1));
-    }
-}
+/// A kinetic energy with a pole in the velocity.
+const EDGE_POLE: &str = "model EdgePole {
+    param J: Sym<3>;
+    param b: Vec<3>;
+    param w: Real;
+    group Λ: SO<3> velocity Ω;
+    constraint next(Λ) = Λ*Ω;
+    lagrangian = -tr(J*Ω)/h + w/(h*(dot(b, Ω*b) - 1));
+}";
 
-clebsch::model! {
-    /// A matrix that is inverted, and a number in a root.
-    model Inverted {
-        param m, k, b: Real;
-        field A: Mat<2>;
-        field u: Real;
-        let d = next(A) - A;
-        let v = next(u) - u;
-        lagrangian = m*tr(d*d^T)/(2*h) + m*v^2/(2*h) - h*k*tr(inv(A))/2 + h*b*sqrt(u);
-    }
-}
+/// A matrix that is inverted, and a number in a root.
+const INVERTED: &str = "model Inverted {
+    param m, k, b: Real;
+    field A: Mat<2>;
+    field u: Real;
+    let d = next(A) - A;
+    let v = next(u) - u;
+    lagrangian = m*tr(d*d^T)/(2*h) + m*v^2/(2*h) - h*k*tr(inv(A))/2 + h*b*sqrt(u);
+}";
 
-clebsch::model! {
-    /// A matrix in the logarithm of the determinant of its square, a number in an inverse square.
-    model Squared {
-        param m, k: Real;
-        field A: Mat<2>;
-        field u: Real;
-        let d = next(A) - A;
-        let v = next(u) - u;
-        let C = A^T*A;
-        lagrangian = m*tr(d*d^T)/(2*h) + m*v^2/(2*h) + h*k*log(det(C))/2 - h*k/(2*u^2);
-    }
-}
+/// A matrix in the logarithm of the determinant of its square, a number in an inverse square.
+const SQUARED: &str = "model Squared {
+    param m, k: Real;
+    field A: Mat<2>;
+    field u: Real;
+    let d = next(A) - A;
+    let v = next(u) - u;
+    let C = A^T*A;
+    lagrangian = m*tr(d*d^T)/(2*h) + m*v^2/(2*h) + h*k*log(det(C))/2 - h*k/(2*u^2);
+}";
 
-fn contact(error: &StepError) -> Contact {
-    match error.cause {
+fn contact(cause: StepCause) -> Contact {
+    match cause {
         StepCause::Contact(contact) => contact,
-        _ => panic!("{error}"),
+        _ => panic!("{cause}"),
     }
+}
+
+fn started(text: &str, h: f64, given: &Given) -> Motion {
+    TextModel::read(text).start(h, given).unwrap()
 }
 
 /// Steps until a step fails, at most `most` times; returns the error and checks that the state is unchanged.
-fn refused<S: Copy + PartialEq + std::fmt::Debug>(
-    state: &mut S,
-    most: u32,
-    mut step: impl FnMut(&mut S) -> Result<(), StepError>,
-) -> StepError {
+fn refused(motion: &mut Motion, most: u32) -> StepError {
     for _ in 0..most {
-        let before = *state;
-        if let Err(error) = step(state) {
-            assert_eq!(before, *state);
+        let before = motion.observed();
+        if let Err(error) = motion.step() {
+            assert_eq!(before, motion.observed());
             return error;
         }
     }
@@ -152,25 +133,17 @@ fn inwards() -> Matrix3<f64> {
     -Matrix3::from_diagonal(&Vector3::new(1.0, 0.2, 0.1))
 }
 
-fn ellipsoid() -> (Ellipsoid, EllipsoidInitial) {
-    let model = Ellipsoid::new(EllipsoidParameters {
-        C0: Matrix3::identity(),
-        a: 0.0,
-    });
-    let initial = EllipsoidInitial {
-        Q: Linear::identity(),
-        spatial_momentum: SpatialMomentumMatrix(inwards()),
-        I: Matrix3::identity(),
-    };
-    (model.unwrap(), initial)
+/// An ellipsoid at rest length that moves with this part of the velocity inwards.
+fn ellipsoid(a: f64, share: f64) -> Given {
+    let one = Matrix3::<f64>::identity();
+    given! { C0: one, a: a, Q: one, spatial_momentum: inwards() * share, I: one }
 }
 
 #[test]
 fn a_straight_line_through_zero_ends_at_the_contact() {
     for h in [0.05, 0.03, 0.3, 0.7] {
-        let (model, initial) = ellipsoid();
-        let (mut state, mut work) = model.start(initial, h).unwrap();
-        let error = refused(&mut state, 100, |s| model.step(s, &mut work));
+        let mut motion = started(ELLIPSOID, h, &ellipsoid(0.0, 1.0));
+        let error = refused(&mut motion, 100);
         let time = error.contact_time().expect("known");
         // Rounding error of a straight line with at most forty steps.
         assert!((time - 1.0).abs() < 1e-13, "h = {h}: {time}");
@@ -180,8 +153,8 @@ fn a_straight_line_through_zero_ends_at_the_contact() {
             "{error}"
         );
         // The suggested step size was tried and works.
-        let works = contact(&error).works().expect("found");
-        assert!(works < h && model.workspace(&state, works).is_ok());
+        let works = contact(error.cause).works().expect("found");
+        assert!(works < h && motion.again(works).is_ok());
     }
 }
 
@@ -189,10 +162,8 @@ fn a_straight_line_through_zero_ends_at_the_contact() {
 fn the_first_step_is_tested_too_and_two_crossings_in_one() {
     // Beyond the zero of the first axis, of the second, and of all three: det is negative, positive, negative.
     for h in [2.5, 7.0, 15.0] {
-        let (model, initial) = ellipsoid();
-        let Err(StartError::Refused(StepCause::Contact(met))) = model.start(initial, h) else {
-            panic!("h = {h} was taken");
-        };
+        let started = TextModel::read(ELLIPSOID).start(h, &ellipsoid(0.0, 1.0));
+        let met = contact(cause(&started.expect_err("refused")));
         assert_eq!(met.met, Met::Singular { configuration: "Q" });
         let after = met.after_node().expect("known");
         assert!((after - 1.0).abs() < 1e-13, "h = {h}: {after}");
@@ -201,17 +172,9 @@ fn the_first_step_is_tested_too_and_two_crossings_in_one() {
 
 #[test]
 fn the_body_side_ends_there_too() {
-    let model = EllipsoidInBody::new(EllipsoidInBodyParameters {
-        I: Matrix3::identity(),
-    })
-    .unwrap();
-    let initial = EllipsoidInBodyInitial {
-        Q: Linear::identity(),
-        body_momentum: BodyMomentumMatrix(inwards()),
-        C: Matrix3::identity(),
-    };
-    let (mut state, mut work) = model.start(initial, 0.05).unwrap();
-    let error = refused(&mut state, 100, |s| model.step(s, &mut work));
+    let one = Matrix3::<f64>::identity();
+    let given = given! { I: one, Q: one, body_momentum: inwards(), C: one };
+    let error = refused(&mut started(ELLIPSOID_IN_BODY, 0.05, &given), 100);
     let time = error.contact_time().expect("known");
     assert!((time - 1.0).abs() < 1e-13, "{time}");
 }
@@ -219,62 +182,38 @@ fn the_body_side_ends_there_too() {
 #[test]
 fn a_motion_that_turns_back_before_it_is_not_stopped() {
     // A spring of frequency 1 with its rest position at zero passes through zero; a spring about the identity does not.
-    let model = ElasticAtRest::new(ElasticAtRestParameters { s: 1.0 }).unwrap();
-    let initial = ElasticAtRestInitial {
-        Q: Linear::identity(),
-        spatial_momentum: SpatialMomentumMatrix(inwards() * 0.9),
-        I: Matrix3::identity(),
-        B: Matrix3::identity(),
-    };
-    let (mut state, mut work) = model.start(initial, 0.05).unwrap();
-    for _ in 0..2000 {
-        model.step(&mut state, &mut work).unwrap();
-    }
-    let model = Ellipsoid::new(EllipsoidParameters {
-        C0: Matrix3::identity(),
-        a: 1.0,
-    })
-    .unwrap();
-    let initial = EllipsoidInitial {
-        Q: Linear::identity(),
-        spatial_momentum: SpatialMomentumMatrix(inwards() * 0.1),
-        I: Matrix3::identity(),
-    };
-    let (mut state, mut work) = model.start(initial, 0.05).unwrap();
-    let error = refused(&mut state, 100, |s| model.step(s, &mut work));
+    let one = Matrix3::<f64>::identity();
+    let given = given! { s: 1.0, Q: one, spatial_momentum: inwards() * 0.9, I: one, B: one };
+    started(ELASTIC_AT_REST, 0.05, &given).steps(2000);
+    let error = refused(&mut started(ELLIPSOID, 0.05, &ellipsoid(1.0, 0.1)), 100);
     let time = error.contact_time().expect("known");
     // cos t = sin t / 10, to second order.
     assert!((time - 10.0f64.atan()).abs() < 1e-3, "{time}");
 }
 
-clebsch::model! {
-    /// An elastic body with constant volume.
-    model ElasticAtRest {
-        param s: Real;
-        group Q: GL<3> velocity V;
-        advected I: Sym<3>;
-        advected B: Sym<3>;
-        constraint next(Q) = V*Q;
-        constraint next(I) = V*I*V^T;
-        constraint next(B) = V*B*V^T;
-        lagrangian = tr((V - Id)*I*(V - Id)^T)/(2*h) - h*s/2*tr(B) + h*s/2*log(det(B));
-    }
-}
+/// An elastic body with constant volume.
+const ELASTIC_AT_REST: &str = "model ElasticAtRest {
+    param s: Real;
+    group Q: GL<3> velocity V;
+    advected I: Sym<3>;
+    advected B: Sym<3>;
+    constraint next(Q) = V*Q;
+    constraint next(I) = V*I*V^T;
+    constraint next(B) = V*B*V^T;
+    lagrangian = tr((V - Id)*I*(V - Id)^T)/(2*h) - h*s/2*tr(B) + h*s/2*log(det(B));
+}";
 
 #[test]
 fn a_collapse_is_an_error_before_its_energy_is_no_number() {
-    let model = Collapsing::new(CollapsingParameters { w: 0.1 }).unwrap();
-    let initial = CollapsingInitial {
-        Q: Linear::identity(),
-        spatial_momentum: SpatialMomentumMatrix(inwards()),
-        I: Matrix3::identity(),
-    };
-    let (mut state, mut work) = model.start(initial, 0.02).unwrap();
-    let error = refused(&mut state, 1000, |s| {
-        let done = model.step(s, &mut work);
-        assert!(model.energy(s).is_finite());
-        done
+    let one = Matrix3::<f64>::identity();
+    let given = given! { w: 0.1, Q: one, spatial_momentum: inwards(), I: one };
+    let mut motion = started(COLLAPSING, 0.02, &given);
+    let error = (0..1000).find_map(|_| {
+        let done = motion.step();
+        assert!(motion.energy().is_finite());
+        done.err()
     });
+    let error = error.expect("a collapse");
     // It reaches the contact earlier than along the straight line.
     assert!(error.contact_time().is_some_and(|t| t < 1.0), "{error}");
 }
@@ -287,17 +226,22 @@ fn a_map_that_is_nearly_singular_is_no_start() {
     assert!(thin(-0.5).is_ok(), "reflections are invertible");
 }
 
-fn turning() -> BodyMomentum {
-    BodyMomentum(Vector3::new(2.0, 0.3, 1.0))
-}
-
-fn body() -> Matrix3<f64> {
-    Matrix3::new(1.0, 0.1, 0.0, 0.1, 1.5, 0.2, 0.0, 0.2, 2.0)
+/// A top whose vertical is the axis of its weight, with parameters of its own.
+fn top(own: Given) -> Given {
+    let mut all = own;
+    all.extend(given! {
+        J: Matrix3::new(1.0, 0.1, 0.0, 0.1, 1.5, 0.2, 0.0, 0.2, 2.0),
+        chi: Vector3::z(),
+        z: Vector3::z(),
+        Λ: Matrix3::<f64>::identity(),
+        body_momentum: [2.0, 0.3, 1.0],
+    });
+    all
 }
 
 /// The contact time, where the argument `x + c` of a top vanishes: from the error, and by interpolation between its own nodes.
 fn assert_met(error: &StepError, function: Function, before: f64) {
-    let contact = contact(error);
+    let contact = contact(error.cause);
     let Met::Outside {
         call,
         before: from,
@@ -325,60 +269,22 @@ fn assert_met(error: &StepError, function: Function, before: f64) {
 
 #[test]
 fn a_logarithm_and_a_pole_are_left_with_an_error() {
-    let (chi, z, c) = (Vector3::z(), Vector3::z(), 0.3);
-    let model = LogTop::new(LogTopParameters {
-        J: body(),
-        chi,
-        z,
-        w: -1e-3,
-        c,
-    })
-    .unwrap();
-    let initial = LogTopInitial {
-        Λ: Rotation::identity(),
-        body_momentum: turning(),
-    };
-    let (mut state, mut work) = model.start(initial, 0.05).unwrap();
-    let error = refused(&mut state, 10_000, |s| model.step(s, &mut work));
-    assert_met(&error, Function::Log, model.Γ(&state).z + c);
-
-    let model = PoleTop::new(PoleTopParameters {
-        J: body(),
-        chi,
-        z,
-        w: -1e-5,
-        c,
-    })
-    .unwrap();
-    let initial = PoleTopInitial {
-        Λ: Rotation::identity(),
-        body_momentum: turning(),
-    };
-    let (mut state, mut work) = model.start(initial, 0.05).unwrap();
-    let error = refused(&mut state, 10_000, |s| model.step(s, &mut work));
-    assert_met(&error, Function::Quotient, model.Γ(&state).z + c);
+    let c = 0.3;
+    for (text, w, function) in [
+        (LOG_TOP, -1e-3, Function::Log),
+        (POLE_TOP, -1e-5, Function::Quotient),
+    ] {
+        let mut motion = started(text, 0.05, &top(given! { w: w, c: c }));
+        let error = refused(&mut motion, 10_000);
+        assert_met(&error, function, motion.vector::<3>("Γ").z + c);
+    }
 }
 
 #[test]
 fn a_power_and_an_inverse_are_left_with_an_error() {
-    let (chi, z) = (Vector3::z(), Vector3::z());
-    let start = |w, u, c, k: f64| {
-        let parameters = RootTopParameters {
-            J: body(),
-            K: Matrix3::identity() * k,
-            chi,
-            z,
-            w,
-            u,
-            c,
-        };
-        let model = RootTop::new(parameters).unwrap();
-        let initial = RootTopInitial {
-            Λ: Rotation::identity(),
-            body_momentum: turning(),
-        };
-        let (mut state, mut work) = model.start(initial, 0.05).unwrap();
-        refused(&mut state, 10_000, |s| model.step(s, &mut work))
+    let start = |w: f64, u: f64, c: f64, k: f64| {
+        let given = top(given! { K: Matrix3::identity() * k, w: w, u: u, c: c });
+        refused(&mut started(ROOT_TOP, 0.05, &given), 10_000)
     };
     // First case: the root leaves its domain first; second case: the matrix becomes singular first. Below the root the residual is
     // NaN, so that Newton's method may find no velocity instead.
@@ -396,81 +302,51 @@ fn a_power_and_an_inverse_are_left_with_an_error() {
 
 #[test]
 fn parameters_states_and_velocities_outside_are_refused_at_the_start() {
-    let (chi, z) = (Vector3::z(), Vector3::z());
-    let refusal = PoleTop::new(PoleTopParameters {
-        J: body(),
-        chi,
-        z,
-        w: 1.0,
-        c: -0.3,
-    })
-    .unwrap_err();
-    assert!(
-        refusal
-            .to_string()
-            .contains("argument of sqrt must be zero or positive"),
-        "{refusal}"
-    );
-    let model = LogTop::new(LogTopParameters {
-        J: body(),
-        chi,
-        z,
-        w: 1.0,
-        c: -1.5,
-    })
-    .unwrap();
-    let initial = LogTopInitial {
-        Λ: Rotation::identity(),
-        body_momentum: turning(),
+    let refusal = |text: &str, h: f64, given: &Given| {
+        let found = TextModel::read(text).start(h, given);
+        found.expect_err("outside")
     };
-    let refusal = model.start(initial, 0.05).unwrap_err().to_string();
+    let error = refusal(POLE_TOP, 0.05, &top(given! { w: 1.0, c: -0.3 }));
+    let told = error.to_string();
     assert!(
-        refusal.contains("it is -0.5, and the argument of log must be positive"),
-        "{refusal}"
+        matches!(error, OpenError::Parameter(_))
+            && told.contains("argument of sqrt must be zero or positive"),
+        "{told}"
+    );
+    let told = refusal(LOG_TOP, 0.05, &top(given! { w: 1.0, c: -1.5 })).to_string();
+    assert!(
+        told.contains("it is -0.5, and the argument of log must be positive"),
+        "{told}"
     );
     // b·Ωb - 1 is positive at first; the first step makes it negative.
-    let model = EdgePole::new(EdgePoleParameters {
-        J: body(),
-        b: Vector3::x() * 1.1,
-        w: 1e-9,
-    })
-    .unwrap();
-    let initial = EdgePoleInitial {
-        Λ: Rotation::identity(),
-        body_momentum: BodyMomentum(Vector3::z() * 2.0),
-    };
-    assert!(model.start(initial, 0.05).is_ok());
-    let refusal = model.start(initial, 1.0).unwrap_err().to_string();
-    assert!(refusal.contains("domain of a quotient"), "{refusal}");
+    let one = Matrix3::<f64>::identity();
+    let j = Matrix3::new(1.0, 0.1, 0.0, 0.1, 1.5, 0.2, 0.0, 0.2, 2.0);
+    let given =
+        given! { J: j, b: [1.1, 0.0, 0.0], w: 1e-9, Λ: one, body_momentum: [0.0, 0.0, 2.0] };
+    assert!(TextModel::read(EDGE_POLE).start(0.05, &given).is_ok());
+    let told = refusal(EDGE_POLE, 1.0, &given).to_string();
+    assert!(told.contains("domain of a quotient"), "{told}");
 }
 
-fn inverted(momentum: Matrix2<f64>, of_u: f64) -> (Inverted, InvertedInitial) {
-    let parameters = InvertedParameters {
-        m: 1.0,
-        k: 1e-3,
-        b: 0.3,
-    };
-    let initial = InvertedInitial {
-        A: Additive::new(Matrix2::identity()),
-        momentum_A: FieldMomentum(momentum),
-        u: Additive::new(Vector1::new(0.1)),
-        momentum_u: FieldMomentum(Vector1::new(of_u)),
-    };
-    (Inverted::new(parameters).unwrap(), initial)
+fn inverted(momentum: Matrix2<f64>, of_u: f64) -> Given {
+    given! {
+        m: 1.0, k: 1e-3, b: 0.3,
+        A: Matrix2::<f64>::identity(), momentum_A: momentum, u: 0.1, momentum_u: of_u,
+    }
 }
 
 /// The contact, at the first step or later, and its time.
 fn met(momentum: Matrix2<f64>, of_u: f64, h: f64) -> (Contact, f64) {
-    let (model, initial) = inverted(momentum, of_u);
-    let (mut state, mut work) = match model.start(initial, h) {
-        Ok(started) => started,
-        Err(StartError::Refused(StepCause::Contact(contact))) => {
-            return (contact, contact.share.expect("known") * h);
+    match TextModel::read(INVERTED).start(h, &inverted(momentum, of_u)) {
+        Ok(mut motion) => {
+            let error = refused(&mut motion, 1000);
+            (contact(error.cause), error.contact_time().expect("known"))
         }
-        Err(error) => panic!("{error}"),
-    };
-    let error = refused(&mut state, 1000, |s| model.step(s, &mut work));
-    (contact(&error), error.contact_time().expect("known"))
+        Err(error) => {
+            let contact = contact(cause(&error));
+            (contact, contact.share.expect("known") * h)
+        }
+    }
 }
 
 #[test]
@@ -480,8 +356,7 @@ fn a_matrix_field_that_is_inverted_meets_a_determinant_of_zero_twice_in_one_step
     let (contact, time) = met(momentum, 0.0, 0.05);
     assert_eq!(contact.met, Met::Singular { configuration: "A" });
     assert!((time - 1.0 / 81.0).abs() < 1e-4, "{time}");
-    let (model, initial) = inverted(Matrix2::zeros(), 0.0);
-    assert!(model.start(initial, 0.05).is_ok());
+    started(INVERTED, 0.05, &inverted(Matrix2::zeros(), 0.0));
 }
 
 #[test]
@@ -497,17 +372,14 @@ fn a_root_that_is_left_is_told_before_the_force_that_has_no_value_there() {
 
 #[test]
 fn what_is_squared_is_not_carried_past_zero() {
-    let model = Squared::new(SquaredParameters { m: 1.0, k: 1e-6 }).unwrap();
     // One entry decreases to zero at time 1, and the barrier is too weak to stop it.
     let start = |a: f64, u: f64| {
-        let initial = SquaredInitial {
-            A: Additive::new(Matrix2::identity()),
-            u: Additive::new(Vector1::new(1.0)),
-            momentum_A: FieldMomentum(-Matrix2::new(a, 0.0, 0.0, 0.2 * a)),
-            momentum_u: FieldMomentum(Vector1::new(-u)),
+        let given = given! {
+            m: 1.0, k: 1e-6,
+            A: Matrix2::<f64>::identity(), momentum_A: -Matrix2::new(a, 0.0, 0.0, 0.2 * a),
+            u: 1.0, momentum_u: -u,
         };
-        let (mut state, mut work) = model.start(initial, 0.03).unwrap();
-        let error = refused(&mut state, 1000, |s| model.step(s, &mut work));
+        let error = refused(&mut started(SQUARED, 0.03, &given), 1000);
         // The barrier changes the speed by about 0.1 %.
         let time = error.contact_time().expect("known");
         assert!((time - 1.0).abs() < 2e-3, "{time}");

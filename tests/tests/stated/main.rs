@@ -1,5 +1,5 @@
-//! Steppers of models stated in these tests, on every group and in any dimension, for features that the gallery does not use. A
-//! separate binary from `motion`, so that both compile in parallel.
+//! Steppers of models stated in these tests, on every group and in any dimension, for features that the gallery does not use. Most
+//! models run from their text. Tests of names in a crate, of other scalars and of ensembles compile theirs.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables, confusable_idents)]
@@ -12,6 +12,7 @@ mod bracket;
 mod carried_momentum;
 mod carried_references;
 mod coordinates;
+mod derived_residual;
 mod dimensions_against_hand;
 mod ellipsoids;
 mod fields;
@@ -28,5 +29,6 @@ mod rounding_of_fields;
 mod singular_starts;
 mod stated_any_dimension;
 mod stated_models;
+mod text_model;
 mod two_numbers;
 mod unit_quaternions;

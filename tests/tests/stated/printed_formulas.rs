@@ -6,6 +6,7 @@ mod lengths;
 mod random;
 mod reading;
 
+use super::text_model::card;
 use clebsch::card::{Card, Settings, Trajectory};
 use clebsch_core::check::spec::Side;
 use clebsch_core::derive::invariants::Kind;
@@ -13,88 +14,76 @@ use clebsch_core::{Derivation, derive_source};
 use clebsch_oracle::printed::{Value, quaternion};
 use reading::{ROUNDING, evaluated, printed};
 
-clebsch::model! {
-    /// A body with a rotor, in gravity whose sign is in the parameters.
-    model Gyrostat {
-        param J: Sym<3>;
-        param l, a, z: Vec<3>;
-        param m, g: Real;
-        group Λ: SO<3> velocity Ω;
-        advected Γ: Vec<3> = Λ^T*z;
-        constraint next(Λ) = Λ*Ω;
-        constraint next(Γ) = Ω^T*Γ;
-        lagrangian = -tr(J*Ω)/h + dot(l, vee(Ω)) + h*m*g*dot(a, Γ);
-    }
-}
-clebsch::model! {
-    /// The same with quaternions.
-    model QuaternionGyrostat {
-        param I: Sym<3>;
-        param l, b, z: Vec<3>;
-        group q: SU<2> velocity W;
-        advected Γ: Vec<3> = rot(q)^T*z;
-        constraint next(q) = q*W;
-        constraint next(Γ) = rot(W)^T*Γ;
-        lagrangian = (2/h)*dot(im(W), I*im(W)) + 2*dot(l, im(W)) - h*dot(b, Γ);
-    }
-}
-clebsch::model! {
-    /// A rigid motion whose linear part moves.
-    model DriftingBody {
-        param J, M: Sym<3>;
-        param l, p: Vec<3>;
-        param b, Z: Vec<4>;
-        group G: SE<3> velocity V;
-        advected P: Vec<4> = G^T*Z;
-        constraint next(G) = G*V;
-        constraint next(P) = V^T*P;
-        let u = (pos(V) - pos(V^-1))/2;
-        lagrangian = -tr(J*rot(V))/h + dot(u, M*u)/(2*h) + dot(l, vee(rot(V))) + dot(p, u) - h*dot(b, P);
-    }
-}
-clebsch::model! {
-    /// An affine body with a term linear in the velocity.
-    model TurningEllipsoid {
-        param C0, I0: Sym<3>;
-        param B: Mat<3>;
-        param a: Real;
-        group Q: GL<3> velocity G;
-        advected C: Sym<3> = Q^T*C0*Q;
-        constraint next(Q) = Q*G;
-        constraint next(C) = G^T*C*G;
-        lagrangian = tr(C*(G - Id)*I0*(G - Id)^T)/(2*h) + tr(B*(G - G^-1))/2 + h*a*tr(C*C);
-    }
-}
-clebsch::model! {
-    /// Two gyrostats in space, coupled by their axes.
-    model TwoGyrostats {
-        param l, n: Vec<3>;
-        param w: Real;
-        group A: SO<3> velocity a;
-        group B: SO<3> velocity b;
-        advected J: Sym<3>;
-        advected K: Sym<3>;
-        advected p: Vec<3>;
-        advected q: Vec<3>;
-        constraint next(A) = a*A;
-        constraint next(B) = b*B;
-        constraint next(J) = a*J*a^T;
-        constraint next(K) = b*K*b^T;
-        constraint next(p) = a*p;
-        constraint next(q) = b*q;
-        lagrangian = -(tr(a*J) + tr(b*K))/h + dot(l, vee(a)) - dot(n, vee(b)) + h*w*dot(p, q);
-    }
-}
-clebsch::model! {
-    /// A gyrostat of four dimensions.
-    model WideGyrostat {
-        param C: Sym<4>;
-        param L: Skew<4>;
-        group Λ: SO<4> velocity Ω;
-        constraint next(Λ) = Λ*Ω;
-        lagrangian = -tr(C*Ω)/h + tr(L*Ω);
-    }
-}
+/// A body with a rotor, in gravity whose sign is in the parameters.
+const GYROSTAT: &str = "model Gyrostat {
+    param J: Sym<3>;
+    param l, a, z: Vec<3>;
+    param m, g: Real;
+    group Λ: SO<3> velocity Ω;
+    advected Γ: Vec<3> = Λ^T*z;
+    constraint next(Λ) = Λ*Ω;
+    constraint next(Γ) = Ω^T*Γ;
+    lagrangian = -tr(J*Ω)/h + dot(l, vee(Ω)) + h*m*g*dot(a, Γ);
+}";
+/// The same with quaternions.
+const QUATERNION_GYROSTAT: &str = "model QuaternionGyrostat {
+    param I: Sym<3>;
+    param l, b, z: Vec<3>;
+    group q: SU<2> velocity W;
+    advected Γ: Vec<3> = rot(q)^T*z;
+    constraint next(q) = q*W;
+    constraint next(Γ) = rot(W)^T*Γ;
+    lagrangian = (2/h)*dot(im(W), I*im(W)) + 2*dot(l, im(W)) - h*dot(b, Γ);
+}";
+/// A rigid motion whose linear part moves.
+const DRIFTING_BODY: &str = "model DriftingBody {
+    param J, M: Sym<3>;
+    param l, p: Vec<3>;
+    param b, Z: Vec<4>;
+    group G: SE<3> velocity V;
+    advected P: Vec<4> = G^T*Z;
+    constraint next(G) = G*V;
+    constraint next(P) = V^T*P;
+    let u = (pos(V) - pos(V^-1))/2;
+    lagrangian = -tr(J*rot(V))/h + dot(u, M*u)/(2*h) + dot(l, vee(rot(V))) + dot(p, u) - h*dot(b, P);
+}";
+/// An affine body with a term linear in the velocity.
+const TURNING_ELLIPSOID: &str = "model TurningEllipsoid {
+    param C0, I0: Sym<3>;
+    param B: Mat<3>;
+    param a: Real;
+    group Q: GL<3> velocity G;
+    advected C: Sym<3> = Q^T*C0*Q;
+    constraint next(Q) = Q*G;
+    constraint next(C) = G^T*C*G;
+    lagrangian = tr(C*(G - Id)*I0*(G - Id)^T)/(2*h) + tr(B*(G - G^-1))/2 + h*a*tr(C*C);
+}";
+/// Two gyrostats in space, coupled by their axes.
+const TWO_GYROSTATS: &str = "model TwoGyrostats {
+    param l, n: Vec<3>;
+    param w: Real;
+    group A: SO<3> velocity a;
+    group B: SO<3> velocity b;
+    advected J: Sym<3>;
+    advected K: Sym<3>;
+    advected p: Vec<3>;
+    advected q: Vec<3>;
+    constraint next(A) = a*A;
+    constraint next(B) = b*B;
+    constraint next(J) = a*J*a^T;
+    constraint next(K) = b*K*b^T;
+    constraint next(p) = a*p;
+    constraint next(q) = b*q;
+    lagrangian = -(tr(a*J) + tr(b*K))/h + dot(l, vee(a)) - dot(n, vee(b)) + h*w*dot(p, q);
+}";
+/// A gyrostat of four dimensions.
+const WIDE_GYROSTAT: &str = "model WideGyrostat {
+    param C: Sym<4>;
+    param L: Skew<4>;
+    group Λ: SO<4> velocity Ω;
+    constraint next(Λ) = Λ*Ω;
+    lagrangian = -tr(C*Ω)/h + tr(L*Ω);
+}";
 
 /// The values of all symbols at a node of a trajectory.
 fn letters(
@@ -242,15 +231,11 @@ fn terms_linear_in_the_velocity() {
         vec![1.3],
         vec![0.7],
     ];
-    one(
-        &Gyrostat::<f64>::CARD,
-        &gravity,
-        &[TILTED.to_vec(), mu.clone()],
-    );
+    one(&card(GYROSTAT), &gravity, &[TILTED.to_vec(), mu.clone()]);
     let attitude = vec![0.5, 0.5, -0.5, 0.5];
     let parameters = [j.clone(), l.clone(), a.clone(), z.clone()];
     one(
-        &QuaternionGyrostat::<f64>::CARD,
+        &card(QUATERNION_GYROSTAT),
         &parameters,
         &[attitude, mu.clone()],
     );
@@ -269,7 +254,7 @@ fn terms_linear_in_the_velocity() {
         vec![0.0, 0.6, 0.8, 0.1],
     ];
     let impulse = [mu.clone(), vec![0.2, 0.1, -0.1]].concat();
-    one(&DriftingBody::<f64>::CARD, &parameters, &[place, impulse]);
+    one(&card(DRIFTING_BODY), &parameters, &[place, impulse]);
     let parameters = [
         diagonal([1.2, 1.0, 0.9]),
         diagonal([0.8, 1.1, 1.3]),
@@ -278,11 +263,7 @@ fn terms_linear_in_the_velocity() {
     ];
     let stretched = vec![1.1, 0.1, 0.0, 0.0, 0.9, 0.2, 0.1, 0.0, 1.0];
     let rate = vec![0.1, -0.2, 0.3, 0.2, 0.1, 0.0, -0.1, 0.2, 0.1];
-    one(
-        &TurningEllipsoid::<f64>::CARD,
-        &parameters,
-        &[stretched, rate],
-    );
+    one(&card(TURNING_ELLIPSOID), &parameters, &[stretched, rate]);
     let start = [
         TILTED.to_vec(),
         mu.clone(),
@@ -294,7 +275,7 @@ fn terms_linear_in_the_velocity() {
         vec![0.6, 0.0, 0.7],
     ];
     one(
-        &TwoGyrostats::<f64>::CARD,
+        &card(TWO_GYROSTATS),
         &[l, vec![0.1, 0.4, -0.2], vec![0.7]],
         &start,
     );
@@ -308,5 +289,5 @@ fn terms_linear_in_the_velocity() {
         square(&|i, j| f64::from(u8::from(i == j))),
         square(&|i, j| 0.2 * (i * i) as f64 - 0.2 * (j * j) as f64),
     ];
-    one(&WideGyrostat::<f64>::CARD, &parameters, &start);
+    one(&card(WIDE_GYROSTAT), &parameters, &start);
 }

@@ -1,51 +1,43 @@
 //! Initial states where a model is undefined. The error names the argument outside its domain and suggests no smaller step size.
 
-use clebsch::nalgebra::{Vector1, Vector3};
-use clebsch::{Additive, FieldMomentum, StartError};
+use super::text_model::{Motion, TextModel, given};
+use clebsch::card::OpenError;
+use clebsch::nalgebra::Vector3;
 
-clebsch::model! {
-    /// Two bodies that attract each other.
-    model Attracted {
-        param m, k: Real;
-        field X, Y: Vec<3>;
-        lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + m*dot(next(Y) - Y, next(Y) - Y)/(2*h)
-            + h*k/sqrt(dot(X - Y, X - Y));
-    }
-}
+/// Two bodies that attract each other.
+const ATTRACTED: &str = "model Attracted {
+    param m, k: Real;
+    field X, Y: Vec<3>;
+    lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + m*dot(next(Y) - Y, next(Y) - Y)/(2*h)
+        + h*k/sqrt(dot(X - Y, X - Y));
+}";
 
-clebsch::model! {
-    /// A number in a logarithmic potential.
-    model Logarithmic {
-        param m: Real;
-        field x: Real;
-        lagrangian = m*(next(x) - x)^2/(2*h) + h*log(1 + x);
-    }
-}
+/// A number in a logarithmic potential.
+const LOGARITHMIC: &str = "model Logarithmic {
+    param m: Real;
+    field x: Real;
+    lagrangian = m*(next(x) - x)^2/(2*h) + h*log(1 + x);
+}";
 
-fn attracted(apart: f64) -> Result<(), StartError> {
-    let model = Attracted::new(AttractedParameters { m: 1.0, k: 0.5 }).expect("parameters");
+type Started = Result<Motion, OpenError>;
+
+fn attracted(apart: f64) -> Started {
     let place = Vector3::new(0.25, 0.5, 1.0);
-    let initial = AttractedInitial {
-        X: Additive::new(place),
-        momentum_X: FieldMomentum(Vector3::x()),
-        Y: Additive::new(place + Vector3::z() * apart),
-        momentum_Y: FieldMomentum(Vector3::y()),
+    let given = given! {
+        m: 1.0, k: 0.5, X: place, momentum_X: Vector3::x(), Y: place + Vector3::z() * apart,
+        momentum_Y: Vector3::y(),
     };
-    model.start(initial, 0.01).map(|_| ())
+    TextModel::read(ATTRACTED).start(0.01, &given)
 }
 
-fn logarithmic(x: f64) -> Result<(), StartError> {
-    let model = Logarithmic::new(LogarithmicParameters { m: 1.0 }).expect("parameters");
-    let initial = LogarithmicInitial {
-        x: Additive::new(Vector1::new(x)),
-        momentum: FieldMomentum(Vector1::new(0.1)),
-    };
-    model.start(initial, 0.01).map(|_| ())
+fn logarithmic(x: f64) -> Started {
+    let given = given! { m: 1.0, x: x, momentum: 0.1 };
+    TextModel::read(LOGARITHMIC).start(0.01, &given)
 }
 
 #[test]
 fn a_start_where_nothing_is_defined_is_refused_for_that() {
-    let said = |found: Result<(), StartError>| found.expect_err("refused").to_string();
+    let said = |found: Started| found.expect_err("refused").to_string();
     let met = said(attracted(0.0));
     for words in ["|X_k - Y_k|", "start where the model is defined"] {
         assert!(met.contains(words), "{met}");
@@ -61,26 +53,18 @@ fn a_start_where_nothing_is_defined_is_refused_for_that() {
     assert!(attracted(1e-3).is_ok() && logarithmic(-0.5).is_ok());
 }
 
-clebsch::model! {
-    /// A number whose potential contains the step size, which has a name.
-    model Stepped {
-        time k step tau;
-        param m: Real;
-        field x: Real;
-        lagrangian = m*(next(x) - x)^2/(2*tau) + tau*log(1 + x + tau);
-    }
-}
+/// A number whose potential contains the step size, which has a name.
+const STEPPED: &str = "model Stepped {
+    time k step tau;
+    param m: Real;
+    field x: Real;
+    lagrangian = m*(next(x) - x)^2/(2*tau) + tau*log(1 + x + tau);
+}";
 
 #[test]
 fn an_argument_that_holds_the_step_is_refused_by_its_value_at_that_step() {
-    let model = Stepped::new(SteppedParameters { m: 1.0 }).expect("parameters");
-    let start = |tau: f64| {
-        let initial = SteppedInitial {
-            x: Additive::new(Vector1::new(-1.125)),
-            momentum: FieldMomentum(Vector1::new(0.1)),
-        };
-        model.start(initial, tau).map(|_| ())
-    };
+    let given = given! { m: 1.0, x: -1.125, momentum: 0.1 };
+    let start = |tau: f64| TextModel::read(STEPPED).start(tau, &given);
     // -1/16 with step size 1/16, and 1/16 with step size 3/16.
     let met = start(0.0625).expect_err("refused").to_string();
     assert!(met.contains("-0.0625"), "{met}");

@@ -2,10 +2,10 @@
 //! from the origin keep their spin, and small steps accumulate no rounding. Compared with double-double arithmetic and with
 //! invariants.
 
+use super::text_model::{Motion, TextModel, given};
 use clebsch::nalgebra::{Matrix3, SVector, Vector2, Vector3};
 use clebsch::{
-    Additive, BodyImpulse, BodyPlaneImpulse, DoubleDouble, FieldMomentum, PlaneMotion, Real,
-    RigidMotion, Rotation,
+    BodyImpulse, BodyPlaneImpulse, DoubleDouble, PlaneMotion, Real, RigidMotion, Rotation,
 };
 
 clebsch::model! {
@@ -33,92 +33,124 @@ clebsch::model! {
     }
 }
 
-clebsch::model! {
-    /// Three points that attract each other.
-    model ThreePoints {
-        param a, b, c, g: Real;
-        field X, Y, Z: Vec<3>;
-        let u = next(X) - X;
-        let v = next(Y) - Y;
-        let w = next(Z) - Z;
-        lagrangian = (a*dot(u, u) + b*dot(v, v) + c*dot(w, w))/(2*h)
-            + h*g*(a*b/sqrt(dot(X - Y, X - Y)) + a*c/sqrt(dot(X - Z, X - Z)) + b*c/sqrt(dot(Y - Z, Y - Z)));
-    }
-}
+/// Three points that attract each other.
+const THREE_POINTS: &str = "model ThreePoints {
+    param a, b, c, g: Real;
+    field X, Y, Z: Vec<3>;
+    let u = next(X) - X;
+    let v = next(Y) - Y;
+    let w = next(Z) - Z;
+    lagrangian = (a*dot(u, u) + b*dot(v, v) + c*dot(w, w))/(2*h)
+        + h*g*(a*b/sqrt(dot(X - Y, X - Y)) + a*c/sqrt(dot(X - Z, X - Z)) + b*c/sqrt(dot(Y - Z, Y - Z)));
+}";
 
 const STEPS: usize = 2_000;
 
-/// The results of a run: the spin in the body frame, and the linear momentum.
-type Momenta<T> = [Vec<T>; 2];
+/// The results of a run: the spin in the body frame, and the linear momentum; from the text, and in double-double arithmetic.
+type Momenta = [(Vec<f64>, Vec<DoubleDouble>); 2];
+
+type Exact = DoubleDouble;
+
+fn exact(x: f64) -> Exact {
+    Exact::from_f64(x)
+}
+
+/// The spin, the first `turns` numbers of the momentum in the body frame, and the linear momentum in space.
+fn momenta(motion: &mut Motion, turns: usize, exact: [&[Exact]; 2]) -> Momenta {
+    motion.steps(STEPS);
+    let (body, space) = (
+        motion.numbers("body_momentum"),
+        motion.numbers("spatial_momentum"),
+    );
+    [
+        (body[..turns].to_vec(), exact[0][..turns].to_vec()),
+        (space[turns..].to_vec(), exact[1][turns..].to_vec()),
+    ]
+}
 
 /// A body of this size, at this distance from the origin, after [`STEPS`] steps of `h`. Masses scale with the volume, so that
 /// accelerations do not depend on the size.
-fn in_space<T: Real>(size: f64, far: f64, h: f64) -> Momenta<T> {
-    let number = T::from_f64;
+fn in_space(size: f64, far: f64, h: f64) -> Momenta {
     let mass = size * size * size;
     let second = Matrix3::from_diagonal(&Vector3::new(1.0, 0.7, 0.4)) * (mass * size * size);
     let place = Vector3::new(0.6, -0.5, 0.4) * far;
-    let model = Tethered::<T>::new(TetheredParameters {
-        J: second.map(number),
-        m: number(mass),
-        k: number(mass * 20.0),
-        a: (Vector3::new(0.3, 0.2, -0.5) * size).map(number),
-        o: (place + Vector3::new(0.1, 0.2, 0.3)).map(number),
-    })
-    .expect("parameters");
+    let (k, a) = (mass * 20.0, Vector3::new(0.3, 0.2, -0.5) * size);
+    let o = place + Vector3::new(0.1, 0.2, 0.3);
     let inertia = Matrix3::identity() * second.trace() - second;
     let spin = inertia * Vector3::new(0.3, 1.0, -0.4);
     let linear = Vector3::new(0.3, -0.2, 0.5) * mass;
-    let given = [spin.x, spin.y, spin.z, linear.x, linear.y, linear.z];
+    let momentum = [spin.x, spin.y, spin.z, linear.x, linear.y, linear.z];
+    let start = RigidMotion {
+        rotation: Rotation::identity(),
+        translation: place,
+    };
+    let given = given! { J: second, m: mass, k: k, a: a, o: o, G: start, body_momentum: momentum };
+    let mut motion = TextModel::read(Tethered::<Exact>::SOURCE)
+        .start(h, &given)
+        .expect("start");
+
+    let model = Tethered::new(TetheredParameters {
+        J: second.map(exact),
+        m: exact(mass),
+        k: exact(k),
+        a: a.map(exact),
+        o: o.map(exact),
+    });
+    let model = model.expect("parameters");
     let initial = TetheredInitial {
         G: RigidMotion {
-            rotation: Rotation::<T>::identity(),
-            translation: place.map(number),
+            rotation: Rotation::identity(),
+            translation: place.map(exact),
         },
-        body_momentum: BodyImpulse(SVector::from(given).map(number)),
+        body_momentum: BodyImpulse(SVector::from(momentum).map(exact)),
     };
-    let (mut state, mut work) = model.start(initial, number(h)).expect("start");
+    let (mut state, mut work) = model.start(initial, exact(h)).expect("start");
     for _ in 0..STEPS {
         model.step(&mut state, &mut work).expect("step");
     }
     let (body, space) = (state.body_momentum().0, state.spatial_momentum().0);
-    [
-        body.as_slice()[..3].to_vec(),
-        space.as_slice()[3..].to_vec(),
-    ]
+    momenta(&mut motion, 3, [body.as_slice(), space.as_slice()])
 }
 
 /// The same in the plane.
-fn in_plane<T: Real>(size: f64, far: f64, h: f64) -> Momenta<T> {
-    let number = T::from_f64;
+fn in_plane(size: f64, far: f64, h: f64) -> Momenta {
     let mass = size * size;
     let place = Vector2::new(0.6, -0.5) * far;
-    let model = TetheredInPlane::<T>::new(TetheredInPlaneParameters {
-        I: number(mass * size * size),
-        m: number(mass),
-        k: number(mass * 20.0),
-        a: (Vector2::new(0.3, -0.5) * size).map(number),
-        o: (place + Vector2::new(0.1, 0.2)).map(number),
-    })
-    .expect("parameters");
-    let given = [0.7 * mass * size * size, 0.3 * mass, -0.2 * mass];
-    let initial = TetheredInPlaneInitial {
-        G: PlaneMotion::new(T::zero(), place.map(number)),
-        body_momentum: BodyPlaneImpulse(SVector::from(given).map(number)),
+    let (moment, k, a) = (
+        mass * size * size,
+        mass * 20.0,
+        Vector2::new(0.3, -0.5) * size,
+    );
+    let o = place + Vector2::new(0.1, 0.2);
+    let momentum = [0.7 * moment, 0.3 * mass, -0.2 * mass];
+    let given = given! {
+        I: moment, m: mass, k: k, a: a, o: o, G: PlaneMotion::new(0.0, place), body_momentum: momentum,
     };
-    let (mut state, mut work) = model.start(initial, number(h)).expect("start");
+    let text = TetheredInPlane::<Exact>::SOURCE;
+    let mut motion = TextModel::read(text).start(h, &given).expect("start");
+
+    let model = TetheredInPlane::new(TetheredInPlaneParameters {
+        I: exact(moment),
+        m: exact(mass),
+        k: exact(k),
+        a: a.map(exact),
+        o: o.map(exact),
+    });
+    let model = model.expect("parameters");
+    let initial = TetheredInPlaneInitial {
+        G: PlaneMotion::new(exact(0.0), place.map(exact)),
+        body_momentum: BodyPlaneImpulse(SVector::from(momentum).map(exact)),
+    };
+    let (mut state, mut work) = model.start(initial, exact(h)).expect("start");
     for _ in 0..STEPS {
         model.step(&mut state, &mut work).expect("step");
     }
     let (body, space) = (state.body_momentum().0, state.spatial_momentum().0);
-    [
-        body.as_slice()[..1].to_vec(),
-        space.as_slice()[1..].to_vec(),
-    ]
+    momenta(&mut motion, 1, [body.as_slice(), space.as_slice()])
 }
 
 /// The largest deviation from the double-double results, relative to their size.
-fn gap(found: &[f64], exact: &[DoubleDouble]) -> f64 {
+fn gap((found, exact): &(Vec<f64>, Vec<Exact>)) -> f64 {
     let off = found.iter().zip(exact);
     let off = off.fold(0.0, |sum: f64, (x, y)| {
         sum.hypot((DoubleDouble::from_f64(*x) - *y).magnitude())
@@ -131,16 +163,11 @@ fn spin_of_a_small_body_far_away_is_kept() {
     for size in [1.0, 1e-2, 1e-3] {
         for far in [0.0, 1.0, 1e3] {
             for h in [1e-4, 1e-6] {
-                let space = [in_space::<f64>(size, far, h), in_plane::<f64>(size, far, h)];
-                let exact = [
-                    in_space::<DoubleDouble>(size, far, h),
-                    in_plane::<DoubleDouble>(size, far, h),
-                ];
-                for (found, exact) in space.iter().zip(&exact) {
+                for found in [in_space(size, far, h), in_plane(size, far, h)] {
                     // The rounding error of the attitude acts as a torque. For the smallest body it changes the spin by a relative
                     // 4e3 per unit time. A moment about the origin would also lose 1e-16 |x| / size^2, at worst 1e-7.
                     let gathered = f64::EPSILON * (1.0 + 4e3 * STEPS as f64 * h);
-                    let [spin, linear] = [0, 1].map(|k| gap(&found[k], &exact[k]));
+                    let [spin, linear] = found.each_ref().map(gap);
                     let case = format!("size {size}, {far} away, h = {h}");
                     assert!(
                         spin < 16.0 * f64::EPSILON + gathered,
@@ -158,40 +185,27 @@ fn spin_of_a_small_body_far_away_is_kept() {
 
 #[test]
 fn small_steps_gather_no_rounding() {
-    let point = |x: f64, y: f64, z: f64| Additive::new(Vector3::new(x, y, z) * 100.0);
-    let momentum = |x: f64, y: f64, z: f64| FieldMomentum(Vector3::new(x, y, z));
-    let model = ThreePoints::new(ThreePointsParameters {
-        a: 1.0,
-        b: 0.7,
-        c: 0.3,
-        g: 1e-3,
-    })
-    .expect("parameters");
-    let initial = ThreePointsInitial {
-        X: point(1.0, 0.1, 0.3),
-        Y: point(-0.8, 0.4, -0.7),
-        Z: point(0.3, -1.7, 0.6),
-        momentum_X: momentum(0.13, 0.44, -0.2),
-        momentum_Y: momentum(-0.3, -0.31, 0.41),
-        momentum_Z: momentum(0.21, 0.05, -0.11),
+    let given = given! {
+        a: 1.0, b: 0.7, c: 0.3, g: 1e-3,
+        X: [100.0, 10.0, 30.0], Y: [-80.0, 40.0, -70.0], Z: [30.0, -170.0, 60.0],
+        momentum_X: [0.13, 0.44, -0.2], momentum_Y: [-0.3, -0.31, 0.41], momentum_Z: [0.21, 0.05, -0.11],
     };
-    let told = |state: &ThreePointsState| {
-        let parts = [
-            (state.X(), state.momentum_X()),
-            (state.Y(), state.momentum_Y()),
-            (state.Z(), state.momentum_Z()),
-        ];
-        let linear = parts.iter().map(|(_, p)| p.0).sum::<Vector3<f64>>();
-        let angular = parts.iter().map(|(x, p)| x.matrix().cross(&p.0));
-        (linear, angular.sum::<Vector3<f64>>(), model.energy(state))
+    let told = |motion: &Motion| {
+        let parts = ["X", "Y", "Z"].map(|name| {
+            let momentum = motion.vector::<3>(&format!("momentum_{name}"));
+            (motion.vector::<3>(name), momentum)
+        });
+        let linear = parts.iter().map(|(_, p)| p).sum::<Vector3<f64>>();
+        let angular = parts.iter().map(|(x, p)| x.cross(p));
+        (linear, angular.sum::<Vector3<f64>>(), motion.energy())
     };
     for h in [1e-6, 1e-8] {
-        let (mut state, mut work) = model.start(initial, h).expect("start");
-        let before = told(&state);
-        for _ in 0..100_000 {
-            model.step(&mut state, &mut work).expect("step");
-        }
-        let after = told(&state);
+        let mut motion = TextModel::read(THREE_POINTS)
+            .start(h, &given)
+            .expect("start");
+        let before = told(&motion);
+        motion.steps(100_000);
+        let after = told(&motion);
         // Rounding of the sums themselves. With one number per value, the drifts are 7e-12, 1e-9 and 5e-12.
         let linear = (after.0 - before.0).norm();
         let angular = (after.1 - before.1).norm() / before.1.norm();

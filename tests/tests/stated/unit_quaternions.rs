@@ -2,19 +2,16 @@
 //! of the unreduced action, and the error of a step size that is too large. Covers the gallery, models stated here, and random
 //! states. A wrong body or node fails.
 
-#![allow(non_snake_case)]
-
+use super::text_model::{Given, TextModel, given};
+use clebsch::card::Settings;
 use clebsch::integrate::{Composition, CompositionOrder, Ensemble, Model, Stepper};
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::solvers::unit_quaternions::QuaternionError;
-use clebsch::{BodyMomentum, Rotation, SpatialMomentum, StartError, StepCause, UnitQuaternion};
+use clebsch::{BodyMomentum, Rotation, StartError, StepCause, UnitQuaternion};
 use clebsch_core::derive::select_solver::Method;
 use clebsch_core::derive_source;
 use clebsch_models::cayley_klein::{
     CayleyKlein, CayleyKleinInitial, CayleyKleinParameters, CayleyKleinState,
-};
-use clebsch_models::cayley_klein_spatial::{
-    CayleyKleinSpatial, CayleyKleinSpatialInitial, CayleyKleinSpatialParameters,
 };
 use clebsch_oracle::oracle::action::quaternions::{self, halves, left};
 use clebsch_oracle::oracle::action::{DiscreteAction, Side, stationarity};
@@ -22,34 +19,30 @@ use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::square::Square;
 use clebsch_oracle::physics::measure::worse;
 
-clebsch::model! {
-    /// A top in the body frame; its inertia has other axes.
-    model QuaternionTop {
-        param a0, b, a13, a14: Real;
-        param S: Sym<3>;
-        param u, z: Vec<3>;
-        group q: SU<2> velocity W;
-        advected Γ: Vec<3> = rot(q)^T*z;
-        constraint next(q) = q*W;
-        constraint next(Γ) = rot(W)^T*Γ;
-        lagrangian = a0*dot(im(W), S*im(W))/h + b*re(W)/h + a13*dot(Γ, S*Γ) + a14*dot(u, Γ);
-    }
-}
+/// A top in the body frame; its inertia has other axes.
+const QUATERNION_TOP: &str = "model QuaternionTop {
+    param a0, b, a13, a14: Real;
+    param S: Sym<3>;
+    param u, z: Vec<3>;
+    group q: SU<2> velocity W;
+    advected Γ: Vec<3> = rot(q)^T*z;
+    constraint next(q) = q*W;
+    constraint next(Γ) = rot(W)^T*Γ;
+    lagrangian = a0*dot(im(W), S*im(W))/h + b*re(W)/h + a13*dot(Γ, S*Γ) + a14*dot(u, Γ);
+}";
 
-clebsch::model! {
-    /// The same in the space frame: body and lever arm are advected.
-    model QuaternionTopSpatial {
-        param a0, b, a13, a14: Real;
-        param z: Vec<3>;
-        group q: SU<2> velocity w;
-        advected S: Sym<3>;
-        advected u: Vec<3>;
-        constraint next(q) = w*q;
-        constraint next(S) = rot(w)*S*rot(w)^T;
-        constraint next(u) = rot(w)*u;
-        lagrangian = a0*dot(im(w), S*im(w))/h + b*re(w)/h + a13*dot(z, S*z) + a14*dot(u, z);
-    }
-}
+/// The same in the space frame: body and lever arm are advected.
+const QUATERNION_TOP_SPATIAL: &str = "model QuaternionTopSpatial {
+    param a0, b, a13, a14: Real;
+    param z: Vec<3>;
+    group q: SU<2> velocity w;
+    advected S: Sym<3>;
+    advected u: Vec<3>;
+    constraint next(q) = w*q;
+    constraint next(S) = rot(w)*S*rot(w)^T;
+    constraint next(u) = rot(w)*u;
+    lagrangian = a0*dot(im(w), S*im(w))/h + b*re(w)/h + a13*dot(z, S*z) + a14*dot(u, z);
+}";
 
 /// Tolerance of a solved equation, relative to its terms. Small steps are differences of attitudes, whose rounding matters more
 /// because the terms have the size of the rotation angle. Errors of three nodes and two edges add up.
@@ -88,24 +81,25 @@ fn attitude(source: &mut Source) -> UnitQuaternion {
 }
 
 /// Attitudes at three nodes from a start; `None` if a step fails.
-fn three<M: Model<Scalar = f64>>(
-    model: &M,
-    start: Option<M::State>,
-    h: f64,
-    q: impl Fn(&M::State) -> UnitQuaternion,
-) -> Option<[UnitQuaternion; 3]> {
-    let mut state = start?;
-    let mut work = Stepper::workspace(model, &state, h).ok()?;
-    let first = q(&state);
-    model.advance(&mut state, &mut work).ok()?;
-    let second = q(&state);
-    model.advance(&mut state, &mut work).ok()?;
-    Some([first, second, q(&state)])
+fn three(model: &TextModel, h: f64, given: &Given) -> Option<[UnitQuaternion; 3]> {
+    let mut motion = model
+        .start_with(Settings::step(h).to_inquire(), given)
+        .ok()?;
+    let mut out = [UnitQuaternion::identity(); 3];
+    for (i, q) in out.iter_mut().enumerate() {
+        if i > 0 {
+            motion.step().ok()?;
+        }
+        let own = motion.numbers("q");
+        *q = UnitQuaternion::from_components([own[0], own[1], own[2], own[3]]).expect("unit");
+    }
+    Some(out)
 }
 
 #[test]
 fn steps_of_the_gallery_make_the_unreduced_action_stationary() {
     let mut source = Source::seeded(61);
+    let [body, space] = ["cayley-klein", "cayley-klein-spatial"].map(TextModel::gallery);
     let (mut worst, mut made) = (0.0_f64, 0);
     for case in 0..4000 {
         let mut action = quaternions::CayleyKlein::random(&mut source, Side::Body);
@@ -113,20 +107,12 @@ fn steps_of_the_gallery_make_the_unreduced_action_stationary() {
         let (h, c) = (action.h, action.c);
         let (q, momentum) = (attitude(&mut source), Vector3::from(source.vector::<3>()));
         let inertia = Matrix3::from_diagonal(&Vector3::from(action.moments));
-        let body = CayleyKlein::new(CayleyKleinParameters { I: inertia, c }).expect("valid");
-        let start = body.begin(CayleyKleinInitial {
-            q,
-            body_momentum: BodyMomentum(momentum),
-        });
-        let seen = three(&body, start.ok(), h, CayleyKleinState::q);
+        let given = given! { I: inertia, c: c, q: q, body_momentum: momentum };
+        let seen = three(&body, h, &given);
         let r = q.rotation().matrix();
-        let space = CayleyKleinSpatial::new(CayleyKleinSpatialParameters { c }).expect("valid");
-        let start = space.begin(CayleyKleinSpatialInitial {
-            q,
-            spatial_momentum: SpatialMomentum(r * momentum),
-            I: r * inertia * r.transpose(),
-        });
-        let carried = three(&space, start.ok(), h, |s| s.q());
+        let moved = r * inertia * r.transpose();
+        let given = given! { c: c, q: q, spatial_momentum: r * momentum, I: moved };
+        let carried = three(&space, h, &given);
         assert_eq!(seen.is_some(), carried.is_some(), "case {case}");
         let (Some(seen), Some(carried)) = (seen, carried) else {
             continue;
@@ -153,6 +139,7 @@ fn steps_of_the_gallery_make_the_unreduced_action_stationary() {
 #[test]
 fn steps_of_tops_stated_here_do_so_too() {
     let mut source = Source::seeded(62);
+    let [body, space] = [QUATERNION_TOP, QUATERNION_TOP_SPATIAL].map(TextModel::read);
     let (mut worst, mut apart, mut made) = (0.0_f64, 0.0_f64, 0);
     for _ in 0..4000 {
         let mut action = quaternions::QuaternionTop::random(&mut source);
@@ -163,37 +150,16 @@ fn steps_of_tops_stated_here_do_so_too() {
         action.weights[1] = b / h;
         let [a0, _, a13, a14] = action.weights;
         let q = attitude(&mut source);
-        let S = Matrix3::from_fn(|i, j| action.symmetric.0[i][j]);
+        let s = Matrix3::from_fn(|i, j| action.symmetric.0[i][j]);
         let (u, z) = (Vector3::from(action.lever), Vector3::from(action.vertical));
         let momentum = Vector3::from(source.vector::<3>());
+        let common = given! { a0: a0, b: b, a13: a13, a14: a14, z: z, q: q };
+        let own = given! { S: s, u: u, body_momentum: momentum };
         // Not every random matrix is an admissible inertia.
-        let Ok(body) = QuaternionTop::new(QuaternionTopParameters {
-            a0,
-            b,
-            a13,
-            a14,
-            S,
-            u,
-            z,
-        }) else {
-            continue;
-        };
-        let start = body.begin(QuaternionTopInitial {
-            q,
-            body_momentum: BodyMomentum(momentum),
-        });
-        let seen = three(&body, start.ok(), h, QuaternionTopState::q);
+        let seen = three(&body, h, &[common.clone(), own].concat());
         let r = q.rotation().matrix();
-        let space =
-            QuaternionTopSpatial::new(QuaternionTopSpatialParameters { a0, b, a13, a14, z });
-        let space = space.expect("valid");
-        let start = space.begin(QuaternionTopSpatialInitial {
-            q,
-            spatial_momentum: SpatialMomentum(r * momentum),
-            S: r * S * r.transpose(),
-            u: r * u,
-        });
-        let carried = three(&space, start.ok(), h, QuaternionTopSpatialState::q);
+        let own = given! { S: r * s * r.transpose(), u: r * u, spatial_momentum: r * momentum };
+        let carried = three(&space, h, &[common, own].concat());
         let (Some(seen), Some(carried)) = (seen, carried) else {
             continue;
         };
