@@ -1,6 +1,6 @@
 //! A recorded evaluation: scalar operations in single assignment without duplicates, and the decisions of the recording.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// A function that the tape calls as a unit, such as an elimination with pivoting. Arguments: the sizes it needs, the inputs, and
 /// the outputs to fill.
@@ -268,7 +268,7 @@ impl PartialEq for Tape {
 #[derive(Clone, Debug, Default)]
 pub struct Decisions {
     guards: Vec<Guard>,
-    asked: HashMap<Test, bool>,
+    asked: FxHashMap<Test, bool>,
 }
 
 /// A tape under construction.
@@ -281,9 +281,9 @@ pub struct Recording {
     guards: Vec<Guard>,
     calls: Vec<Call>,
     functions: Vec<Whole>,
-    called: HashMap<Call, u32>,
-    known: HashMap<Step, Scalar>,
-    asked: HashMap<Test, bool>,
+    called: FxHashMap<Call, u32>,
+    known: FxHashMap<Step, Scalar>,
+    asked: FxHashMap<Test, bool>,
 }
 
 impl Recording {

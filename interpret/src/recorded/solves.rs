@@ -5,7 +5,7 @@ use super::equations::{EquationValues, Equations, NewtonFunction, Recorded};
 use super::form::value_of;
 use super::function::run as run_alone;
 use super::load;
-use super::traced::{Traced, aside, cut, model, steps, with_newest_cut};
+use super::traced::{Traced, aside, cut, model, steps, with_newest_cut, with_some_cut};
 use crate::code::{Code, Exit, Iterate, Places, unfit};
 use crate::map_scalar::{map_scalar, numbers};
 use crate::newton::{AtTrial, SearchValue, Solve, Sought, matrix, solution_value, vector};
@@ -298,16 +298,13 @@ pub fn remember(
     let (node, first) = (unfit(count(&node))?, unfit(first_count(places))?);
     // The state has advanced by one node.
     let node = node - (first - 1);
-    let is_noted = with_newest_cut(|cut| {
+    let noted = with_some_cut(|cut| {
         let solved = &mut cut.solved;
-        let is_solution = all
-            .iter()
-            .map(|x| x.at())
-            .eq(solved.solution.iter().map(|x| Some(*x)));
-        solved.remembers |= is_solution;
-        is_solution && node == solved.node
+        let solution = solved.solution.iter().map(|x| Some(*x));
+        let is_own = node == solved.node && all.iter().map(|x| x.at()).eq(solution);
+        is_own.then(|| solved.remembers = true)
     });
-    unfit(is_noted.filter(|noted| *noted))?;
+    unfit(noted)?;
     Ok(Value::Unit)
 }
 

@@ -107,6 +107,11 @@ pub fn with_newest_cut<R>(what: impl FnOnce(&mut RecordingPause) -> R) -> Option
     noted(|here| here.cuts.last_mut().map(what)).flatten()
 }
 
+/// Changes the first pause for which `what` gives a value.
+pub fn with_some_cut<R>(what: impl FnMut(&mut RecordingPause) -> Option<R>) -> Option<R> {
+    noted(|here| here.cuts.iter_mut().find_map(what)).flatten()
+}
+
 /// Changes the recording, if there is one.
 fn noted<R>(what: impl FnOnce(&mut Here) -> R) -> Option<R> {
     HERE.with_borrow_mut(|here| here.as_mut().map(what))
