@@ -46,11 +46,11 @@ pub fn onto_constraints(
     node: &[f64],
 ) -> Result<Option<ProjectedStart>, String> {
     let mut holds = stated.holds.iter();
-    if stated.holds.is_empty() || holds.any(|h| h.of_sums && is_long(&stated, setup, h)) {
+    if stated.holds.is_empty() || holds.any(|h| h.of_sums && is_long(stated, setup, h)) {
         return Ok(None);
     }
-    let moving = all_moving(&stated, setup);
-    let start = rates(&stated, setup, node, &moving)?;
+    let moving = all_moving(stated, setup);
+    let start = rates(stated, setup, node, &moving)?;
     let worst = start.iter().max_by(|a, b| ratio(a).total_cmp(&ratio(b)));
     let Some(worst) = worst.filter(|worst| ratio(worst) > 1.0) else {
         return Ok(None);
@@ -65,8 +65,8 @@ pub fn onto_constraints(
     let mut rates_here = start.clone();
     for _ in 0..CORRECTIONS {
         let change = correction(&rates_here, count);
-        let next = changed(&stated, setup, &moving, &at, &change).ok_or("sizes do not match")?;
-        let rates_next = rates(&stated, setup, &next, &moving)?;
+        let next = changed(stated, setup, &moving, &at, &change).ok_or("sizes do not match")?;
+        let rates_next = rates(stated, setup, &next, &moving)?;
         let left_next = most(&rates_next);
         // Stop when only rounding is left.
         if left_next >= left || left_next.is_nan() {

@@ -51,7 +51,7 @@ pub fn held(
                 }
                 gradients.push(Gradient(gradient));
                 if x.error.is_finite() && !(hold.of_sums && is_long(stated, setup, hold)) {
-                    parts.push(Part::held(&hold.name, index, node, &x));
+                    parts.push(Part::held(&hold.name, index, node, x));
                 }
             }
         }

@@ -64,13 +64,13 @@ impl Undefined {
     pub fn find(stated: &Stated, setup: &Setup, node: &[f64]) -> Result<Option<Self>, String> {
         let moving = all_moving(stated, setup);
         let by = varied(&moving);
-        let scene = Scene::new(&stated, setup, [node, node], &by);
+        let scene = Scene::new(stated, setup, [node, node], &by);
         // The root of zero is reported only if no part is infinite.
         let kinds: [FaultTest; 2] = [&|scene, e, here| fault(scene, e, here), &root_of_zero];
         for wanted in kinds {
             let mut first: Option<(i64, Undefined)> = None;
             for term in &stated.terms {
-                for index in range(&stated, setup, term).unwrap_or(0..=0) {
+                for index in range(stated, setup, term).unwrap_or(0..=0) {
                     if first.as_ref().is_some_and(|(own, _)| *own <= index) {
                         break;
                     }
