@@ -164,7 +164,7 @@ impl Scene<'_> {
         sum.ok_or_else(|| "an empty sum".to_owned())
     }
 
-    /// The trace. Of a product, only the entries on the diagonal are computed.
+    /// The trace. A product needs only the entries on its diagonal.
     fn trace(&self, inner: &Expression, here: Here) -> Evaluated {
         if let Kind::Product(list) = &inner.kind
             && let [rest @ .., last] = list.as_slice()

@@ -22,7 +22,7 @@ pub struct Slope {
     pub error: f64,
 }
 
-/// Derivatives by several variables. Those of one rotation fit without an allocation.
+/// Derivatives by several variables. The derivatives by one rotation fit without an allocation.
 pub type Slopes = SmallVec<[Slope; 3]>;
 
 /// A number, its derivatives by the variables that it depends on, and bounds on the errors of all of them.

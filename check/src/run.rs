@@ -224,8 +224,8 @@ impl fmt::Display for Verdict {
         if self.is_empty() {
             return write!(
                 f,
-                ". FAILURE OF THE CHECK: {} equations hold exactly, and they also hold if the state changes by a millionth, so \
-                 the check has measured nothing",
+                ". FAILURE OF THE CHECK: {} equations hold exactly, and they also hold if the state changes, so the check has \
+                 measured nothing",
                 self.tested
             );
         }

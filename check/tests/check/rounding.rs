@@ -190,3 +190,25 @@ fn steps_with_exact_arithmetic_hold() {
     }
     assert!(verdict.holds(), "{verdict}");
 }
+
+/// A weight at rest at zero, which a large force balances: no number moves, and every residual is exactly zero. A small
+/// change would hide in the rounding of the forces.
+#[test]
+fn large_forces_that_balance_at_rest_hold() {
+    let text = "model Balanced {
+        param m, g, F: Real;
+        field z: Real;
+        lagrangian = m*(next(z) - z)^2/(2*h) - h*m*g*z + h*F*z;
+    }";
+    let parameters = [
+        ("m", 1, &[2.0][..]),
+        ("g", 1, &[9.81][..]),
+        ("F", 1, &[19.62][..]),
+    ];
+    let judge = judge(text, 3600.0, &parameters, &[("z", 1), ("momentum", 1)]);
+    let mut verdict = Verdict::default();
+    for step in 1..=20 {
+        verdict.take(step, judge.step(step, &[0.0, 0.0], &[0.0, 0.0]));
+    }
+    assert!(verdict.holds(), "{verdict}");
+}

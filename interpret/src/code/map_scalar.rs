@@ -4,20 +4,16 @@ use super::{Arm, Code, Evaluated, Library, Pattern, Places, Routine, unfit};
 use crate::map_scalar::map_scalar;
 use crate::value::Value;
 use clebsch::Real;
+use std::cell::RefCell;
+use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
-/// The functions that are being changed: a function, and the functions that call it.
-#[derive(Clone, Copy)]
-struct Callers<'a> {
-    own: *const (),
-    outer: Option<&'a Callers<'a>>,
-}
+/// A function over another scalar.
+type Changed<U> = Arc<OnceLock<Routine<U>>>;
 
-impl Callers<'_> {
-    fn include(&self, routine: *const ()) -> bool {
-        self.own == routine || self.outer.is_some_and(|outer| outer.include(routine))
-    }
-}
+/// The functions that have been changed, by address; `None` while a function is being changed. Each is changed once, or a step
+/// with many blocks would grow without bound: the refusal of each block calls the whole step.
+type Known<U> = RefCell<HashMap<*const (), Option<Changed<U>>>>;
 
 /// A call of a function by itself, which only a refused step makes. If it runs over another scalar, clebsch computes with
 /// plain numbers instead.
@@ -38,17 +34,24 @@ impl<T: Real> Routine<T> {
 impl<T: Real> Code<T> {
     /// As [`Routine::over`].
     pub fn map_scalar<U: Library>(&self, change: fn(T) -> U) -> Option<Code<U>> {
-        let callers = None;
-        Change { change, callers }.code(self)
+        let known = &Known::default();
+        Change { change, known }.code(self)
     }
 }
 
 /// A change of the scalar.
-#[derive(Clone, Copy)]
-struct Change<'a, T, U> {
+struct Change<'a, T, U: Real> {
     change: fn(T) -> U,
-    callers: Option<&'a Callers<'a>>,
+    known: &'a Known<U>,
 }
+
+impl<T, U: Real> Clone for Change<'_, T, U> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T, U: Real> Copy for Change<'_, T, U> {}
 
 impl<T: Real, U: Library> Change<'_, T, U> {
     #[inline(never)]
@@ -126,20 +129,21 @@ impl<T: Real, U: Library> Change<'_, T, U> {
     #[inline(never)]
     fn call(self, routine: &Arc<OnceLock<Routine<T>>>, given: &[Code<T>]) -> Option<Code<U>> {
         let own = Arc::as_ptr(routine).cast::<()>();
-        if self.callers.is_some_and(|callers| callers.include(own)) {
-            return Some(Code::Special(recursive, Vec::new(), "recursive".into()));
-        }
-        let inside = Change {
-            change: self.change,
-            callers: Some(&Callers {
-                own,
-                outer: self.callers,
-            }),
+        let known = self.known.borrow().get(&own).cloned();
+        let changed = match known {
+            Some(Some(changed)) => changed,
+            Some(None) => return Some(Code::Special(recursive, Vec::new(), "recursive".into())),
+            None => {
+                self.known.borrow_mut().insert(own, None);
+                let Routine { places, body } = routine.get()?;
+                let body = self.code(body)?;
+                let places = *places;
+                let changed = Arc::new(OnceLock::from(Routine { places, body }));
+                let shared = Some(changed.clone());
+                self.known.borrow_mut().insert(own, shared);
+                changed
+            }
         };
-        let routine = routine.get()?;
-        let body = inside.code(&routine.body)?;
-        let places = routine.places;
-        let changed = Arc::new(OnceLock::from(Routine { places, body }));
         Some(Code::Routine(changed, self.all(given)?))
     }
 
