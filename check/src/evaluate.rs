@@ -117,7 +117,6 @@ impl Scene<'_> {
             Kind::Call(f, list) => match (f.as_str(), list.as_slice()) {
                 ("next" | "prev", [inner] | [inner, _]) => self.value(inner, here.within(e)),
                 ("sum", [inner, ..]) => self.summed(e, inner, here),
-                ("tr", [inner]) => self.trace(inner, here),
                 (name, list) => {
                     let values: Result<Vec<Value>, String> =
                         list.iter().map(|a| self.value(a, here)).collect();
@@ -162,28 +161,6 @@ impl Scene<'_> {
             });
         }
         sum.ok_or_else(|| "an empty sum".to_owned())
-    }
-
-    /// The trace. A product needs only the entries on its diagonal.
-    fn trace(&self, inner: &Expression, here: Here) -> Evaluated {
-        if let Kind::Product(list) = &inner.kind
-            && let [rest @ .., last] = list.as_slice()
-            && let [_, ..] = rest
-        {
-            let (rest, last) = (self.product(rest, here)?, self.value(last, here)?);
-            let trace = match (&rest, &last) {
-                (Value::Known(a), Value::Known(b)) => a.trace_of_product(b),
-                _ => None,
-            };
-            return match trace {
-                Some(trace) => Ok(Value::number(trace)),
-                None => {
-                    let product = rest.times(&last).ok_or_else(|| misfit("product"))?;
-                    called("tr", &[product], false)
-                }
-            };
-        }
-        called("tr", &[self.value(inner, here)?], self.is_quaternion(inner))
     }
 
     /// Evaluates a product that ends in a vector from the right, which needs less work and causes less rounding.

@@ -116,39 +116,18 @@ impl Matrix {
         (self.cols == other.rows).then(|| {
             Self::from_entries(self.rows, other.cols, |i, j| {
                 let mut sum = Number::default();
-                self.add_product_entry(other, i, j, &mut sum);
+                for k in 0..self.cols {
+                    let a = self.entries.get(i * self.cols + k);
+                    let b = other.entries.get(k * other.cols + j);
+                    if let (Some(a), Some(b)) = (a, b)
+                        && !a.is_zero()
+                        && !b.is_zero()
+                    {
+                        sum.add_product(a, b);
+                    }
+                }
                 sum
             })
-        })
-    }
-
-    /// Adds an entry of the product with `other` to `sum`.
-    fn add_product_entry(&self, other: &Self, i: usize, j: usize, sum: &mut Number) {
-        for k in 0..self.cols {
-            let a = self.entries.get(i * self.cols + k);
-            let b = other.entries.get(k * other.cols + j);
-            if let (Some(a), Some(b)) = (a, b)
-                && !a.is_zero()
-                && !b.is_zero()
-            {
-                sum.add_product(a, b);
-            }
-        }
-    }
-
-    /// The trace of the product with a matrix of the transposed size; `None` if an operand is a number.
-    #[must_use]
-    pub fn trace_of_product(&self, other: &Self) -> Option<Number> {
-        let fits = self.size() == (other.cols, other.rows) && self.rows > 1 && self.cols > 1;
-        fits.then(|| {
-            let mut sum = Number::default();
-            for i in 0..self.rows {
-                // Each entry is summed before it is added, as in the trace of the product.
-                let mut entry = Number::default();
-                self.add_product_entry(other, i, i, &mut entry);
-                sum = sum.plus(&entry);
-            }
-            sum
         })
     }
 

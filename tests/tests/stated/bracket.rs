@@ -2,6 +2,7 @@
 //! sides, with tensors and with several bodies. A bracket with a wrong sign fails, and so do quantities from different nodes. The
 //! derivatives are differences of steps; the tests of the gallery take exact derivatives.
 
+use super::stated_models::{COUPLED_BODIES, HEAVY_TOP_SPATIAL};
 use super::text_model::{Given, Motion, TextModel, given};
 use clebsch::Rotation;
 use clebsch::card::Settings;
@@ -27,29 +28,6 @@ const TOP: &str = "model Top {
     constraint next(Λ) = Λ*Ω;
     constraint next(Γ) = Ω^T*Γ;
     lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);
-}";
-const TOP_IN_SPACE: &str = "model TopInSpace {
-    param w: Real;
-    param z: Vec<3>;
-    group Λ: SO<3> velocity ω;
-    advected J: Sym<3>;
-    advected chi: Vec<3>;
-    constraint next(Λ) = ω*Λ;
-    constraint next(J) = ω*J*ω^T;
-    constraint next(chi) = ω*chi;
-    lagrangian = -tr(ω*J)/h - h*w*dot(chi, z);
-}";
-const JOINED: &str = "model Joined {
-    param J1, J2: Sym<3>;
-    param d1, d2: Vec<3>;
-    param eps: Real;
-    group Λ1: SO<3> velocity Ω1;
-    group Λ2: SO<3> velocity Ω2;
-    advected R: SO<3> = Λ1^T*Λ2;
-    constraint next(Λ1) = Λ1*Ω1;
-    constraint next(Λ2) = Λ2*Ω2;
-    constraint next(R) = Ω1^T*R*Ω2;
-    lagrangian = -(tr(J1*Ω1) + tr(J2*Ω2) + eps*dot((Ω1 - Id)*d1, R*(Ω2 - Id)*d2))/h;
 }";
 
 /// Tolerance relative to the largest entry, well above the rounding error of a product of three matrices with up to twelve rows and
@@ -273,7 +251,7 @@ fn top_in_space(draws: &mut Draws) -> Step {
         ("J", "J", Varies::Symmetric),
         ("chi", "chi", Varies::Freely),
     ];
-    step(TOP_IN_SPACE, &quantities, false, &|moved| {
+    step(HEAVY_TOP_SPATIAL, &quantities, false, &|moved| {
         let mut j = poinsot(1.0);
         for ((r, c), x) in UPPER.into_iter().zip(&moved[3..]) {
             j[(r, c)] += x;
@@ -294,7 +272,7 @@ fn joined(draws: &mut Draws) -> Step {
         ("μ2", "body_momentum_Λ2", Varies::Freely),
         ("R", "R", Varies::Turning),
     ];
-    step(JOINED, &quantities, false, &|moved| {
+    step(COUPLED_BODIES, &quantities, false, &|moved| {
         given! {
             J1: poinsot(1.0), J2: poinsot(1.2), d1: [0.3, 0.0, 0.5], d2: [-0.2, 0.4, 0.1], eps: 0.5,
             Λ1: one, body_momentum_Λ1: first + three(moved, 0),

@@ -53,7 +53,7 @@ const PAIR_UNREDUCED: &str = "model PairUnreduced {
 }";
 
 /// An elastic body, its deformation stated in space.
-const ELASTIC_IN_SPACE: &str = "model ElasticInSpace {
+pub(crate) const ELASTIC_IN_SPACE: &str = "model ElasticInSpace {
     param s: Real;
     group Q: GL<3> velocity V;
     advected I: Sym<3>;

@@ -18,7 +18,7 @@ const FREE_BODY_SPATIAL: &str = "model FreeBodySpatial {
 }";
 
 /// Heavy top, spatial representation.
-const HEAVY_TOP_SPATIAL: &str = "model HeavyTopSpatial {
+pub(crate) const HEAVY_TOP_SPATIAL: &str = "model HeavyTopSpatial {
     param w: Real;
     param z: Vec<3>;
     group Λ: SO<3> velocity ω;
@@ -31,7 +31,7 @@ const HEAVY_TOP_SPATIAL: &str = "model HeavyTopSpatial {
 }";
 
 /// Two bodies with a spherical joint (thesis 2.8, corrected).
-const COUPLED_BODIES: &str = "model CoupledBodies {
+pub(crate) const COUPLED_BODIES: &str = "model CoupledBodies {
     param J1, J2: Sym<3>;
     param d1, d2: Vec<3>;
     param eps: Real;
