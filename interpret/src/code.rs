@@ -6,6 +6,7 @@ mod parts;
 mod sweep;
 
 use crate::failure::Failure;
+use crate::listing::{FieldNames, Section};
 use crate::recorded::Traced;
 use crate::sites::Column;
 use crate::value::{Frame, Layout, Value};
@@ -145,6 +146,11 @@ pub trait Iterate<T: Real>: std::fmt::Debug + Send + Sync {
     /// # Errors
     /// [`Exit`] with the error of the step.
     fn run(&self, places: &mut Places<T>) -> Result<Value<T>, Exit<T>>;
+
+    /// The recorded body of a loop over sites as text.
+    fn section(&self, _names: &FieldNames) -> Option<Section> {
+        None
+    }
 
     /// The loop as a part of a recording, if it can be recorded.
     fn recorded(self: Arc<Self>) -> Option<Arc<dyn Iterate<Traced>>> {

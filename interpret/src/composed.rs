@@ -3,7 +3,7 @@
 use crate::code::Places;
 use crate::opened::{Opened, at};
 use crate::packed::Packed;
-use crate::recorded::{Fixed, Recorded};
+use crate::recorded::Recorded;
 use crate::running::{put, run};
 use crate::value::Value;
 use clebsch::card::Settings;
@@ -18,24 +18,20 @@ pub struct Model {
     pub model: Value<f64>,
     /// Any state, as a template for the numbers of a state.
     pub state: Value<f64>,
-    /// The given parameters, and the step size of the whole composition.
-    pub fixed: Fixed,
 }
 
 /// The workspace of one substep of a composition: its own places, and tapes for its own step size.
 #[derive(Clone, Debug)]
 pub struct Part {
     places: Places<f64>,
-    recorded: Option<Recorded>,
+    recorded: Recorded,
 }
 
 impl Part {
     /// Saves or restores the data that the solver of this step keeps.
     pub fn words(&mut self, words: &mut Words) {
-        if let Some(recorded) = &mut self.recorded {
-            recorded.write(&mut self.places);
-            recorded.follow();
-        }
+        self.recorded.write(&mut self.places);
+        self.recorded.follow();
         match self.places.get_mut(at::WORK) {
             Some(work) => work.words(words),
             None => words.refuse(),
@@ -64,20 +60,17 @@ impl Stepper for Model {
         let mut places = self.places(state, h);
         self.opened
             .prepare(&mut places, Settings::step(h), self.opened.usual())?;
-        let recordable = self.opened.recordable();
-        let recorded = recordable.map(|all| Recorded::new(all, self.fixed.with_step(h), true));
+        let recorded = Recorded::new(self.opened.recordable(), true);
         Ok(Part { places, recorded })
     }
 
     fn advance(&self, state: &mut Packed, part: &mut Part) -> Result<(), StepError> {
         let Part { places, recorded } = part;
-        if let Some(recorded) = recorded {
-            if recorded.step_from(state, places) {
-                return Ok(());
-            }
-            recorded.write(places);
-            recorded.follow();
+        if recorded.step_from(state, places) {
+            return Ok(());
         }
+        recorded.write(places);
+        recorded.follow();
         if let Some(here) = places.get_mut(at::STATE) {
             state.put(here);
         }

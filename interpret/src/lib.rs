@@ -11,6 +11,7 @@ mod failure;
 mod functional;
 mod library;
 pub mod lines;
+mod listing;
 mod lower;
 mod map_scalar;
 mod newton;

@@ -7,8 +7,7 @@ use clebsch::line::Attitude;
 use clebsch::{OfScalars, Real};
 use std::sync::Arc;
 
-/// The value with every number replaced. Returns nothing for data prepared from numbers, such as the factors of a
-/// solver.
+/// The value with every number replaced. Returns nothing for the memory of a solver.
 pub fn map_scalar<T: Real, U: Real>(
     value: &Value<T>,
     change: &mut impl FnMut(T) -> U,
@@ -49,6 +48,7 @@ pub fn map_scalar<T: Real, U: Real>(
         }
         Value::Poinsot(body) => Value::Poinsot(Arc::new(body.over(change))),
         Value::QuaternionBody(body) => Value::QuaternionBody(Arc::new(body.over(change))),
+        Value::LeftFactor(factor) => Value::LeftFactor(factor.over(change)),
         Value::Domain(domain) => Value::Domain(*domain),
         Value::Function(function) => Value::Function(*function),
         Value::Call(call) => Value::Call(call),
@@ -140,6 +140,7 @@ pub fn alike<T: Real>(a: &Value<T>, b: &Value<T>) -> bool {
         (Value::Momentum(f, _), Value::Momentum(g, _)) => f == g,
         (Value::Poinsot(a), Value::Poinsot(b)) => a.is_diagonal() == b.is_diagonal(),
         (Value::QuaternionBody(a), Value::QuaternionBody(b)) => a.is_diagonal() == b.is_diagonal(),
+        (Value::LeftFactor(a), Value::LeftFactor(b)) => a.is_alike(b),
         (Value::Bool(a), Value::Bool(b)) => a == b,
         (Value::Int(a), Value::Int(b)) => a == b,
         (Value::Double(a), Value::Double(b)) => a.to_bits() == b.to_bits(),

@@ -3,6 +3,7 @@
 use crate::Refused;
 use crate::code::{Places, Routine};
 use crate::constants::Constants;
+use crate::listing::FieldNames;
 use crate::lower::{self, Shared, entry};
 use crate::program::{Program, type_name};
 use crate::recorded::Recordable;
@@ -88,10 +89,12 @@ pub struct Opened {
     pub signs: Vec<Agreement>,
     /// The index of the field name that counts the nodes of a state.
     pub node: u32,
+    /// The names of fields.
+    pub names: FieldNames,
     /// How many places the functions need.
     pub places: usize,
     /// The functions over the scalar that records them.
-    pub recordable: OnceLock<Option<Recordable>>,
+    pub recordable: OnceLock<Recordable>,
 }
 
 /// A derived text and its emitted program, which is the same for all sizes.
@@ -176,6 +179,7 @@ impl Opened {
             initial,
             signs: Vec::new(),
             node,
+            names: shared.names(),
             places: places.unwrap_or(at::FIRST),
             recordable: OnceLock::new(),
         })

@@ -3,9 +3,10 @@
 use crate::code::{Exit, Places, Routine};
 use crate::composed::Model;
 use crate::failure::Failure;
+use crate::listing;
 use crate::opened::{InitialForm, Opened, at};
 use crate::packed::Packed;
-use crate::recorded::{Fixed, Recordable, Recorded, Watched};
+use crate::recorded::{Recordable, Recorded, Watched};
 use crate::value::{Frame, Layout, MatrixGroup, Struct, Value};
 use clebsch::card::{Card, Field, OpenError, PartSeen, Settings, Trajectory, chosen_solver};
 use clebsch::integrate::{Composition, Offer, Way, counted};
@@ -57,7 +58,7 @@ impl Opened {
         counted(card, parameters, initial)?;
         let mut places = self.places(Value::Unit);
         let own = collected(&self.parameters, card.parameters, parameters)?;
-        put(&mut places, at::GIVEN, own.clone());
+        put(&mut places, at::GIVEN, own);
         let model = run(&f.new, &mut places).map_err(Failure::open)?;
         put(&mut places, at::MODEL, model);
         let mut initial = initial.to_vec();
@@ -81,19 +82,11 @@ impl Opened {
         };
         put(&mut places, at::STATE, state.clone());
         put(&mut places, at::STEP, Value::Real(settings.h));
-        let chosen = chosen_solver(settings, card.solvers).ok().flatten();
-        let fixed = Fixed {
-            parameters: own,
-            solver: chosen.map(Value::Method),
-            step: Value::Real(settings.h),
-        };
         let steps = self
-            .ways(card, &mut places, settings, &fixed)
+            .ways(card, &mut places, settings)
             .map_err(|e| e.beside(kinetic))?;
-        // A probe of single steps needs no tapes.
-        let recordable = self.recordable().filter(|_| !settings.inquiry);
         let own_step = !matches!(steps, Steps::Composed(_));
-        let recorded = recordable.map(|all| Recorded::new(all, fixed, own_step));
+        let recorded = Recorded::new(self.recordable(), own_step);
         Ok(Box::new(Running {
             opened: self,
             card,
@@ -104,10 +97,10 @@ impl Opened {
         }))
     }
 
-    /// The functions that are recorded as tapes, if there are any.
-    pub fn recordable(&'static self) -> Option<&'static Recordable> {
+    /// The functions that are recorded as tapes.
+    pub fn recordable(&'static self) -> &'static Recordable {
         let recordable = || Recordable::of(&self.functions, self.places);
-        self.recordable.get_or_init(recordable).as_ref()
+        self.recordable.get_or_init(recordable)
     }
 
     /// Selects how steps are taken, from these settings.
@@ -116,7 +109,6 @@ impl Opened {
         card: &'static Card,
         places: &mut Places<f64>,
         settings: Settings,
-        fixed: &Fixed,
     ) -> Result<Steps, OpenError> {
         let f = &self.functions;
         if let Some(method) = chosen_solver(settings, card.solvers)?
@@ -150,7 +142,6 @@ impl Opened {
             opened: self,
             model: of(at::MODEL),
             state: of(at::STATE),
-            fixed: fixed.clone(),
         };
         let Some(state) = Packed::of(&model.state) else {
             return Err(OpenError::Order {
@@ -290,37 +281,30 @@ enum Steps {
 /// State and workspace, as values at places and as the numbers of tapes.
 struct TrajectoryStorage {
     places: Places<f64>,
-    recorded: Option<Recorded>,
+    recorded: Recorded,
 }
 
 impl TrajectoryStorage {
     /// The places, updated from the tapes.
     fn places(&mut self) -> &mut Places<f64> {
-        if let Some(recorded) = &mut self.recorded {
-            recorded.write(&mut self.places);
-        }
+        self.recorded.write(&mut self.places);
         &mut self.places
     }
 
     /// The tapes continue from the values in the places.
     fn follow(&mut self) {
-        if let Some(recorded) = &mut self.recorded {
-            recorded.follow();
-        }
+        self.recorded.follow();
     }
 
     /// The numbers of the state.
     fn packed(&mut self) -> Option<Packed> {
-        let recorded = self.recorded.as_ref();
-        let newer = recorded.and_then(Recorded::packed);
+        let newer = self.recorded.packed();
         newer.or_else(|| self.places.get(at::STATE).and_then(Packed::of))
     }
 
     /// Sets the numbers of a state.
     fn put(&mut self, state: &Packed) {
-        if let Some(recorded) = &mut self.recorded
-            && recorded.put(state, &self.places)
-        {
+        if self.recorded.put(state, &self.places) {
             return;
         }
         if let Some(here) = self.places.get_mut(at::STATE) {
@@ -331,9 +315,7 @@ impl TrajectoryStorage {
 
     /// Runs an observer of the state; its numbers are written to `out`.
     fn watch(&mut self, opened: &Opened, which: Watched, out: &mut [f64]) {
-        if let Some(recorded) = &mut self.recorded
-            && recorded.watch(which, &mut self.places, out)
-        {
+        if self.recorded.watch(which, &mut self.places, out) {
             return;
         }
         let f = &opened.functions;
@@ -376,7 +358,7 @@ impl Running {
         match &mut self.steps {
             Steps::Plain | Steps::Modified => {
                 let TrajectoryStorage { places, recorded } = held;
-                if !recorded.as_mut().is_some_and(|all| all.step(places)) {
+                if !recorded.step(places) {
                     let places = held.places();
                     let node = self.opened.node_of(places.get(at::STATE));
                     let made = run(&self.opened.functions.step, places);
@@ -428,7 +410,7 @@ fn watch(places: &mut Places<f64>, routine: &Routine<f64>, out: &mut [f64]) {
 impl Trajectory for Running {
     fn node(&self) -> u64 {
         let held = self.held.borrow();
-        let ahead = held.recorded.as_ref().and_then(Recorded::node);
+        let ahead = held.recorded.node();
         ahead.unwrap_or_else(|| self.opened.node_of(held.places.get(at::STATE)))
     }
 
@@ -473,6 +455,12 @@ impl Trajectory for Running {
     fn scales(&self, out: &mut [f64]) {
         let mut held = self.held.borrow_mut();
         held.watch(self.opened, Watched::Scales, out);
+    }
+
+    fn operations(&self) -> Option<String> {
+        let held = self.held.borrow();
+        let sections = held.recorded.sections(&held.places, &self.opened.names);
+        listing::text(&sections)
     }
 
     fn words(&mut self, words: &mut Words) {

@@ -3,11 +3,12 @@
 //! A [`Kernel`] is straight-line code on numbers and small matrices: no branches, no side effects, every value
 //! computed once. The engine lowers expressions to kernels and prints them as Rust. This crate verifies kernels,
 //! evaluates them over any [`Arithmetic`], records an evaluation as a [`Tape`] of scalar operations, runs tapes on a
-//! [`Machine`] and lists kernels for readers. It depends on neither the engine nor the runtime.
+//! [`Machine`], counts their operations and lists them for readers. It depends on neither the engine nor the runtime.
 
 mod arithmetic;
 mod array;
 mod compiled;
+mod counts;
 mod evaluate;
 mod instruction;
 mod kernel;
@@ -23,6 +24,7 @@ mod verify;
 pub use arithmetic::{Arithmetic, Doubles, Functionals};
 pub use array::Array;
 pub use compiled::{Compiled, Compiler, compile_by};
+pub use counts::Counts;
 pub use evaluate::{Unvalued, evaluate};
 pub use instruction::{Called, Check, Instruction, Register};
 pub use kernel::{Input, Kernel, Line, Value};

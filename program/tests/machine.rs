@@ -1,5 +1,6 @@
 //! Random tapes, run singly and in lanes, against sequential evaluation of their steps: the results agree bit for bit.
 
+mod listing;
 mod random_tapes;
 
 use clebsch_program::{Machine, Part, Recording, Step, WIDTH};

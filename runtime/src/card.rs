@@ -421,6 +421,12 @@ pub trait Trajectory: Send {
     /// component, see [`Drift`](crate::integrate::Drift).
     fn scales(&self, out: &mut [f64]);
 
+    /// The operations of the step and of the functions that are evaluated at nodes, as text. `None` if they are not
+    /// recorded: in a compiled model, and before a model file has taken some ten steps.
+    fn operations(&self) -> Option<String> {
+        None
+    }
+
     /// Reads or writes everything that changes from step to step: the state, and the memory of the solver.
     /// If you restore it into a trajectory opened from the same data, the run continues bit for bit.
     /// The default implementation refuses to save.

@@ -85,6 +85,8 @@ pub(super) fn derive() -> Command {
                     PossibleValue::new("markdown").alias("md"),
                     PossibleValue::new("rust").alias("rs"),
                     PossibleValue::new("json"),
+                    PossibleValue::new("program")
+                        .help("The operations of a step, counted and listed, for MODEL:CASE or the first case"),
                 ])
                 .default_value("text"),
         )

@@ -96,7 +96,10 @@ pub(crate) fn resolved<'a>(
 }
 
 /// A case of a compiled model as the text of a case file.
-fn written(entry: &Entry, name: Option<&str>) -> Result<CaseText, Failure> {
+///
+/// # Errors
+/// Usage: the case is unknown.
+pub(crate) fn written(entry: &Entry, name: Option<&str>) -> Result<CaseText, Failure> {
     let case = gallery::case(entry, name)?;
     Ok(CaseText {
         file: format!("{}:{}", entry.card.kebab, case.name),

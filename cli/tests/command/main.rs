@@ -36,6 +36,7 @@ mod page;
 mod pictures;
 mod pictures_of_lines;
 mod plot;
+mod programs;
 mod results;
 mod resumed;
 mod rods;

@@ -1,8 +1,10 @@
 //! The parts of an operation, and the places around it that it reads.
 
 use super::{Code, Operator, Pattern};
+use crate::listing::{FieldNames, Section};
 use clebsch::Real;
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 impl<T: Real> Code<T> {
     /// The direct operands, without the operations of called functions.
@@ -47,6 +49,28 @@ impl<T: Real> Code<T> {
                 let given = given.iter().map(|(_, code)| code);
                 given.chain(base.as_deref()).collect()
             }
+        }
+    }
+
+    /// The recorded loops of a function and of the functions that it calls, each once, in the order of the text.
+    pub fn sections(&self, names: &FieldNames, met: &mut BTreeSet<usize>, out: &mut Vec<Section>) {
+        match self {
+            Code::Iterate(each) => {
+                let address = Arc::as_ptr(each).cast::<()>() as usize;
+                if met.insert(address) {
+                    out.extend(each.section(names));
+                }
+            }
+            Code::Routine(called, _) => {
+                let address = Arc::as_ptr(called) as usize;
+                if let (true, Some(routine)) = (met.insert(address), called.get()) {
+                    routine.body.sections(names, met, out);
+                }
+            }
+            _ => {}
+        }
+        for part in self.parts() {
+            part.sections(names, met, out);
         }
     }
 

@@ -3,6 +3,7 @@
 
 use super::{Code, Evaluated, Exit, Iterate, Places, WRONG, unfit};
 use crate::failure::Failure;
+use crate::listing::{FieldNames, Section};
 use crate::recorded::{Lists, SiteFunction};
 use crate::sites::Column;
 use crate::value::Value;
@@ -140,6 +141,17 @@ impl Iterate<f64> for Sweep {
             }
             _ => Err(Exit::Unfit(WRONG)),
         }
+    }
+
+    fn section(&self, names: &FieldNames) -> Option<Section> {
+        let filled: Vec<String> = self.out.iter().map(|out| names.path(&out.list)).collect();
+        let title = match (self.kind, filled.is_empty()) {
+            (Kind::Sum(_), _) => "sum over sites k".to_owned(),
+            (Kind::Sizes(_), _) => "sum of sizes over sites k".to_owned(),
+            (_, true) => "test at sites k".to_owned(),
+            (_, false) => format!("loop over sites k that fills {}", filled.join(", ")),
+        };
+        self.sites.section(&title, names)
     }
 }
 

@@ -9,7 +9,7 @@ use clebsch::emitted::{
 };
 use clebsch::linalg::Dense;
 use clebsch::solvers::two_sided::SingularFactor;
-use clebsch::{Real, StepCause};
+use clebsch::{OfScalars, Real, StepCause};
 use nalgebra::{SMatrix, Vector3};
 use std::sync::Arc;
 
@@ -48,6 +48,35 @@ fn prepared<T: Real>(c: &Dense<T>) -> Option<Value<T>> {
         Ok(factor) => Value::LeftFactor(factor),
         Err(e) => Value::failed(e),
     })
+}
+
+impl<T: Real> Factor<T> {
+    /// The factor with every number replaced.
+    pub fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> Factor<U> {
+        match self {
+            Factor::Two(f) => Factor::Two(Arc::new(f.over(change))),
+            Factor::Three(f) => Factor::Three(Arc::new(f.over(change))),
+            Factor::Four(f) => Factor::Four(Arc::new(f.over(change))),
+            Factor::Five(f) => Factor::Five(Arc::new(f.over(change))),
+            Factor::Six(f) => Factor::Six(Arc::new(f.over(change))),
+            Factor::Seven(f) => Factor::Seven(Arc::new(f.over(change))),
+            Factor::Eight(f) => Factor::Eight(Arc::new(f.over(change))),
+        }
+    }
+
+    /// Whether both have the same size and form.
+    pub fn is_alike(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Factor::Two(a), Factor::Two(b)) => a.is_alike(b),
+            (Factor::Three(a), Factor::Three(b)) => a.is_alike(b),
+            (Factor::Four(a), Factor::Four(b)) => a.is_alike(b),
+            (Factor::Five(a), Factor::Five(b)) => a.is_alike(b),
+            (Factor::Six(a), Factor::Six(b)) => a.is_alike(b),
+            (Factor::Seven(a), Factor::Seven(b)) => a.is_alike(b),
+            (Factor::Eight(a), Factor::Eight(b)) => a.is_alike(b),
+            _ => false,
+        }
+    }
 }
 
 macro_rules! with_factor {

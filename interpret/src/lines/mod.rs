@@ -7,6 +7,7 @@ mod coordinates;
 mod inputs;
 mod kinetic;
 mod node_values;
+mod operations;
 mod running;
 mod trajectory;
 
@@ -18,6 +19,7 @@ pub use trajectory::LineTrajectory;
 use crate::Refused;
 use crate::code::{Places, Routine};
 use crate::failure::Failure;
+use crate::listing::FieldNames;
 use crate::lower::{self, Shared, entry};
 use crate::opened::at;
 use crate::program::Program;
@@ -117,6 +119,7 @@ pub struct LineModel {
     densities: Vec<(String, String)>,
     node: u32,
     stamp: u32,
+    names: FieldNames,
     places: usize,
     /// The group elements that the program stores in coordinates.
     coordinates: Vec<Coordinates>,
@@ -317,6 +320,7 @@ impl LineModel {
             densities: densities.collect(),
             node,
             stamp,
+            names: shared.names(),
             places: places.unwrap_or(at::FIRST),
             coordinates: line.coordinates.clone(),
         }))

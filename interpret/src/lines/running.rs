@@ -362,6 +362,10 @@ impl Trajectory for Running {
         line.measured(|line| self.sums(line, out, true));
     }
 
+    fn operations(&self) -> Option<String> {
+        self.carded.model.operations()
+    }
+
     fn words(&mut self, words: &mut Words) {
         self.line.get_mut().words(words);
     }

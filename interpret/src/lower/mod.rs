@@ -12,6 +12,7 @@ mod statement;
 
 use crate::Refused;
 use crate::code::{Code, Routine};
+use crate::listing::FieldNames;
 use crate::program::{Program, type_name};
 use crate::value::Layout;
 use quote::ToTokens;
@@ -75,6 +76,18 @@ impl<'a> Shared<'a> {
         let mut names = self.names.borrow_mut();
         let next = names.len() as u32;
         *names.entry(name.to_owned()).or_insert(next)
+    }
+
+    /// All field names by their indices.
+    pub fn names(&self) -> FieldNames {
+        let names = self.names.borrow();
+        let mut all = vec![String::new(); names.len()];
+        for (name, at) in names.iter() {
+            if let Some(slot) = all.get_mut(*at as usize) {
+                slot.clone_from(name);
+            }
+        }
+        FieldNames(all)
     }
 
     /// The fields of a struct.

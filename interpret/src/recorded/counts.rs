@@ -94,7 +94,7 @@ pub fn each_count<T: Real>(value: &mut Value<T>, met: &mut dyn FnMut(&mut i64)) 
 }
 
 /// The value with all counts zero.
-pub fn uncounted(value: &Value<Traced>) -> Value<Traced> {
+pub fn uncounted<T: Real>(value: &Value<T>) -> Value<T> {
     let mut value = value.clone();
     each_count(&mut value, &mut |n| *n = 0);
     value

@@ -1,10 +1,11 @@
 //! The equations of a step as tapes: the functions that Newton's method evaluates at a trial, as functions of the
 //! numbers of the step and of the trial.
 
-use super::load;
+use super::ready::Ready;
 use crate::code::Places;
+use crate::listing::{Section, numbered};
 use crate::map_scalar::fill;
-use clebsch_program::{Frame, Machine, Part, Scalar, Tape};
+use clebsch_program::{Part, Scalar, Tape};
 
 /// The functions that Newton's method evaluates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,23 +33,8 @@ impl NewtonFunction {
     ];
 }
 
-/// A tape with its registers.
-#[derive(Debug)]
-struct Ready {
-    machine: Machine,
-    frame: Frame<1>,
-}
-
-impl Ready {
-    fn new(tape: &Tape, inputs: usize) -> Self {
-        let machine = Machine::new(tape, inputs);
-        let frame = machine.frame();
-        Ready { machine, frame }
-    }
-}
-
 /// The equations at a node.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Equations {
     parts: [Option<Ready>; 5],
     /// The number of inputs from the step.
@@ -90,12 +76,18 @@ impl Recorded {
             && self.around == other.around
     }
 
-    /// The equations, and the numbers that the step must compute for them.
-    pub fn equations(self, tape: &Tape, solution: usize) -> (Equations, Vec<Scalar>) {
+    /// The equations, and the numbers that the step must compute for them. The first `steady` inputs of the step are the
+    /// same in all steps.
+    pub fn equations(
+        self,
+        tape: &Tape,
+        solution: usize,
+        steady: usize,
+    ) -> (Equations, Vec<Scalar>) {
         let recorded: Vec<&Part> = self.parts.iter().flatten().collect();
         let (given, tapes) = tape.behind(self.inputs, &recorded);
         let inputs = given.len() + solution;
-        let mut tapes = tapes.iter().map(|tape| Ready::new(tape, inputs));
+        let mut tapes = tapes.iter().map(|tape| Ready::new(tape, inputs, 0));
         let parts = self.parts.each_ref().map(|part| match part {
             Some(_) => tapes.next(),
             None => None,
@@ -108,7 +100,7 @@ impl Recorded {
             parts,
             given: given.len(),
             of_trial: self.of_trial,
-            around: Ready::new(&around, self.inputs),
+            around: Ready::new(&around, self.inputs, steady),
             computed: self.computed,
             places: self.places,
             own: Vec::new(),
@@ -119,13 +111,38 @@ impl Recorded {
 }
 
 impl Equations {
+    /// The functions as text.
+    pub fn sections(&self) -> Vec<Section> {
+        let titles = [
+            "residual of the equations at a trial",
+            "tangent of the equations at a trial",
+            "residual at rest",
+            "test of convexity at a trial",
+            "residual far from the solution",
+        ];
+        let parts = self.parts.iter().zip(titles);
+        let recorded = parts.filter_map(|(part, title)| Some((part.as_ref()?, title)));
+        let told = recorded.map(|(part, title)| {
+            let mut inputs = numbered("given", self.given);
+            inputs.extend(numbered("velocity", part.inputs() - self.given));
+            let outputs = numbered("result", part.outputs());
+            Section::of(title, part.machine(), &inputs, &outputs)
+        });
+        told.collect()
+    }
+
+    /// Sets the numbers of the model and of the step size. Returns nothing if there are too few.
+    pub fn begin(&mut self, steady: &[f64]) -> Option<()> {
+        self.around.begin(steady)
+    }
+
     /// Sets the numbers of a step, and the numbers that the step has computed for the equations.
-    pub fn begin(&mut self, own: &[f64], given: impl Iterator<Item = f64> + Clone) {
+    pub fn begin_step(&mut self, own: &[f64], given: impl Iterator<Item = f64> + Clone) {
         self.own.clear();
         self.own.extend_from_slice(own);
         self.filled = false;
         for part in self.parts.iter_mut().flatten() {
-            for (slot, x) in part.frame.inputs().iter_mut().zip(given.clone()) {
+            for (slot, x) in part.registers().iter_mut().zip(given.clone()) {
                 *slot = [x];
             }
         }
@@ -133,21 +150,18 @@ impl Equations {
 
     fn at(&mut self, wanted: NewtonFunction, trial: &[f64]) -> Option<impl Iterator<Item = f64>> {
         let part = self.parts.get_mut(wanted as usize)?.as_mut()?;
-        let inputs = part.frame.inputs().get_mut(self.given..)?;
+        let inputs = part.registers().get_mut(self.given..)?;
         for (at, x) in self.of_trial.iter().zip(trial) {
             *inputs.get_mut(*at)? = [*x];
         }
-        let Ready { machine, frame } = part;
-        machine.run(frame).then(|| machine.gives(frame, 0))
+        part.run().then(|| part.gives())
     }
 
     fn places(&mut self) -> &mut Places<f64> {
         if !self.filled {
             self.filled = true;
-            let Ready { machine, frame } = &mut self.around;
-            let own = self.own.get(..machine.inputs()).unwrap_or_default();
-            if load(frame.inputs(), own).is_some() && machine.run(frame) {
-                let mut given = machine.gives(frame, 0);
+            if self.around.computes(&self.own) {
+                let mut given = self.around.gives();
                 for at in &self.computed {
                     if let Some(value) = self.places.get_mut(*at) {
                         fill(value, &mut given);

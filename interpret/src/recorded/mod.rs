@@ -2,7 +2,8 @@
 //!
 //! A tape computes the same result as the function, bit for bit, as long as its decisions come out as they did when it
 //! was recorded. If they do not, clebsch runs the function itself. Newton's iteration runs between two tapes: the first
-//! computes the input of the equations, and the second computes the step from their solution.
+//! computes the input of the equations, and the second computes the step from their solution. All trajectories of a model
+//! share its tapes.
 
 mod counts;
 mod decision_tree;
@@ -10,6 +11,8 @@ mod equations;
 mod form;
 mod function;
 mod loop_inputs;
+mod ready;
+mod shared;
 mod sites;
 mod solves;
 mod tape_storage;
@@ -18,10 +21,11 @@ mod trajectory;
 
 pub use equations::{EquationValues, NewtonFunction};
 pub use function::{Function, run as run_alone};
+pub use loop_inputs::List;
 pub use sites::{Lists, SiteFunction};
 pub use solves::RecordedSolve;
 pub use traced::Traced;
-pub use trajectory::{Fixed, Recordable, Recorded, Watched};
+pub use trajectory::{Recordable, Recorded, Watched};
 
 use crate::code::{Iterate, Library, Native, Special};
 use crate::library;

@@ -11,6 +11,7 @@ use super::loop_inputs::{Fixed, ReadValue, SiteReader};
 use super::tape_storage::MOST;
 use super::traced::record;
 use crate::code::{Code, Evaluated, Places, unfit};
+use crate::listing::{FieldNames, Section};
 use crate::map_scalar::{map_scalar, numbers};
 use crate::sites::Column;
 use crate::value::Value;
@@ -67,6 +68,12 @@ impl SiteFunction {
             tapes: RwLock::default(),
             failures: AtomicUsize::default(),
         }
+    }
+
+    /// The newest tape as text.
+    pub fn section(&self, title: &str, names: &FieldNames) -> Option<Section> {
+        let tapes = self.tapes.read().unwrap_or_else(PoisonError::into_inner);
+        tapes.last().map(|tape| tape.section(title, names))
     }
 
     /// The value of the body, without a tape.

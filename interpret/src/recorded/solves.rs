@@ -4,16 +4,17 @@
 use super::equations::{EquationValues, Equations, NewtonFunction, Recorded};
 use super::form::value_of;
 use super::function::run as run_alone;
-use super::load;
-use super::traced::{Traced, aside, cut, model, steps, with_newest_cut, with_some_cut};
+use super::ready::Ready;
+use super::traced::{Traced, aside, cut, steps, with_newest_cut, with_some_cut};
 use crate::code::{Code, Exit, Iterate, Places, unfit};
+use crate::listing::{Section, numbered};
 use crate::map_scalar::{map_scalar, numbers};
 use crate::newton::{AtTrial, SearchValue, Solve, Sought, matrix, solution_value, vector};
 use crate::opened::at;
 use crate::value::{Struct, Value};
 use clebsch::linalg::Reals;
 use clebsch::solvers::newton::{Chart, Solved};
-use clebsch_program::{Frame, Guard, Machine, Part, Scalar, Tape};
+use clebsch_program::{Guard, Part, Scalar, Tape};
 use std::sync::Arc;
 
 /// The end of a part of a recording.
@@ -128,7 +129,6 @@ impl Iterate<Traced> for RecordedSolve {
             }
             own.push(seen);
         }
-        *unfit(own.get_mut(at::MODEL))? = unfit(model())?;
         let mut seen = own.clone();
         let solved = held.solve(
             &self.with,
@@ -309,10 +309,10 @@ pub fn remember(
 }
 
 /// Equations that are solved between two tapes.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct SolveBetweenTapes {
-    machine: Machine,
-    frame: Frame<1>,
+    /// The tape before the equations.
+    ready: Ready,
     equations: Equations,
     with: Arc<Solve>,
     node: i64,
@@ -325,8 +325,14 @@ pub struct SolveBetweenTapes {
     found: Reals,
 }
 
-/// The tapes before each pause, and the tape of the last part.
-pub fn in_parts(tape: Tape, cuts: Vec<RecordingPause>) -> Option<(Vec<SolveBetweenTapes>, Tape)> {
+/// The tapes before each pause, and the tape of the last part with this number of inputs. The first `steady` inputs are the
+/// same in all steps.
+pub fn in_parts(
+    tape: Tape,
+    inputs: usize,
+    cuts: Vec<RecordingPause>,
+    steady: usize,
+) -> Option<(Vec<SolveBetweenTapes>, Ready)> {
     let mut decided = 0;
     let mut all = Vec::new();
     for cut in cuts {
@@ -338,16 +344,14 @@ pub fn in_parts(tape: Tape, cuts: Vec<RecordingPause>) -> Option<(Vec<SolveBetwe
             remembers,
         } = cut.solved;
         let guards = tape.guards.get(decided..cut.guards).unwrap_or_default();
-        let (equations, given) = equations?.equations(&tape, solution.len());
+        let (equations, given) = equations?.equations(&tape, solution.len(), steady);
         let before = Part {
             outputs: given,
             guards: guards.to_vec(),
         };
-        let machine = Machine::new(&tape.part(before), cut.inputs);
         decided = cut.guards;
         all.push(SolveBetweenTapes {
-            frame: machine.frame(),
-            machine,
+            ready: Ready::new(&tape.part(before), cut.inputs, steady),
             equations,
             with,
             node,
@@ -358,7 +362,8 @@ pub fn in_parts(tape: Tape, cuts: Vec<RecordingPause>) -> Option<(Vec<SolveBetwe
         });
     }
     let guards = tape.guards.get(decided..).unwrap_or_default().to_vec();
-    Some((all, Tape { guards, ..tape }))
+    let last = Ready::new(&Tape { guards, ..tape }, inputs, steady);
+    Some((all, last))
 }
 
 /// The outcome of a step by tapes.
@@ -373,6 +378,27 @@ pub enum TapeOutcome {
 }
 
 impl SolveBetweenTapes {
+    /// The tape before the equations and the functions of the equations as text, given the names of the steady numbers and
+    /// of the inputs.
+    pub fn sections(&self, names: &[String], inputs: &[String]) -> Vec<Section> {
+        let outputs = numbered("given", self.ready.outputs());
+        let title = "step, before its equations are solved";
+        let mut all = self.ready.sections(title, names, inputs, &outputs);
+        all.extend(self.equations.sections());
+        all
+    }
+
+    /// Sets the numbers of the model and of the step size. Returns nothing if there are too few.
+    pub fn begin(&mut self, steady: &[f64]) -> Option<()> {
+        self.ready.begin(steady)?;
+        self.equations.begin(steady)
+    }
+
+    /// The number of numbers of a solution.
+    pub fn solution(&self) -> usize {
+        self.found.len()
+    }
+
     /// Computes what the equations need from `numbers`, solves them and appends their solution. `first` is the first count
     /// of the state; the search is among the `places`.
     pub fn solve(
@@ -382,15 +408,11 @@ impl SolveBetweenTapes {
         places: &mut Places<f64>,
     ) -> TapeOutcome {
         self.begun = false;
-        let Some(given) = own.get(..self.machine.inputs()) else {
-            return TapeOutcome::Elsewhere;
-        };
-        let loaded = load(self.frame.inputs(), given);
-        if loaded.is_none() || !self.machine.run(&mut self.frame) {
+        if !self.ready.computes(own) {
             return TapeOutcome::Elsewhere;
         }
-        self.equations
-            .begin(given, self.machine.gives(&self.frame, 0));
+        let given = own.get(..self.ready.inputs()).unwrap_or_default();
+        self.equations.begin_step(given, self.ready.gives());
         let Some(Value::Search(held)) = self.with.search.place_mut(places) else {
             return TapeOutcome::Unsolved;
         };

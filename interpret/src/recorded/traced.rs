@@ -5,7 +5,6 @@
 //! decisions.
 
 use super::solves::{RecordingPause, SolvedHere};
-use crate::value::Value;
 use clebsch::Real;
 use clebsch_program::{Function, Guard, Recording, Scalar, Step, Tape, Test};
 use num_traits::{One, Zero};
@@ -26,7 +25,6 @@ struct Here {
     inputs: u32,
     spoiled: bool,
     cuts: Vec<RecordingPause>,
-    model: Option<Value<f64>>,
 }
 
 thread_local! {
@@ -39,19 +37,15 @@ const MOST: usize = 1 << 17;
 /// Records `body`, which returns the numbers that the tape computes. Returns nothing if they depend on more than tests
 /// of numbers, or if the tape is too long.
 pub fn record(body: impl FnOnce() -> Option<Vec<Traced>>) -> Option<(Tape, usize)> {
-    let (tape, inputs, cuts) = record_with_solves(None, body)?;
+    let (tape, inputs, cuts) = record_with_solves(body)?;
     cuts.is_empty().then_some((tape, inputs))
 }
 
-/// Like [`record`], for a function that solves equations of `model`.
+/// Like [`record`], for a function that solves equations.
 pub fn record_with_solves(
-    model: Option<Value<f64>>,
     body: impl FnOnce() -> Option<Vec<Traced>>,
 ) -> Option<(Tape, usize, Vec<RecordingPause>)> {
-    HERE.set(Some(Here {
-        model,
-        ..Here::default()
-    }));
+    HERE.set(Some(Here::default()));
     let outputs = body();
     let mut here = HERE.take()?;
     let fits = !here.spoiled && here.recording.len() <= MOST;
@@ -59,11 +53,6 @@ pub fn record_with_solves(
     let steps = outputs.iter().map(|x| x.step_in(&mut here.recording));
     let steps: Vec<Scalar> = steps.collect();
     Some((here.recording.tape(steps), here.inputs as usize, here.cuts))
-}
-
-/// The model whose equations are solved.
-pub fn model() -> Option<Value<f64>> {
-    noted(|here| here.model.clone()).flatten()
 }
 
 /// Ends a part of the recording. The solution of the equations is the input of the next part.

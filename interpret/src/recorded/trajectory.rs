@@ -3,22 +3,23 @@
 use super::counts::{Choice, Chosen, counts, each_count, grow, growth, uncounted};
 use super::decision_tree::{Node, OutcomeTape, TapesByOutcome};
 use super::form::value_of;
+use super::shared::{Kinds, SharedTapes};
 use super::solves::{RecordingPause, in_parts};
-use super::traced::{Traced, record, record_with_solves};
+use super::traced::{Traced, record_with_solves};
 use crate::code::{Places, Routine};
+use crate::listing::{FieldNames, Section};
 use crate::map_scalar::{alike, fill, map_scalar, numbers};
 use crate::opened::{Functions, at};
 use crate::packed::Packed;
 use crate::value::Value;
-use clebsch_program::{Machine, Tape};
+use clebsch_program::Tape;
+use std::sync::Arc;
 
-/// The functions that are recorded.
+/// The functions that are recorded, with their tapes for all trajectories.
 #[derive(Debug)]
 pub struct Recordable {
-    new: Routine<Traced>,
-    with_solver: Option<Routine<Traced>>,
-    step: Option<Routine<Traced>>,
-    watched: [Option<Routine<Traced>>; 3],
+    step: Option<SharedTapes>,
+    watched: [Option<SharedTapes>; 3],
     places: usize,
 }
 
@@ -34,12 +35,13 @@ pub enum Watched {
 }
 
 impl Recordable {
-    /// The functions of a model over the scalar that records; nothing if its parameters cannot be prepared over it.
-    pub fn of(functions: &Functions, places: usize) -> Option<Self> {
-        let over = |routine: &Routine<f64>| routine.map_scalar(Traced::constant);
-        Some(Recordable {
-            new: over(&functions.new)?,
-            with_solver: functions.with_solver.as_ref().and_then(over),
+    /// The functions of a model over the scalar that records.
+    pub fn of(functions: &Functions, places: usize) -> Self {
+        let over = |routine: &Routine<f64>| {
+            let traced = routine.map_scalar(Traced::constant);
+            traced.map(SharedTapes::new)
+        };
+        Recordable {
             step: over(&functions.step),
             watched: [
                 over(&functions.observe),
@@ -47,56 +49,32 @@ impl Recordable {
                 over(&functions.scales),
             ],
             places,
-        })
+        }
     }
 
-    /// Places with the model prepared from constant parameters.
-    fn places(&self, fixed: &Fixed) -> Option<Places<Traced>> {
+    /// Places with the model and the step size of a trajectory: as inputs, or as constants if the tapes serve one model
+    /// only. Also gives the number of inputs.
+    fn places(&self, from: &Places<f64>, is_bound: bool) -> Option<(Places<Traced>, usize)> {
         let mut places = vec![Value::Unit; self.places];
-        *places.get_mut(at::GIVEN)? = constant(&fixed.parameters)?;
-        let model = value_of(&self.new.body, &mut places)?;
-        *places.get_mut(at::MODEL)? = model;
-        if let Some(method) = &fixed.solver {
-            let with_solver = self.with_solver.as_ref()?;
-            *places.get_mut(at::GIVEN)? = constant(method)?;
-            let model = value_of(&with_solver.body, &mut places)?;
-            *places.get_mut(at::MODEL)? = model;
+        let mut steady = 0;
+        for at in [at::MODEL, at::STEP] {
+            let mut change = |x: f64| match is_bound {
+                true => Traced::constant(x),
+                false => {
+                    steady += 1;
+                    Traced::input(x)
+                }
+            };
+            *places.get_mut(at)? = map_scalar(from.get(at)?, &mut change)?;
         }
-        *places.get_mut(at::STEP)? = constant(&fixed.step)?;
-        Some(places)
+        Some((places, steady))
     }
-}
-
-/// The values that are constant along a trajectory.
-#[derive(Clone, Debug)]
-pub struct Fixed {
-    /// The parameters as given.
-    pub parameters: Value<f64>,
-    /// The solver that was chosen.
-    pub solver: Option<Value<f64>>,
-    /// The step size.
-    pub step: Value<f64>,
-}
-
-impl Fixed {
-    /// These values, for steps of size `h`.
-    pub fn with_step(&self, h: f64) -> Self {
-        Fixed {
-            step: Value::Real(h),
-            ..self.clone()
-        }
-    }
-}
-
-fn constant(value: &Value<f64>) -> Option<Value<Traced>> {
-    map_scalar(value, &mut Traced::constant)
 }
 
 /// The tapes of a trajectory, and the numbers of its state and workspace.
 #[derive(Debug)]
 pub struct Recorded {
     functions: &'static Recordable,
-    fixed: Fixed,
     step: TapesByOutcome,
     watched: [TapesByOutcome; 3],
     /// The numbers of the state, followed by the numbers of the workspace.
@@ -110,8 +88,7 @@ pub struct Recorded {
 /// A copy starts without tapes.
 impl Clone for Recorded {
     fn clone(&self) -> Self {
-        let own_step = !self.step.are_none();
-        Recorded::new(self.functions, self.fixed.clone(), own_step)
+        Recorded::new(self.functions, !self.step.are_none())
     }
 }
 
@@ -128,20 +105,43 @@ enum Newest {
 
 impl Recorded {
     /// An empty record. Only steps of the model itself are recorded.
-    pub fn new(functions: &'static Recordable, fixed: Fixed, own_step: bool) -> Self {
+    pub fn new(functions: &'static Recordable, own_step: bool) -> Self {
+        let watched = functions.watched.each_ref();
         Recorded {
             functions,
-            fixed,
-            step: TapesByOutcome::new(own_step && functions.step.is_some()),
-            watched: functions
-                .watched
-                .each_ref()
-                .map(|f| TapesByOutcome::new(f.is_some())),
+            step: TapesByOutcome::new(functions.step.as_ref().filter(|_| own_step)),
+            watched: watched.map(|f| TapesByOutcome::new(f.as_ref())),
             numbers: Vec::new(),
             of_state: 0,
             counts: Vec::new(),
             newest: Newest::Places,
         }
+    }
+
+    /// The recorded functions as text.
+    pub fn sections(&self, places: &Places<f64>, names: &FieldNames) -> Vec<Section> {
+        let (mut steady, mut before, mut after) = (Vec::new(), Vec::new(), Vec::new());
+        for (at, name) in [(at::MODEL, ""), (at::STEP, "h")] {
+            if let Some(value) = places.get(at) {
+                names.numbers(name, value, &mut steady);
+            }
+        }
+        for (at, name) in [(at::STATE, ""), (at::WORK, "workspace")] {
+            let Some(value) = places.get(at).filter(|value| recordable(value)) else {
+                continue;
+            };
+            names.numbers(name, value, &mut before);
+            after.extend(before.iter().skip(after.len()).map(|x| format!("next {x}")));
+        }
+        let mut all = self.step.sections("step", [&steady, &before, &after]);
+        for (tapes, title) in self
+            .watched
+            .iter()
+            .zip(["observables", "invariants", "scales"])
+        {
+            all.extend(tapes.sections(title, [&steady, &before, &[]]));
+        }
+        all
     }
 
     /// Marks the values in the places as newest.
@@ -183,9 +183,7 @@ impl Recorded {
             return false;
         }
         self.read(places);
-        let Self {
-            functions, fixed, ..
-        } = self;
+        let functions = self.functions;
         let node = Node {
             numbers: &self.numbers,
             first: self.counts.first().copied().unwrap_or(0),
@@ -193,16 +191,12 @@ impl Recorded {
         };
         let way = self.step.found(node, |places| {
             put(&self.numbers, &self.counts, &mut self.newest, places);
-            recorded_step(functions, fixed, places)
+            functions.recorded_step(places)
         });
         let Some(way) = way else {
             return false;
         };
-        for (slot, x) in self
-            .numbers
-            .iter_mut()
-            .zip(way.machine.gives(&way.frame, 0))
-        {
+        for (slot, x) in self.numbers.iter_mut().zip(way.last.gives()) {
             *slot = x;
         }
         grow(&mut self.counts, &way.growth);
@@ -261,7 +255,6 @@ impl Recorded {
         self.read(places);
         let Self {
             functions,
-            fixed,
             watched: [observables, invariants, scales],
             ..
         } = self;
@@ -277,12 +270,12 @@ impl Recorded {
         };
         let way = ways.found(node, |places| {
             put(&self.numbers, &self.counts, &mut self.newest, places);
-            recorded_watch(functions, which, fixed, places)
+            functions.recorded_watch(which, places)
         });
-        let Some(way) = way.filter(|way| way.machine.outputs() == out.len()) else {
+        let Some(way) = way.filter(|way| way.last.outputs() == out.len()) else {
             return false;
         };
-        for (slot, x) in out.iter_mut().zip(way.machine.gives(&way.frame, 0)) {
+        for (slot, x) in out.iter_mut().zip(way.last.gives()) {
             *slot = x;
         }
         true
@@ -312,25 +305,30 @@ fn recordable(value: &Value<f64>) -> bool {
     numbers(value, &mut Vec::new()).is_some()
 }
 
-/// A recording: a tape, its number of inputs and its pauses; the counts before and after.
-type StepRecording = ((Tape, usize, Vec<RecordingPause>), [Vec<i64>; 2]);
+/// A recording: a tape, its number of inputs and its pauses; the number of inputs that are the same in all steps; the
+/// counts before and after.
+struct StepRecording {
+    recorded: (Tape, usize, Vec<RecordingPause>),
+    steady: usize,
+    counts: [Vec<i64>; 2],
+}
 
 /// Records twice, with different counts: if a number or a decision depends on them, the recording is discarded.
 fn twice(once: impl Fn(Choice) -> Option<StepRecording>) -> Option<OutcomeTape> {
-    let ((tape, inputs, cuts), [before, after]) = once(Choice::Equal)?;
-    let ((other, _, others), [earlier, later]) = once(Choice::Apart)?;
+    let first = once(Choice::Equal)?;
+    let second = once(Choice::Apart)?;
+    let (tape, inputs, cuts) = first.recorded;
+    let (other, _, others) = second.recorded;
     let agree = cuts.len() == others.len() && cuts.iter().zip(&others).all(|(a, b)| a.agrees(b));
     if !agree || tape != other {
         return None;
     }
+    let ([before, after], [earlier, later]) = (first.counts, second.counts);
     let growth = growth([&before, &after], [&earlier, &later])?;
-    let (between, last) = in_parts(tape, cuts)?;
-    let machine = Machine::new(&last, inputs);
-    let frame = machine.frame();
+    let (between, last) = in_parts(tape, inputs, cuts, first.steady)?;
     Some(OutcomeTape {
         between,
-        machine,
-        frame,
+        last,
         growth,
         numbers: Vec::new(),
     })
@@ -344,63 +342,90 @@ fn input(value: &Value<f64>, counts: &mut Chosen) -> Option<Value<Traced>> {
     Some(value)
 }
 
-fn recorded_step(all: &Recordable, fixed: &Fixed, from: &Places<f64>) -> Option<OutcomeTape> {
-    let routine = all.step.as_ref()?;
-    twice(|choice| {
-        let mut places = all.places(fixed)?;
-        let (mut before, mut after) = (Chosen::by(choice), Vec::new());
-        let model = from.get(at::MODEL).cloned();
-        let recorded = record_with_solves(model, || {
-            let mut whole = Vec::new();
-            for at in [at::STATE, at::WORK] {
-                let value = input(from.get(at)?, &mut before)?;
-                whole.push(value.clone());
-                *places.get_mut(at)? = value;
-            }
-            value_of(&routine.body, &mut places)?;
-            let mut outputs = Vec::new();
-            for (at, before) in [at::STATE, at::WORK].into_iter().zip(&whole) {
-                let value = places
-                    .get(at)
-                    .filter(|value| alike(&uncounted(before), &uncounted(value)))?;
-                numbers(value, &mut outputs)?;
-                counts(value, &mut after);
-            }
-            Some(outputs)
-        })?;
-        Some((recorded, [before.all, after]))
-    })
+/// Records for all models; if the recording would depend on numbers of the model, records for one model.
+fn stored(
+    tapes: &SharedTapes,
+    from: &Places<f64>,
+    record: impl Fn(bool) -> Option<OutcomeTape>,
+) -> Option<Arc<OutcomeTape>> {
+    let (is_bound, tape) = match record(false) {
+        Some(tape) => (false, tape),
+        None => (true, record(true)?),
+    };
+    Some(tapes.store(Kinds::of(from)?, is_bound, tape))
 }
 
-fn recorded_watch(
-    all: &Recordable,
-    which: Watched,
-    fixed: &Fixed,
-    from: &Places<f64>,
-) -> Option<OutcomeTape> {
-    let routine = all.watched.get(which as usize)?.as_ref()?;
-    twice(|choice| {
-        let mut places = all.places(fixed)?;
-        let recorded = record(|| {
-            let mut chosen = Chosen::by(choice);
-            let state = input(from.get(at::STATE)?, &mut chosen)?;
-            *places.get_mut(at::STATE)? = state;
-            // A function that reads the memory of a solver is not recorded.
-            if let Some(work) = input(from.get(at::WORK)?, &mut chosen) {
-                *places.get_mut(at::WORK)? = work;
-            }
-            *places.get_mut(at::OUT)? = Value::List(Vec::new());
-            value_of(&routine.body, &mut places)?;
-            let Value::List(list) = places.get(at::OUT)? else {
-                return None;
-            };
-            let numbers = list.iter().map(|x| match x {
-                Value::Real(x) => Some(*x),
-                _ => None,
-            });
-            numbers.collect()
-        })?;
-        let (tape, inputs) = recorded;
-        Some(((tape, inputs, Vec::new()), [Vec::new(), Vec::new()]))
-    })
+impl Recordable {
+    fn recorded_step(&self, from: &Places<f64>) -> Option<Arc<OutcomeTape>> {
+        let tapes = self.step.as_ref()?;
+        let once = |choice, is_bound| {
+            let (mut before, mut after) = (Chosen::by(choice), Vec::new());
+            let mut steady = 0;
+            let recorded = record_with_solves(|| {
+                let (mut places, count) = self.places(from, is_bound)?;
+                steady = count;
+                let mut whole = Vec::new();
+                for at in [at::STATE, at::WORK] {
+                    let value = input(from.get(at)?, &mut before)?;
+                    whole.push(value.clone());
+                    *places.get_mut(at)? = value;
+                }
+                value_of(&tapes.routine.body, &mut places)?;
+                let mut outputs = Vec::new();
+                for (at, before) in [at::STATE, at::WORK].into_iter().zip(&whole) {
+                    let value = places
+                        .get(at)
+                        .filter(|value| alike(&uncounted(before), &uncounted(value)))?;
+                    numbers(value, &mut outputs)?;
+                    counts(value, &mut after);
+                }
+                Some(outputs)
+            })?;
+            Some(StepRecording {
+                recorded,
+                steady,
+                counts: [before.all, after],
+            })
+        };
+        stored(tapes, from, |is_bound| {
+            twice(|choice| once(choice, is_bound))
+        })
+    }
+
+    fn recorded_watch(&self, which: Watched, from: &Places<f64>) -> Option<Arc<OutcomeTape>> {
+        let tapes = self.watched.get(which as usize)?.as_ref()?;
+        let once = |choice, is_bound| {
+            let mut steady = 0;
+            let recorded = record_with_solves(|| {
+                let (mut places, count) = self.places(from, is_bound)?;
+                steady = count;
+                let mut chosen = Chosen::by(choice);
+                let state = input(from.get(at::STATE)?, &mut chosen)?;
+                *places.get_mut(at::STATE)? = state;
+                // A function that reads the memory of a solver is not recorded.
+                if let Some(work) = input(from.get(at::WORK)?, &mut chosen) {
+                    *places.get_mut(at::WORK)? = work;
+                }
+                *places.get_mut(at::OUT)? = Value::List(Vec::new());
+                value_of(&tapes.routine.body, &mut places)?;
+                let Value::List(list) = places.get(at::OUT)? else {
+                    return None;
+                };
+                let numbers = list.iter().map(|x| match x {
+                    Value::Real(x) => Some(*x),
+                    _ => None,
+                });
+                numbers.collect()
+            })?;
+            // An evaluation at a node solves no equations.
+            recorded.2.is_empty().then_some(StepRecording {
+                recorded,
+                steady,
+                counts: [Vec::new(), Vec::new()],
+            })
+        };
+        stored(tapes, from, |is_bound| {
+            twice(|choice| once(choice, is_bound))
+        })
+    }
 }

@@ -1,7 +1,8 @@
 //! `clebsch derive`: the equations of a model, from its text.
-//! Takes a model of the gallery, a file or standard input; gives text, LaTeX, Markdown, Rust or JSON.
+//! Takes a model of the gallery, a file or standard input; gives text, LaTeX, Markdown, Rust, JSON or a list of operations.
 
 pub mod generated;
+mod program;
 
 use crate::commands::show::statement;
 use crate::models::gallery::{Citations, Gallery};
@@ -31,6 +32,11 @@ pub fn derive(
     let text = |key: &str| matches.get_one::<String>(key).map_or("", String::as_str);
     if matches.get_flag("write") {
         return write_all(gallery, Path::new("generated"));
+    }
+    if text("format") == "program" {
+        let program = program::program(gallery, text("model"), streams)?;
+        streams.out.write_all(program.as_bytes())?;
+        return Ok(());
     }
     let (name, source, mut citations) = source(gallery, text("model"), streams.input)?;
     if matches.get_flag("no-thesis") {

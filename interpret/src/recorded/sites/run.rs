@@ -3,6 +3,7 @@
 use super::load::{column, extend, fill, numbers_of, store};
 use super::{Lists, SiteRecording};
 use crate::code::{Code, Places};
+use crate::listing::{FieldNames, Section, numbered};
 use crate::map_scalar::alike;
 use crate::recorded::form::{is_same, stands};
 use crate::recorded::loop_inputs::{Fixed, InputSource, List};
@@ -113,6 +114,38 @@ impl SiteTape {
             gives: first.gives,
             frames: Pool::new(),
         })
+    }
+
+    /// The operations at one site as text.
+    pub fn section(&self, title: &str, names: &FieldNames) -> Section {
+        let mut inputs = numbered("unused", self.machine.inputs());
+        let mut name = |kind: &Value<f64>, path: &str, components: &[(usize, usize)]| {
+            let mut own = Vec::new();
+            names.numbers(path, kind, &mut own);
+            for (input, component) in components {
+                if let (Some(slot), Some(name)) = (inputs.get_mut(*input), own.get(*component)) {
+                    slot.clone_from(name);
+                }
+            }
+        };
+        for source in &self.steady {
+            let path = match &source.from {
+                ConstantPlace::Around(path) => names.path(path),
+                ConstantPlace::Of(list, site) => format!("{}[{site}]", names.list(list)),
+            };
+            name(&source.kind, &path, &source.components);
+        }
+        for source in &self.moving {
+            let (list, off) = &source.from;
+            let list = names.list(list);
+            let path = match off {
+                0 => format!("{list}[k]"),
+                off => format!("{list}[k{off:+}]"),
+            };
+            name(&source.kind, &path, &source.components);
+        }
+        let outputs = numbered("result", self.machine.outputs());
+        Section::of(title, &self.machine, &inputs, &outputs)
     }
 
     /// Whether the values that the tape assumes constant are unchanged.

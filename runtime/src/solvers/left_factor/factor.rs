@@ -8,7 +8,7 @@ use crate::saved::{Saved, Words, optional};
 use crate::solvers::Method;
 use crate::solvers::moser_veselov::Poinsot;
 use crate::validate::mirrored_difference;
-use crate::{ParameterError, Problem, Real, Rotation};
+use crate::{OfScalars, ParameterError, Problem, Real, Rotation};
 use core::fmt;
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -53,6 +53,23 @@ impl<const N: usize> Saved for LeftFactor<N, f64> {
         symmetric.words(words);
         // True in three dimensions, false otherwise.
         optional(space, words, || None);
+    }
+}
+
+impl<const N: usize, T: Real> OfScalars for LeftFactor<N, T> {
+    type Scalar = T;
+    type Over<U: Real> = LeftFactor<N, U>;
+
+    fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> LeftFactor<N, U> {
+        LeftFactor {
+            given: self.given.over(change),
+            left: self.left.over(change),
+            right: self.right.over(change),
+            framed: self.framed.over(change),
+            plain: self.plain,
+            space: (self.space.as_ref()).map(|(body, turn)| (body.over(change), turn.over(change))),
+            symmetric: self.symmetric,
+        }
     }
 }
 
@@ -136,6 +153,16 @@ fn polar<T: Real, const N: usize>(c: &SMatrix<T, N, N>) -> Option<SMatrix<T, N, 
 }
 
 impl<const N: usize, T: Real> LeftFactor<N, T> {
+    /// Whether both have the same form, so that the operations of a step are the same.
+    #[doc(hidden)]
+    pub fn is_alike(&self, other: &Self) -> bool {
+        let bodies = match (&self.space, &other.space) {
+            (Some((a, _)), Some((b, _))) => a.is_diagonal() == b.is_diagonal(),
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        bodies && (self.plain, self.symmetric) == (other.plain, other.symmetric)
+    }
+
     /// Validates a matrix as a left factor.
     ///
     /// One eigenvalue of a symmetric matrix may be zero, as for a flat body. Any other matrix must have a positive
