@@ -60,8 +60,8 @@ pub const JUDGES: [Judge; 7] = [
     Judge {
         name: "interpreted gallery",
         folders: &[ENGINE, RUNTIME],
-        filter: "",
-        arguments: &["-p", "clebsch-interpret", "--test", "gallery"],
+        filter: "gallery::",
+        arguments: &["-p", "clebsch-interpret", "--test", "interpret"],
     },
     Judge {
         name: "interpreted",
