@@ -1,11 +1,6 @@
 //! Steppers of models stated in these tests, on every group and in any dimension, for features that the gallery does not use. Most
 //! models run from their text. Tests of names in a crate, of other scalars and of ensembles compile theirs.
 
-// The fields of the models are Greek letters, as in the papers.
-#![allow(mixed_script_confusables, confusable_idents)]
-// Some models are deliberately of first order or lack a small-step limit; the macro warns about these with this lint.
-#![allow(deprecated)]
-
 mod blocks;
 mod body_n;
 mod bracket;

@@ -81,7 +81,7 @@ pub(crate) type Given = Vec<(String, Vec<f64>)>;
 /// Values by name, as [`Given`].
 macro_rules! given {
     ($($name:ident: $value:expr),* $(,)?) => {
-        vec![$((stringify!($name).to_owned(), $crate::text_model::Numbers::numbers(&$value))),*]
+        vec![$((stringify!($name).to_owned(), $crate::stated::text_model::Numbers::numbers(&$value))),*]
     };
 }
 pub(crate) use given;

@@ -1,8 +1,8 @@
 //! Random problems for models that use Newton's method, and the residual of the derived equations at three consecutive nodes. A
 //! stream of draws gives data, and the step size for a rotation of about one radian.
 
-use crate::derived_residual::DerivedResidual;
-use crate::text_model::{Given, Motion, Numbers, TextModel, given};
+use crate::stated::derived_residual::DerivedResidual;
+use crate::stated::text_model::{Given, Motion, Numbers, TextModel, given};
 use clebsch::card::Kind;
 use clebsch::nalgebra::{Matrix3, Matrix4, Quaternion, SMatrix, SVector, Vector3};
 use clebsch::{RigidMotion, Rotation};
