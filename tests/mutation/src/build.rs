@@ -55,7 +55,14 @@ pub const JUDGES: [Judge; 7] = [
         name: "motion",
         folders: &[RUNTIME],
         filter: "",
-        arguments: &["-p", "clebsch-motion", "--tests"],
+        arguments: &[
+            "-p",
+            "clebsch-motion",
+            "--test",
+            "motion",
+            "--test",
+            "lines",
+        ],
     },
     Judge {
         name: "interpreted gallery",

@@ -9,29 +9,17 @@
     missing_docs
 )]
 
-#[path = "lines/action.rs"]
 mod action;
-#[path = "lines/against_hand/mod.rs"]
 mod against_hand;
-#[path = "lines/banded_by_hand.rs"]
 mod banded_by_hand;
-#[path = "lines/constraints.rs"]
 mod constraints;
-#[path = "lines/experiments.rs"]
 mod experiments;
-#[path = "lines/flaschka.rs"]
 mod flaschka;
-#[path = "lines/laws.rs"]
 mod laws;
-#[path = "lines/models/mod.rs"]
 mod models;
-#[path = "lines/quaternion_chains.rs"]
 mod quaternion_chains;
-#[path = "lines/reflection.rs"]
 mod reflection;
-#[path = "lines/rossby.rs"]
 mod rossby;
-#[path = "lines/shear.rs"]
 mod shear;
 
 use action::{stationarity, stationarity_weighed};
