@@ -1,6 +1,6 @@
 //! Blocks of work for the elastic bodies in `models/elastic/`, compiled, and for hand-written steppers: the same steps from the
-//! initial state of the model's case. `interpret/tests/elastic/against_hand.rs` compares the hand-written steppers with the model
-//! files; here each statement is compared with the hand-written stepper.
+//! initial state of the model's case. `interpret/tests/interpret_long/elastic/against_hand.rs` compares the hand-written steppers with
+//! the model files; here each statement is compared with the hand-written stepper.
 
 use crate::loops::{generated, written};
 use crate::operation_counts::Block;

@@ -1,9 +1,6 @@
 //! Wraps the generated steppers of the gallery as `Motion`, so that the tests apply the same measurements to every stepper.
 //! Starting data are plain arrays.
 
-// Each test binary includes this file and uses part of it.
-#![allow(dead_code)]
-
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Rotation};
 use clebsch_models::free_body::{

@@ -1,6 +1,5 @@
 //! Shared by the tests: a small deterministic random source, bodies, and the residual of the Moser-Veselov equation without the
 //! formulas of the solver.
-#![allow(dead_code, reason = "each test binary uses its own part")]
 
 use clebsch::linalg::{axial_of_difference, hat};
 use clebsch::nalgebra::{Matrix3, Vector3};

@@ -55,13 +55,20 @@ pub const JUDGES: [Judge; 7] = [
         name: "motion",
         folders: &[RUNTIME],
         filter: "",
-        arguments: &["-p", "clebsch-motion", "--tests"],
+        arguments: &[
+            "-p",
+            "clebsch-motion",
+            "--test",
+            "motion",
+            "--test",
+            "lines",
+        ],
     },
     Judge {
         name: "interpreted gallery",
         folders: &[ENGINE, RUNTIME],
-        filter: "",
-        arguments: &["-p", "clebsch-interpret", "--test", "gallery"],
+        filter: "gallery::",
+        arguments: &["-p", "clebsch-interpret", "--test", "interpret"],
     },
     Judge {
         name: "interpreted",

@@ -1,5 +1,6 @@
 //! Fuzzing of the engine: it never panics, hangs or exhausts memory. Inputs of at most 10 kB are random token streams, mutated
-//! valid models and adversarial texts. Each input has limits on work and peak memory. `many.rs` tests more inputs.
+//! valid models and adversarial texts. Each input has limits on work and peak memory. These tests have their own binary, because
+//! their allocator or a stack overflow may end the process.
 
 mod adversarial;
 mod kinds;
@@ -7,7 +8,8 @@ mod memory;
 mod probe;
 mod tokens;
 
-use clebsch_oracle::sizes::FUZZED;
+use clebsch_oracle::oracle::points::asked_for;
+use clebsch_oracle::sizes::{FUZZED, FUZZED_LONG};
 use kinds::{judge, judge_mutated};
 use probe::{Input, probe_all};
 use std::sync::{Mutex, MutexGuard};
@@ -33,6 +35,17 @@ fn mutated_models() {
     judge_mutated(&probe_all(0..FUZZED, |number| {
         kinds::mutated(number, &models)
     }));
+}
+
+/// Tests the inputs after the first [`FUZZED`] of each kind; `FUZZ_INPUTS=100000` requests a hundred thousand of each kind.
+#[test]
+#[ignore = "derives several thousand texts"]
+fn token_streams_and_mutated_models() {
+    let _turn = alone();
+    let inputs = FUZZED..asked_for("FUZZ_INPUTS", FUZZED_LONG);
+    judge(&probe_all(inputs.clone(), kinds::stream));
+    let models = kinds::models();
+    judge_mutated(&probe_all(inputs, |number| kinds::mutated(number, &models)));
 }
 
 /// Probes each given input.
