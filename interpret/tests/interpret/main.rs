@@ -11,5 +11,6 @@ mod gallery;
 mod lattices;
 mod linear_in_velocity;
 mod other;
+mod shared_tapes;
 mod side_by_side;
 mod steps;

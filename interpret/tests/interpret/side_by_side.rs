@@ -4,7 +4,7 @@ use clebsch::card::{Card, OpenError, Settings, Trajectory};
 use clebsch_models::Case;
 
 /// Everything a trajectory shows at a node, as bits.
-fn seen(t: &dyn Trajectory, card: &Card) -> Vec<u64> {
+pub fn seen(t: &dyn Trajectory, card: &Card) -> Vec<u64> {
     let mut out = vec![0.0; card.observable_count() + 2 * card.invariant_count()];
     let (observed, rest) = out.split_at_mut(card.observable_count());
     let (invariants, scales) = rest.split_at_mut(card.invariant_count());
