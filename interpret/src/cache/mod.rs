@@ -1,4 +1,4 @@
-//! A folder that keeps what is derived from texts, so that clebsch derives an unchanged model once. Takes the key of a
+//! A folder that keeps derivations of texts, so that clebsch derives an unchanged model once. Takes the key of a
 //! derivation; gives its data if an earlier process has stored it.
 //!
 //! A cache never fails: if a file cannot be read or written, clebsch derives the model. Nothing in it depends on the
@@ -48,7 +48,7 @@ pub struct Cache {
     limits: Limits,
 }
 
-/// What identifies a derivation.
+/// Identifies a derivation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Key<'a> {
     /// The kind of the data.

@@ -1,4 +1,4 @@
-//! What a run needs of a derivation, as plain data: emitted programs as text, and words of cards. A run starts from this data,
+//! The data of a derivation that a run needs: emitted programs as text, and words of cards. A run starts from this data,
 //! whether the derivation has just been made or the cache has kept its data.
 
 mod body;
