@@ -21,9 +21,11 @@ mod words;
 
 pub use commands::derive::generated;
 pub use models::gallery;
+pub use terminal::cache_folder::cache_of_process;
 pub use terminal::{Streams, failure};
 
 use clap::ArgMatches;
+use clebsch_interpret::Cache;
 use commands::{check, compare, converge, derive, figures, list, new, plot, run, show, sweep};
 use failure::{DONE, FAILED, Failure, USAGE};
 use gallery::Gallery;
@@ -62,7 +64,8 @@ fn on_streams_of_process(arguments: impl IntoIterator<Item = OsString>, gallery:
         progress: io::stderr().is_terminal(),
         width: width::of_the_terminal(),
     };
-    execute(arguments, gallery, &mut streams)
+    let gallery = gallery.clone().with_cache(cache_of_process());
+    execute(arguments, &gallery, &mut streams)
 }
 
 /// Runs `arguments` (the first is the program's name) and gives the exit code.
@@ -97,6 +100,14 @@ pub fn execute(
         ["run", "sweep", "collect", "compare", "converge", "figures"].contains(&name)
             && matches.get_flag("json")
     });
+    let without_cache = matches.subcommand().is_some_and(|(_, matches)| {
+        let flag = matches.try_get_one::<bool>(arguments::NO_CACHE);
+        flag.is_ok_and(|given| given == Some(&true))
+    });
+    let gallery = match without_cache {
+        true => &gallery.clone().with_cache(Cache::none()),
+        false => gallery,
+    };
     let done = dispatch(&matches, gallery, streams);
     let done = done.and_then(|code| {
         streams.out.flush()?;

@@ -10,6 +10,8 @@ if [ -z "$browser" ]; then
 fi
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
+# Not the cache of the user.
+export CLEBSCH_CACHE=off
 clebsch() { cargo clebsch "$@" >/dev/null; }
 clebsch run heavy-top --case general --steps 500 --out "$out/top"
 clebsch run kepler --steps 500 --out "$out/kepler"

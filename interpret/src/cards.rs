@@ -2,12 +2,14 @@
 //! the result.
 
 use crate::Refused;
+use crate::cache::Cache;
+use crate::derived::{self, Body, Expanded};
 use crate::lines::{Carded, LineModel, NoLine};
 use crate::opened::{Opened, Text};
 use crate::signs::Agreement;
 use clebsch::card::{Card, Invariant, OpenError, Settings};
-use clebsch_core::derive::warnings::Warning;
-use clebsch_core::document::{self, InvariantWords};
+use clebsch_core::diagnostic::Report;
+use clebsch_core::document::InvariantWords;
 use clebsch_core::lattice::{ChainConfig, Lattice};
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::{Model, Statement};
@@ -17,28 +19,26 @@ use std::rc::Rc;
 use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 
 /// A card, and the warnings of its text.
-type CardWithWarnings = (Card, Vec<Warning>);
+type CardWithWarnings = (Card, Vec<Report>);
 
-/// Cards by their texts and the chosen sizes or sites, and whether the text has warnings.
-static KNOWN: RwLock<BTreeMap<String, (Card, bool)>> = RwLock::new(BTreeMap::new());
+/// Cards with the warnings of their texts, by the texts and the chosen sizes or sites.
+static KNOWN: RwLock<BTreeMap<String, CardWithWarnings>> = RwLock::new(BTreeMap::new());
 
-/// The card of a key, computed once. Places in a text belong to the thread that has read it: if the text has warnings, it is
-/// derived again for them.
+/// The card of a key, computed once.
 fn once(
     key: String,
-    make: impl FnOnce(Option<Card>) -> Result<CardWithWarnings, Refused>,
+    make: impl FnOnce() -> Result<CardWithWarnings, Refused>,
 ) -> Result<CardWithWarnings, Refused> {
     let all = KNOWN.read().unwrap_or_else(PoisonError::into_inner);
-    let known = all.get(&key).copied();
+    let known = all.get(&key).cloned();
     drop(all);
-    if let Some((card, false)) = known {
-        return Ok((card, Vec::new()));
+    if let Some(known) = known {
+        return Ok(known);
     }
-    let (card, warnings) = make(known.map(|(card, _)| card))?;
+    let made = make()?;
     let mut all = KNOWN.write().unwrap_or_else(PoisonError::into_inner);
     // Another thread may have been first.
-    let (card, _) = *all.entry(key).or_insert((card, !warnings.is_empty()));
-    Ok((card, warnings))
+    Ok(all.entry(key).or_insert(made).clone())
 }
 
 /// The largest number of sites of a label.
@@ -81,8 +81,8 @@ pub fn card(source: &str) -> Result<Card, Refused> {
 ///
 /// # Errors
 /// As [`card`].
-pub fn card_and_warnings(source: &str) -> Result<(Card, Vec<Warning>), Refused> {
-    at_sizes(source, None)
+pub fn card_and_warnings(source: &str) -> Result<(Card, Vec<Report>), Refused> {
+    Cache::none().card(source)
 }
 
 /// The card of a model with labels for the chosen numbers of sites and end conditions, and the warnings about the
@@ -90,19 +90,40 @@ pub fn card_and_warnings(source: &str) -> Result<(Card, Vec<Warning>), Refused> 
 ///
 /// # Errors
 /// As [`card`].
-pub fn card_on_lattice(
-    source: &str,
-    choice: &ChainConfig,
-) -> Result<(Card, Vec<Warning>), Refused> {
-    once(format!("{choice:?}\n{source}"), |known| {
-        on_lattice(source, choice, known)
-    })
+pub fn card_on_lattice(source: &str, choice: &ChainConfig) -> Result<(Card, Vec<Report>), Refused> {
+    Cache::none().card_on_lattice(source, choice)
+}
+
+impl Cache {
+    /// The card of a text and the warnings about the model, as [`card_and_warnings`]. The text is derived only if this
+    /// cache does not have it.
+    ///
+    /// # Errors
+    /// As [`card`].
+    pub fn card(&self, source: &str) -> Result<(Card, Vec<Report>), Refused> {
+        at_sizes(source, None, self)
+    }
+
+    /// The card of a model with labels for the chosen numbers of sites and end conditions, as [`card_on_lattice`]. The
+    /// text is derived only if this cache does not have it.
+    ///
+    /// # Errors
+    /// As [`card`].
+    pub fn card_on_lattice(
+        &self,
+        source: &str,
+        choice: &ChainConfig,
+    ) -> Result<(Card, Vec<Report>), Refused> {
+        once(format!("{choice:?}\n{source}"), || {
+            on_lattice(source, choice, self)
+        })
+    }
 }
 
 fn on_lattice(
     source: &str,
     choice: &ChainConfig,
-    known: Option<Card>,
+    cache: &Cache,
 ) -> Result<CardWithWarnings, Refused> {
     let model = pipeline::parse_source(source).map_err(Refused::Model)?;
     let lattice = Lattice::read(&model).map_err(Refused::Model)?;
@@ -118,8 +139,8 @@ fn on_lattice(
     }
     // Functionals of all sites cannot be expanded body by body.
     if !lattice.meshes.is_empty() {
-        return match LineModel::read(source) {
-            Ok(line) => card_of_line((&model, &lattice), choice, line, source, known),
+        return match LineModel::read_with(source, cache) {
+            Ok(line) => card_of_line((&model, &lattice), choice, line, (source, cache)),
             Err(NoLine::Form(why)) => Err(Refused::Form { why }),
             Err(NoLine::Refused(refused)) => Err(refused),
         };
@@ -127,9 +148,9 @@ fn on_lattice(
     let most = most_body_by_body(&model);
     let beyond = |most: usize| choice.counts.iter().any(|n| *n > most);
     if beyond(most.min(MOST_TOGETHER_BODY_BY_BODY)) {
-        match LineModel::read(source) {
+        match LineModel::read_with(source, cache) {
             Ok(line) if !beyond(most) && !line.is_solved_together() => {}
-            Ok(line) => return card_of_line((&model, &lattice), choice, line, source, known),
+            Ok(line) => return card_of_line((&model, &lattice), choice, line, (source, cache)),
             Err(_) if !beyond(most) => {}
             Err(NoLine::Form(why)) => written_out = Some(why),
             // If the interpreter does not support a construct of the program with loops, clebsch expands the chain body
@@ -151,12 +172,14 @@ fn on_lattice(
             most: MOST_BODY_BY_BODY,
         });
     }
-    match body_by_body((&model, &lattice), choice, source, written_out, known) {
+    match body_by_body((&model, &lattice), choice, (source, cache), written_out) {
         // If the chain is too large to expand body by body, use the program with loops over sites.
-        Err(Refused::Model(errors)) if errors.are_of_size() => match LineModel::read(source) {
-            Ok(line) => card_of_line((&model, &lattice), choice, line, source, known),
-            Err(_) => Err(Refused::Model(errors)),
-        },
+        Err(Refused::Model(errors)) if errors.are_of_size() => {
+            match LineModel::read_with(source, cache) {
+                Ok(line) => card_of_line((&model, &lattice), choice, line, (source, cache)),
+                Err(_) => Err(Refused::Model(errors)),
+            }
+        }
         card => card,
     }
 }
@@ -168,11 +191,12 @@ fn on_lattice(
 pub fn card_body_by_body(
     source: &str,
     choice: &ChainConfig,
-) -> Result<(Card, Vec<Warning>), Refused> {
-    once(format!("body by body, {choice:?}\n{source}"), |known| {
+) -> Result<(Card, Vec<Report>), Refused> {
+    once(format!("body by body, {choice:?}\n{source}"), || {
         let model = pipeline::parse_source(source).map_err(Refused::Model)?;
         let lattice = Lattice::read(&model).map_err(Refused::Model)?;
-        body_by_body((&model, &lattice), choice, source, None, known)
+        let stated = (source, &Cache::none());
+        body_by_body((&model, &lattice), choice, stated, None)
     })
 }
 
@@ -180,24 +204,17 @@ pub fn card_body_by_body(
 fn body_by_body(
     (model, lattice): (&Model, &Lattice),
     choice: &ChainConfig,
-    source: &str,
+    (source, cache): (&str, &Cache),
     written_out: Option<String>,
-    known: Option<Card>,
 ) -> Result<CardWithWarnings, Refused> {
-    let derived = pipeline::derive_lattice(model, lattice, choice);
-    let (unfolded, d) = derived.map_err(Refused::Model)?;
-    let warnings = unfolded.declared_warnings(choice, &d.warnings);
-    if let Some(card) = known {
-        return Ok((card, warnings));
-    }
-    let text = Text::of_derivation(d)?;
+    let Expanded { body, words, signs } =
+        derived::kept(cache, (&format!("{choice:?}"), source), || {
+            Expanded::derive(model, lattice, choice)
+        })?;
+    let text = Text::read(body)?;
     let mut opened = Opened::read(&text, None)?;
-    // A model that cannot be read as a chain does not need aligned signs.
-    let signs = clebsch_core::line::signs(model, lattice).unwrap_or_default();
     opened.signs = Agreement::of(signs, lattice, choice, &opened.card);
     let card = kept(opened, |_| None);
-    let d = &text.derivation;
-    let words = document::card_words(lattice, choice, unfolded, d, card.solver);
     let invariants = named(card.invariants, words.invariants);
     let card = Card {
         source: crate::text(source),
@@ -212,7 +229,7 @@ fn body_by_body(
         invariants: Box::leak(invariants.into_boxed_slice()),
         ..card
     };
-    Ok((card, warnings))
+    Ok((card, text.body.warnings))
 }
 
 /// Groups the invariants of an expanded chain as `words` lists them: like invariants of several sites become one with
@@ -237,13 +254,9 @@ fn card_of_line(
     stated: (&Model, &Lattice),
     choice: &ChainConfig,
     line: Arc<LineModel>,
-    source: &str,
-    known: Option<Card>,
+    text: (&str, &Cache),
 ) -> Result<CardWithWarnings, Refused> {
-    let (mut carded, warnings) = Carded::of(stated, choice, line, source)?;
-    if let Some(card) = known {
-        return Ok((card, warnings));
-    }
+    let (mut carded, warnings) = Carded::of(stated, choice, line, text)?;
     let place: &'static OnceLock<Carded> = Box::leak(Box::default());
     let open = move |parameters: &[Vec<f64>], initial: &[Vec<f64>], settings: Settings| {
         let line = place.get().ok_or(NOT_OPEN)?;
@@ -254,26 +267,27 @@ fn card_of_line(
 }
 
 /// The card at given sizes.
-fn at_sizes(source: &str, sizes: Option<&[usize]>) -> Result<CardWithWarnings, Refused> {
-    once(format!("{sizes:?}\n{source}"), |known| {
-        let text = derived(source)?;
-        let warnings = text.derivation.warnings.clone();
-        if let Some(card) = known {
-            return Ok((card, warnings));
-        }
-        let own = source.to_owned();
-        let resize = move |sizes: &[usize]| at_sizes(&own, Some(sizes)).ok();
-        Ok((kept(Opened::read(&text, sizes)?, resize), warnings))
+fn at_sizes(
+    source: &str,
+    sizes: Option<&[usize]>,
+    cache: &Cache,
+) -> Result<CardWithWarnings, Refused> {
+    once(format!("{sizes:?}\n{source}"), || {
+        let text = program_of(source, cache)?;
+        let (own, cache) = (source.to_owned(), cache.clone());
+        let resize = move |sizes: &[usize]| at_sizes(&own, Some(sizes), &cache).ok();
+        let card = kept(Opened::read(&text, sizes)?, resize);
+        Ok((card, text.body.warnings.clone()))
     })
 }
 
 thread_local! {
-    /// The text that this thread derived last: all sizes of a model share one program.
+    /// The text that this thread read last: all sizes of a model share one program.
     static DERIVED: RefCell<Option<(String, Rc<Text>)>> = const { RefCell::new(None) };
 }
 
-/// The derivation of a text and its program, computed once for all sizes.
-fn derived(source: &str) -> Result<Rc<Text>, Refused> {
+/// The program of a text, read once for all sizes.
+fn program_of(source: &str, cache: &Cache) -> Result<Rc<Text>, Refused> {
     let known = DERIVED.with_borrow(|last| {
         let found = last.as_ref().filter(|(text, _)| text == source);
         found.map(|(_, made)| made.clone())
@@ -281,7 +295,8 @@ fn derived(source: &str) -> Result<Rc<Text>, Refused> {
     if let Some(known) = known {
         return Ok(known);
     }
-    let made = Rc::new(Text::of(source)?);
+    let body = derived::kept(cache, ("", source), || Body::derive(source))?;
+    let made = Rc::new(Text::read(body)?);
     DERIVED.set(Some((source.to_owned(), made.clone())));
     Ok(made)
 }

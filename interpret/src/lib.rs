@@ -3,10 +3,12 @@
 //! model; gives a [`Card`](clebsch::card::Card) whose trajectories run.
 
 mod at_particles;
+pub mod cache;
 mod cards;
 mod code;
 mod composed;
 mod constants;
+mod derived;
 mod failure;
 mod functional;
 mod library;
@@ -27,6 +29,7 @@ mod sites;
 mod value;
 
 pub use at_particles::{AtParticles, Placed, Unvalued, at_particles};
+pub use cache::Cache;
 pub use cards::{MOST_BODY_BY_BODY, card, card_and_warnings, card_body_by_body, card_on_lattice};
 
 use clebsch_core::Errors;

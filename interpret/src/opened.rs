@@ -3,6 +3,7 @@
 use crate::Refused;
 use crate::code::{Places, Routine};
 use crate::constants::Constants;
+use crate::derived::{self, Body};
 use crate::listing::FieldNames;
 use crate::lower::{self, Shared, entry};
 use crate::program::{Program, type_name};
@@ -10,7 +11,6 @@ use crate::recorded::Recordable;
 use crate::signs::Agreement;
 use crate::value::{Layout, Value};
 use clebsch::card::Card;
-use clebsch_core::{Derivation, derive_source, emit};
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
@@ -97,36 +97,22 @@ pub struct Opened {
     pub recordable: OnceLock<Recordable>,
 }
 
-/// A derived text and its emitted program, which is the same for all sizes.
+/// A derived text, and the items of its emitted program, which is the same for all sizes.
 pub struct Text {
-    /// The derivation.
-    pub derivation: Derivation,
+    /// The data of its derivation.
+    pub body: Body,
     /// The emitted items.
     pub program: Program,
 }
 
 impl Text {
-    /// Derives a text.
+    /// Reads the emitted program.
     ///
     /// # Errors
-    /// [`Refused`], if the text is not a valid model or the model does not have a stepper.
-    pub fn of(source: &str) -> Result<Self, Refused> {
-        Self::of_derivation(derive_source(source).map_err(Refused::Model)?)
-    }
-
-    /// Emits the program of a derivation.
-    ///
-    /// # Errors
-    /// [`Refused`], if the model does not have a stepper.
-    pub fn of_derivation(derivation: Derivation) -> Result<Self, Refused> {
-        if let Some(refused) = emit::refusal_of_read(&derivation) {
-            return Err(Refused::Model(refused.into()));
-        }
-        let program = Program::read(emit::emit(&derivation, false))?;
-        Ok(Text {
-            derivation,
-            program,
-        })
+    /// If the text of the program is not items. Emission never produces such a text.
+    pub fn read(body: Body) -> Result<Self, Refused> {
+        let program = derived::program(&body.program)?;
+        Ok(Text { body, program })
     }
 }
 
@@ -136,18 +122,15 @@ impl Opened {
     /// # Errors
     /// [`Refused`] for models that need a build.
     pub fn read(text: &Text, sizes: Option<&[usize]>) -> Result<Self, Refused> {
-        let Text {
-            derivation: d,
-            program,
-        } = text;
-        let name = d.spec.name.clone();
+        let Text { body, program } = text;
+        let name = body.name.clone();
         let (values, chosen) = chosen_sizes(program, &name, sizes)?;
         let constants = Constants::new(program, &name, &values);
         let card = constants.card()?;
         let mut shared = Shared::new(program, values.clone());
         let functions = functions(&mut shared, &name).map_err(|refused| match refused {
             // An unsupported construct in Newton's method means an unsupported method.
-            Refused::Construct(what) if has_newton(d) => Refused::Method {
+            Refused::Construct(what) if body.has_newton => Refused::Method {
                 model: name.clone(),
                 method: format!("{} (at `{what}`)", card.solver),
             },
@@ -193,11 +176,6 @@ impl Opened {
         }
         places
     }
-}
-
-fn has_newton(d: &Derivation) -> bool {
-    use clebsch_core::derive::select_solver::Method;
-    matches!(d.solve.method, Method::Newton | Method::Blocks)
 }
 
 /// The field of a state that counts nodes: the only count in it.

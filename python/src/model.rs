@@ -8,6 +8,7 @@ use crate::results::fields;
 use crate::running::Running;
 use crate::to_python::dictionary;
 use clebsch::card::Conserved;
+use clebsch_cli::cache_of_process;
 use clebsch_cli::gallery::Gallery;
 use clebsch_cli::session::{self, Edit, edited, quoted};
 use clebsch_core::expr::symbol::ascii;
@@ -16,6 +17,11 @@ use pyo3::types::{PyDict, PyList};
 
 /// The name in messages of a case assembled from arguments.
 pub(crate) const ARGUMENTS: &str = "arguments";
+
+/// The shipped models, with the cache of the process.
+fn gallery() -> Gallery {
+    Gallery::shipped().with_cache(cache_of_process())
+}
 
 /// A model.
 #[pyclass(frozen, module = "clebsch._clebsch")]
@@ -38,7 +44,7 @@ impl Model {
     #[staticmethod]
     fn of_text(py: Python<'_>, text: &str, name: &str) -> PyResult<Self> {
         guarded(|| {
-            let read = py.detach(|| session::Model::of_text(name, text));
+            let read = py.detach(|| session::Model::of_text(name, text, &cache_of_process()));
             read.map(Self::new)
                 .map_err(|failure| failed(py, &failure, text, name))
         })
@@ -48,7 +54,7 @@ impl Model {
     #[staticmethod]
     fn named(py: Python<'_>, name: &str) -> PyResult<Self> {
         guarded(|| {
-            let read = py.detach(|| session::Model::named(&Gallery::shipped(), name));
+            let read = py.detach(|| session::Model::named(&gallery(), name));
             read.map(Self::new).map_err(|failure| {
                 let text = std::fs::read_to_string(name).unwrap_or_default();
                 failed(py, &failure, &text, name)

@@ -8,6 +8,8 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "${PYTHON:-python3}" -m venv "$folder/venv"
 bin=$folder/venv/bin
+# Not the cache of the user.
+export CLEBSCH_CACHE=$folder/cache
 export PIP_DISABLE_PIP_VERSION_CHECK=1
 "$bin/pip" install --quiet maturin
 if [ -n "${CARGO_TOGETHER:-}" ]; then

@@ -13,7 +13,8 @@ pub(crate) use shard::Shard;
 
 use clap::{Arg, Command};
 use of_a_case::{model, of_a_case, shown_case};
-use option::{json, option};
+pub(crate) use option::NO_CACHE;
+use option::{json, no_cache, option};
 
 /// The largest width of help, because longer lines are hard to read.
 const WIDEST: usize = 100;
@@ -51,7 +52,8 @@ pub fn command(width: Option<usize>) -> Command {
                 .about("Print the text of a model and one of its cases")
                 .after_help("Examples:\n  clebsch show toda-chain\n  clebsch show heavy-top:general")
                 .arg(model())
-                .arg(shown_case()),
+                .arg(shown_case())
+                .arg(no_cache()),
         )
         .subcommand(
             Command::new("case")
@@ -61,7 +63,8 @@ pub fn command(width: Option<usize>) -> Command {
                      clebsch case my-model.clebsch > my-model.toml",
                 )
                 .arg(model())
-                .arg(shown_case()),
+                .arg(shown_case())
+                .arg(no_cache()),
         )
         .subcommand(
             Command::new("new")

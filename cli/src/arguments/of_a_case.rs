@@ -1,6 +1,8 @@
 //! The arguments that select a model and a case, and the options of its run.
 
-use super::option::{flag, json, option, order_number, positive_count, positive_number, step_size};
+use super::option::{
+    flag, json, no_cache, option, order_number, positive_count, positive_number, step_size,
+};
 use clap::{Arg, ArgAction, Command, value_parser};
 
 /// Adds the arguments of every command that runs a case once.
@@ -96,6 +98,7 @@ pub(super) fn of_a_case(command: Command) -> Command {
             )
             .value_parser(positive_count),
         )
+        .arg(no_cache())
 }
 
 pub(super) fn model() -> Arg {

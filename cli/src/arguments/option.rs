@@ -5,10 +5,22 @@ use crate::words::number::{value, whole};
 use clap::{Arg, ArgAction};
 use clebsch::validate::positive_step;
 
+/// The name of the option without a cache.
+pub(crate) const NO_CACHE: &str = "no-cache";
+
 pub(super) fn json() -> Arg {
     flag(
         "json",
         "Print one JSON object on standard output and nothing else",
+    )
+}
+
+/// The option of every command that reads a model to run it.
+pub(super) fn no_cache() -> Arg {
+    flag(
+        NO_CACHE,
+        "Derive the model anew: neither read nor write the cache of derivations. Without this option, the cache is in the folder \
+         $CLEBSCH_CACHE if the variable is set (`off` for no cache), otherwise in the user's folder for caches",
     )
 }
 

@@ -1,6 +1,6 @@
 //! The commands that draw and derive: `plot`, `figures` and `derive`.
 
-use super::option::{flag, json, option};
+use super::option::{flag, json, no_cache, option};
 use clap::builder::PossibleValue;
 use clap::{Arg, ArgAction, Command, value_parser};
 
@@ -59,6 +59,7 @@ pub(super) fn figures() -> Command {
             .value_parser(value_parser!(std::path::PathBuf)),
         )
         .arg(flag("force", "Replace DIR if it contains earlier figures"))
+        .arg(no_cache())
         .arg(json())
 }
 

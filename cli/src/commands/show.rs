@@ -4,7 +4,8 @@
 use crate::case_file::{self, stated::Stated};
 use crate::models::gallery::{self, Gallery};
 use crate::named::cases::WhichCase;
-use crate::named::resolve::{ModelText, NamedModel, case_of, entry, resolve_model};
+use crate::named::model_file::ModelText;
+use crate::named::resolve::{NamedModel, case_of, entry, resolve_model};
 use crate::terminal::Streams;
 use crate::terminal::failure::Failure;
 use clap::ArgMatches;

@@ -6,6 +6,7 @@ use crate::words::plain::shown;
 use crate::words::suggestion::nearest;
 use clebsch::card::{Card, Kind};
 use clebsch_core::pipeline;
+use clebsch_interpret::Cache;
 pub use clebsch_models::{Case, CaseFile, Citations, Entry, Family, ModelFile};
 
 /// All models, in the order in which they are listed.
@@ -15,6 +16,8 @@ pub struct Gallery {
     pub entries: Vec<Entry>,
     /// Models as text, which run without a build.
     pub files: Vec<ModelFile>,
+    /// Keeps what is derived from texts. By default there is none, so that tests do not use the cache of the user.
+    pub cache: Cache,
 }
 
 /// A model of the gallery.
@@ -31,7 +34,14 @@ impl Gallery {
         Self {
             entries: clebsch_models::gallery(),
             files: clebsch_models::FILES.to_vec(),
+            cache: Cache::none(),
         }
+    }
+
+    /// These models with another cache.
+    #[must_use]
+    pub fn with_cache(self, cache: Cache) -> Self {
+        Self { cache, ..self }
     }
 
     /// The compiled model called `name`: `heavy-top`, or `HeavyTop` as in the model's text.
@@ -49,11 +59,13 @@ impl Gallery {
     pub(crate) fn get(&self, name: &str) -> Option<GalleryModel<'_>> {
         let mut entries = self.entries.iter();
         let compiled = entries.find(|entry| entry.card.kebab == name || entry.card.name == name);
-        let is_own =
-            |file: &&ModelFile| file.name == name || declared(file.text).is_some_and(|n| n == name);
+        let file = || {
+            let named = self.files.iter().find(|file| file.name == name);
+            named.or_else(|| self.files.iter().find(|file| declares(file.text, name)))
+        };
         compiled
             .map(GalleryModel::Compiled)
-            .or_else(|| self.files.iter().find(is_own).map(GalleryModel::File))
+            .or_else(|| file().map(GalleryModel::File))
     }
 
     /// The names of all models, compiled ones first.
@@ -70,6 +82,11 @@ impl Gallery {
         };
         Failure::Usage(format!("no model `{}`; {near}", shown(name)))
     }
+}
+
+/// Whether a model's text declares a name. A text without the name is not parsed.
+fn declares(text: &str, name: &str) -> bool {
+    text.contains(name) && declared(text).is_some_and(|own| own == name)
 }
 
 /// The name that a model's text declares; `None` if the text does not parse.

@@ -6,7 +6,7 @@ use crate::case_file::stated::Stated;
 use crate::models::constraints::card_has_constraints;
 use crate::models::fields::{is_momentum, sample_values, turns};
 use crate::models::gallery::{Case, Citations, Entry};
-use crate::named::cases::WhichCase;
+use crate::named::cases::{NamedCases, WhichCase};
 use crate::named::sample::onto_constraints;
 use crate::terminal::failure::Failure;
 use crate::words::plain::shown;
@@ -14,20 +14,33 @@ use clebsch::card::{Card, Field};
 use clebsch_core::lattice::ChainConfig;
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::{Model, Statement};
-use clebsch_interpret::Refused;
+use clebsch_interpret::{Cache, Refused};
 use std::io::Write;
+
+/// The text of a model.
+pub(crate) struct ModelText {
+    /// The file or model, as messages name it.
+    pub name: String,
+    /// The statement.
+    pub text: String,
+    /// Its cases.
+    pub cases: NamedCases,
+    /// Whether it is a model file, named by its path.
+    pub is_path: bool,
+    /// Keeps what is derived from it.
+    pub cache: Cache,
+}
 
 /// The model of a text, with the placeholder case if that is the one to run. Warnings go to `err`.
 ///
 /// # Errors
 /// Usage: the text does not derive, or the model needs a build.
 pub(crate) fn read(
-    name: &str,
-    text: &str,
+    model: &ModelText,
     case: &WhichCase,
     err: &mut dyn Write,
 ) -> Result<Entry, Failure> {
-    let name = shown(name).to_string();
+    let (name, text) = (shown(&model.name).to_string(), model.text.as_str());
     let of_case = case.text().map(|c| (c.file.as_str(), c.text.as_str()));
     let filled = case_file::functions::put_in(text, of_case)?;
     let text = filled.text.as_str();
@@ -37,8 +50,8 @@ pub(crate) fn read(
         Some(stated) => chosen(stated, of_case)?,
     };
     let read = match &choice {
-        None => clebsch_interpret::card_and_warnings(text),
-        Some(choice) => clebsch_interpret::card_on_lattice(text, choice),
+        None => model.cache.card(text),
+        Some(choice) => model.cache.card_on_lattice(text, choice),
     };
     let (card, warnings) = read.map_err(|refused| match refused {
         Refused::Model(errors) => filled
@@ -48,7 +61,7 @@ pub(crate) fn read(
     })?;
     for warning in warnings {
         // A warning that cannot be written is not lost: the derivation contains it.
-        let _ = write!(err, "{}", warning.diagnostic.render("warning", text, &name));
+        let _ = write!(err, "{}", warning.render("warning", text, &name));
     }
     let cases = match (case, stated.zip(choice)) {
         (WhichCase::Text(_) | WhichCase::First, _) => Vec::new(),

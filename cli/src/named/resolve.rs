@@ -4,7 +4,7 @@
 use crate::case_file;
 use crate::models::gallery::{self, Entry, Gallery, GalleryModel};
 use crate::named::cases::{self, CaseText, NamedCases, WhichCase, is_file};
-use crate::named::model_file;
+use crate::named::model_file::{self, ModelText};
 use crate::overrides;
 use crate::terminal::Streams;
 use crate::terminal::bounded;
@@ -18,18 +18,6 @@ use toml::de::DeTable;
 
 /// The placeholder case of a model file.
 const SAMPLE: &str = "sample";
-
-/// The text of a model.
-pub(crate) struct ModelText {
-    /// The file or model, as messages name it.
-    pub name: String,
-    /// The statement.
-    pub text: String,
-    /// Its cases.
-    pub cases: NamedCases,
-    /// Whether it is a model file, named by its path.
-    pub is_path: bool,
-}
 
 /// The model that a name on the command line refers to.
 pub(crate) enum NamedModel<'a> {
@@ -132,7 +120,7 @@ pub(crate) fn entry(
     let mut warnings = Vec::new();
     let read = {
         let _told = Waiting::showing("deriving the equations".to_owned(), streams.progress);
-        model_file::read(&text.name, &text.text, case, &mut warnings)
+        model_file::read(text, case, &mut warnings)
     };
     // A warning that cannot be written is not lost: the derivation contains it.
     let _ = streams.err.write_all(&warnings);
@@ -186,6 +174,7 @@ pub(crate) fn named<'a>(
                 text: file.text.to_owned(),
                 cases: NamedCases::shipped(file),
                 is_path: false,
+                cache: gallery.cache.clone(),
             }));
         }
         None => {}
@@ -216,6 +205,7 @@ pub(crate) fn named<'a>(
         text: bounded::text(path, "model file")?,
         cases: NamedCases::beside(path),
         is_path: true,
+        cache: gallery.cache.clone(),
     }))
 }
 

@@ -7,14 +7,14 @@ use crate::commands::derive::{Proofs, derived};
 use crate::commands::show;
 use crate::models::gallery::{Citations, Entry, Gallery};
 use crate::named::cases::{CaseText, NamedCases, WhichCase};
-use crate::named::model_file;
-use crate::named::resolve::{ModelText, NamedModel, named};
+use crate::named::model_file::{self, ModelText};
+use crate::named::resolve::{NamedModel, named};
 use crate::plan::Plan;
 use crate::terminal::Streams;
 use crate::terminal::failure::Failure;
 use clebsch::card::Card;
 use clebsch_core::{Errors, lattice, pipeline};
-use clebsch_interpret::Refused;
+use clebsch_interpret::{Cache, Refused};
 use std::borrow::Cow;
 use std::io;
 
@@ -40,16 +40,17 @@ pub struct Planned {
 }
 
 impl Model {
-    /// The model of a text, which messages call `name`.
+    /// The model of a text, which messages call `name`. A cache may have its derivation.
     ///
     /// # Errors
     /// Usage: the text does not derive, which the message shows with a caret; or the model needs a build.
-    pub fn of_text(name: &str, text: &str) -> Result<Self, Failure> {
+    pub fn of_text(name: &str, text: &str, cache: &Cache) -> Result<Self, Failure> {
         Self::read(ModelText {
             name: name.to_owned(),
             text: text.to_owned(),
             cases: NamedCases::default(),
             is_path: false,
+            cache: cache.clone(),
         })
     }
 
@@ -74,6 +75,7 @@ impl Model {
                     text: entry.card.source.to_owned(),
                     cases: NamedCases::default(),
                     is_path: false,
+                    cache: gallery.cache.clone(),
                 },
                 has_sites: has_sites(entry.card.source),
                 compiled: Some(entry.clone()),
@@ -85,7 +87,7 @@ impl Model {
 
     fn read(text: ModelText) -> Result<Self, Failure> {
         let mut warnings = Vec::new();
-        let entry = model_file::read(&text.name, &text.text, &WhichCase::First, &mut warnings)?;
+        let entry = model_file::read(&text, &WhichCase::First, &mut warnings)?;
         let has_sites = has_sites(&text.text);
         let is_fixed = !has_sites && !gives_functions(&text.text);
         Ok(Self {
@@ -178,8 +180,7 @@ impl Model {
             Some(entry) => Ok(entry.card),
             None => {
                 let text = &self.text;
-                let read =
-                    model_file::read(&text.name, &text.text, &WhichCase::First, &mut io::sink());
+                let read = model_file::read(text, &WhichCase::First, &mut io::sink());
                 read.map(|entry| entry.card)
             }
         }
@@ -199,9 +200,8 @@ impl Model {
             Some(entry) => (Cow::Borrowed(entry), case),
             None => {
                 let which = WhichCase::Text(case.clone());
-                let (name, own) = (&self.text.name, &self.text.text);
                 (
-                    Cow::Owned(model_file::read(name, own, &which, &mut warnings)?),
+                    Cow::Owned(model_file::read(&self.text, &which, &mut warnings)?),
                     case,
                 )
             }

@@ -1,7 +1,8 @@
 //! The interface of a command to the outside: its streams, its failures, the progress of long computations, and
-//! bounded input.
+//! bounded input, and the folder of the cache.
 
 pub(crate) mod bounded;
+pub(crate) mod cache_folder;
 pub mod failure;
 pub(crate) mod waiting;
 

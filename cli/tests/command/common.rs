@@ -249,6 +249,7 @@ where
 pub fn process_in<W: Words + ?Sized>(folder: &str, words: &W) -> Done {
     let words = words.words();
     let mut command = Command::new(env!("CARGO_BIN_EXE_clebsch"));
+    command.env("CLEBSCH_CACHE", "off");
     let done = command.args(&words).current_dir(folder).output();
     let done = done.expect("runs");
     let text = |bytes| String::from_utf8(bytes).expect("UTF-8");

@@ -4,6 +4,8 @@
 mod attitudes;
 mod bits;
 mod book;
+mod cache;
+mod cache_files;
 mod case_files;
 mod cases;
 mod clocks;

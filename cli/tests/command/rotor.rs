@@ -179,6 +179,6 @@ pub fn gallery() -> Gallery {
             citations: Citations::NONE,
             cases: vec![case(), quiet],
         }],
-        files: Vec::new(),
+        ..Gallery::default()
     }
 }

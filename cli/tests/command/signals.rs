@@ -10,7 +10,7 @@ use std::process::{Child, Command, Stdio};
 /// The program with these arguments, ready to run.
 pub fn command(words: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_clebsch"));
-    command.args(words.words());
+    command.args(words.words()).env("CLEBSCH_CACHE", "off");
     command
 }
 

@@ -66,7 +66,7 @@ fn run_while(event: impl FnOnce() + 'static, out: &str, more: &[&str]) -> Done {
             citations: Citations::NONE,
             cases: vec![crate::rotor::case()],
         }],
-        files: Vec::new(),
+        ..Gallery::default()
     };
     MEANWHILE.with(|place| *place.borrow_mut() = Some(Box::new(event)));
     let arguments = ["run", "harmonic-rotor", "--steps", "20", "--out", out];

@@ -3,17 +3,17 @@
 
 use super::LineModel;
 use super::coordinates::{self, UserRole};
+use crate::cache::Cache;
 use crate::cards::named;
 use crate::constants::Constants;
-use crate::opened::Text;
-use crate::{Refused, text};
+use crate::{Refused, derived, text};
 use clebsch::card::{Card, Field, Invariant, Kind};
-use clebsch_core::derive::warnings::Warning;
+use clebsch_core::diagnostic::Report;
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{ChainConfig, ExpandedModel, Kind as QuantityKind, Lattice};
-use clebsch_core::line::{Coordinates, totals_on};
+use clebsch_core::lattice::{self, ChainConfig, ExpandedModel, Kind as QuantityKind, Lattice};
+use clebsch_core::line::Coordinates;
+use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::Model;
-use clebsch_core::{document, pipeline};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -62,7 +62,8 @@ struct Placed {
 }
 
 impl Carded {
-    /// The card of a model for the chosen numbers of sites and end conditions, and the warnings about the model.
+    /// The card of a model for the chosen numbers of sites and end conditions, and the warnings about the model. A
+    /// cache may have the short chain.
     ///
     /// # Errors
     /// [`Refused`], if the short chain cannot be derived.
@@ -70,8 +71,8 @@ impl Carded {
         stated: (&Model, &Lattice),
         choice: &ChainConfig,
         model: Arc<LineModel>,
-        source: &str,
-    ) -> Result<(Self, Vec<Warning>), Refused> {
+        (source, cache): (&str, &Cache),
+    ) -> Result<(Self, Vec<Report>), Refused> {
         let (statement, as_stated) = stated;
         let restated = match model.coordinates.as_slice() {
             [] => None,
@@ -98,13 +99,13 @@ impl Carded {
             },
             ..choice.clone()
         };
-        let derived = pipeline::derive_lattice(statement, lattice, &short);
-        let (unfolded, d) = derived.map_err(Refused::Model)?;
-        let whole = Text::of_derivation(d)?;
+        let unfolded = lattice::unfold(statement, lattice, &short).map_err(Refused::Model)?;
+        let derived = derived::kept(cache, (&format!("{short:?}"), source), || {
+            derived::Short::derive(statement, lattice, &short)
+        })?;
         let none = BTreeMap::new();
-        let name = whole.derivation.spec.name.clone();
-        let card = Constants::new(&whole.program, &name, &none).card()?;
-        let warnings = unfolded.declared_warnings(&short, &whole.derivation.warnings);
+        let program = derived::program(&derived.card)?;
+        let card = Constants::new(&program, &derived.name, &none).card()?;
         let expander = Short {
             lattice,
             unfolded: &unfolded,
@@ -134,13 +135,7 @@ impl Carded {
         });
         observed.extend(expander.functionals());
         let (observables, at_observables) = split(observed);
-        let words = document::card_words(
-            lattice,
-            &short,
-            unfolded.clone(),
-            &whole.derivation,
-            card.solver,
-        );
+        let words = derived.words;
         let rows = |name: &str| model.conserved().find(|(own, ..)| *own == name);
         let named = named(card.invariants, words.invariants).into_iter();
         // If every site conserves a quantity, the card lists the sum over sites.
@@ -158,10 +153,10 @@ impl Carded {
         let has_holds = !unfolded.holds.is_empty() || of_sums;
         let named = named.filter(|i| !(has_holds && of_holds(i.name)));
         // If the end conditions omit sites from a total, it is not the sum over all sites and is dropped.
-        let own = totals_on(lattice, &short, &unfolded, &whole.derivation);
         let is_same = |name: &str| {
             let mut there = model.densities(name).peekable();
-            let here = |there: &str| own.iter().any(|(own, text)| own == name && text == there);
+            let mut own = derived.totals.iter();
+            let here = |there: &str| own.any(|(own, text)| own == name && text == there);
             there.peek().is_none() || there.any(here)
         };
         let (kept, lost): (Vec<Invariant>, Vec<Invariant>) = named.partition(|i| match i.name {
@@ -232,7 +227,7 @@ impl Carded {
             observables: at_observables,
             sites: sites.collect(),
         };
-        Ok((carded, warnings))
+        Ok((carded, derived.warnings))
     }
 }
 

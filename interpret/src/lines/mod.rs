@@ -17,12 +17,13 @@ pub(crate) use inputs::extent;
 pub use trajectory::LineTrajectory;
 
 use crate::Refused;
+use crate::cache::Cache;
 use crate::code::{Places, Routine};
+use crate::derived::{self, LoopProgram, Looped};
 use crate::failure::Failure;
 use crate::listing::FieldNames;
 use crate::lower::{self, Shared, entry};
 use crate::opened::at;
-use crate::program::Program;
 use crate::running::{put, run};
 use crate::sites::Column;
 use crate::value::Value;
@@ -30,12 +31,11 @@ use clebsch::StepCause;
 use clebsch::line::LineError;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::ChainConfig;
-use clebsch_core::line::{self as core_line, Coordinates};
-use clebsch_core::{emit, pipeline};
+use clebsch_core::line::Coordinates;
 use core::fmt;
 use inputs::{Ends, InputStruct};
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError, RwLock};
 
 /// Why a chain cannot start.
 #[derive(Clone, Debug, PartialEq)]
@@ -157,21 +157,27 @@ impl LineModel {
     /// # Errors
     /// [`NoLine::Form`], if the model cannot run with loops over sites; [`NoLine::Refused`] for any other error.
     pub fn read(source: &str) -> Result<Arc<Self>, NoLine> {
-        let model = pipeline::parse_source(source).map_err(Refused::Model)?;
-        let line = match core_line::Line::of(&model) {
-            Ok(line) => line,
-            Err(core_line::Refused::Form(why)) => return Err(NoLine::Form(why)),
-            Err(core_line::Refused::Model(errors)) => return Err(Refused::Model(errors).into()),
-        };
-        if let Some(why) = emit::refusal_of_line(&line) {
-            return Err(NoLine::Form(why));
-        }
-        let program = Program::read(emit::emit_line(&line, source))?;
-        Ok(Self::of(&program, &model.name.text, &line)?)
+        Self::read_with(source, &Cache::none())
     }
 
-    fn of(program: &Program, name: &str, line: &core_line::Line) -> Result<Arc<Self>, Refused> {
-        let lattice = &line.lattice;
+    /// Reads the text of a model with labels, whose program a cache may have. Each text is read once in a process.
+    pub(crate) fn read_with(source: &str, cache: &Cache) -> Result<Arc<Self>, NoLine> {
+        static KNOWN: RwLock<BTreeMap<String, Arc<LineModel>>> = RwLock::new(BTreeMap::new());
+        let all = KNOWN.read().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = all.get(source) {
+            return Ok(known.clone());
+        }
+        drop(all);
+        let read = match derived::kept(cache, ("", source), || Looped::derive(source))? {
+            Looped::Program(program) => Self::of(program)?,
+            Looped::Form(why) => return Err(NoLine::Form(why)),
+        };
+        let mut all = KNOWN.write().unwrap_or_else(PoisonError::into_inner);
+        Ok(all.entry(source.to_owned()).or_insert(read).clone())
+    }
+
+    fn of(line: LoopProgram) -> Result<Arc<Self>, Refused> {
+        let (program, name) = (&derived::program(&line.items)?, line.name.as_str());
         let mut shared = Shared::new(program, BTreeMap::new());
         let item = |suffix: &str| format!("{name}{suffix}");
         let parameters = InputStruct::named(&mut shared, &item("Parameters"))?;
@@ -186,7 +192,7 @@ impl LineModel {
                 .filter(|(t, f)| t == ty && wanted(f));
             all.map(|(_, f)| f.clone()).collect()
         };
-        let of_holds = |f: &str| held(line, f).is_some();
+        let of_holds = |f: &str| held(&line, f).is_some();
         let totals = own(name, &|f| {
             line.totals.iter().any(|t| t.name == f) || of_holds(f)
         });
@@ -202,7 +208,7 @@ impl LineModel {
                 Some((t.name.clone(), rows, t.reason.clone()))
             });
         let of_constraints = totals.iter().filter_map(|f| {
-            let (multiplier, is_rate) = held(line, f)?;
+            let (multiplier, is_rate) = held(&line, f)?;
             let reason = match is_rate {
                 true => format!(
                     "the rate of change of the constraint of {multiplier} vanishes: the momentum is projected at every node"
@@ -212,8 +218,8 @@ impl LineModel {
             Some((ascii(f), 1, reason))
         });
         // With functionals, one site represents all sites.
-        let sums = line.totals.iter().filter(|_| lattice.meshes.is_empty());
-        let densities = sums.map(|t| (t.name.clone(), t.text(&line.representative)));
+        let sums = line.totals.iter().filter(|_| !line.has_functionals);
+        let densities = sums.map(|t| (t.name.clone(), t.density.clone()));
         let conserved = conserved.chain(of_constraints.collect::<Vec<_>>());
         let observers = own(&state, &|f| f != "node");
         let functionals = own(name, &|f| f.starts_with("values_"));
@@ -259,19 +265,19 @@ impl LineModel {
         };
         let sized = totals.iter().map(|(f, _)| {
             // For constraints, another function computes the sizes of the terms.
-            let own = match held(line, f) {
+            let own = match held(&line, f) {
                 Some((multiplier, true)) => format!("constraint_rate_size_{multiplier}"),
                 Some((multiplier, false)) => format!("constraint_size_{multiplier}"),
                 None => f.clone(),
             };
-            shared.by_length = held(line, f).is_none();
+            shared.by_length = held(&line, f).is_none();
             let routine = entry(&mut shared, (name, &own), &of, at::FIRST)?;
             Ok((f.clone(), routine))
         });
         let total_sizes = sized.collect::<Result<Evaluators, Refused>>()?;
         let spelt = |list: Evaluators| -> Evaluators {
             let all = list.into_iter();
-            all.map(|(f, r)| match held(line, &f) {
+            all.map(|(f, r)| match held(&line, &f) {
                 Some(_) => (ascii(&f), r),
                 None => (f, r),
             })
@@ -291,13 +297,8 @@ impl LineModel {
         let own = own.map(|r| r.places);
         let places = own.chain(of_state).max();
         Ok(Arc::new(LineModel {
-            name: name.to_owned(),
-            counts: lattice
-                .labels
-                .iter()
-                .map(|l| l.count.text.clone())
-                .collect(),
-            has_line: lattice.line.is_some(),
+            counts: line.counts.clone(),
+            has_line: line.has_line,
             parameters,
             sites,
             ends,
@@ -307,7 +308,7 @@ impl LineModel {
             projecting,
             step,
             workspace,
-            together: !line.ties.is_empty(),
+            together: line.is_together,
             energies,
             energy_sizes,
             totals,
@@ -323,6 +324,7 @@ impl LineModel {
             names: shared.names(),
             places: places.unwrap_or(at::FIRST),
             coordinates: line.coordinates.clone(),
+            name: name.to_owned(),
         }))
     }
 
@@ -505,12 +507,12 @@ impl LineModel {
 
 /// The multiplier whose constraint a function evaluates, and whether the function evaluates the rate of the
 /// constraint.
-fn held<'a>(line: &'a core_line::Line, function: &str) -> Option<(&'a str, bool)> {
+fn held<'a>(line: &'a LoopProgram, function: &str) -> Option<(&'a str, bool)> {
     line.holds.iter().find_map(|h| {
-        let own = function.strip_suffix(h.name.as_str())?;
+        let own = function.strip_suffix(h.as_str())?;
         match own {
-            "constraint_" => Some((h.name.as_str(), false)),
-            "constraint_rate_" => Some((h.name.as_str(), true)),
+            "constraint_" => Some((h.as_str(), false)),
+            "constraint_rate_" => Some((h.as_str(), true)),
             _ => None,
         }
     })

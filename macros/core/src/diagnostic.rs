@@ -1,6 +1,10 @@
 //! Diagnostics: what is wrong, where, and what to write instead. A stage collects diagnostics and fails at its end.
 //! The macro turns them into compile errors with exact spans; the command line prints line, column and caret.
 
+mod report;
+
+pub use report::{Report, TextRange};
+
 use crate::expr::symbol::ascii;
 use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
@@ -109,19 +113,22 @@ impl Diagnostic {
         text
     }
 
+    /// The diagnostic as plain data.
+    pub fn report(&self) -> Report {
+        let also = self.also.iter();
+        Report {
+            range: TextRange::of(self.place),
+            message: self.message.clone(),
+            help: self.help.clone(),
+            also: also
+                .map(|(place, text)| (TextRange::of(*place), text.clone()))
+                .collect(),
+        }
+    }
+
     /// The diagnostic for a terminal, with a severity level: file, line, column, the source line and carets.
     pub fn render(&self, level: &str, source: &str, file: &str) -> String {
-        let mut out = format!("{level}: {}\n", self.message);
-        out.push_str(&snippet(source, file, self.place));
-        for (place, text) in &self.also {
-            out.push_str(&format!("  note: {text}\n"));
-            out.push_str(&snippet(source, file, *place));
-        }
-        for line in &self.help {
-            out.push_str(&format!("  = help: {line}\n"));
-        }
-        out.push('\n');
-        out
+        self.report().render(level, source, file)
     }
 }
 
@@ -241,54 +248,6 @@ fn compile_error(place: Place, text: &str) -> TokenStream {
     let mut head = quote_spanned!(place.first=> ::core::compile_error!);
     head.extend(quote_spanned!(place.last=> { #text }));
     head
-}
-
-/// The maximum number of quoted characters of a line.
-const LONGEST: usize = 200;
-
-fn snippet(source: &str, file: &str, place: Place) -> String {
-    let (start, end) = (place.first.start(), place.last.end());
-    let line_text = source
-        .lines()
-        .nth(start.line.saturating_sub(1))
-        .unwrap_or("");
-    let number = start.line.to_string();
-    let pad = " ".repeat(number.len());
-    let width = if end.line == start.line && end.column > start.column {
-        end.column - start.column
-    } else {
-        line_text
-            .chars()
-            .count()
-            .saturating_sub(start.column)
-            .max(1)
-    };
-    // Quote only the part around the position if the line is very long; it may contain a whole model.
-    let length = line_text.chars().count();
-    let (from, shown) = match length > LONGEST {
-        true => {
-            let before = LONGEST.saturating_sub(width.min(LONGEST)) / 2;
-            let from = start.column.saturating_sub(before).min(length - LONGEST);
-            (from, LONGEST)
-        }
-        false => (0, length),
-    };
-    let before = if from > 0 { "..." } else { "" };
-    let behind = if from + shown < length { "..." } else { "" };
-    let part: String = line_text.chars().skip(from).take(shown).collect();
-    let column = start.column.saturating_sub(from);
-    let carets = width.min(shown.saturating_sub(column)).max(1);
-    // Keep tabs, so that the caret is below its token.
-    let lead: String = (before.chars().chain(part.chars()))
-        .take(before.len() + column)
-        .map(|c| if c == '\t' { '\t' } else { ' ' })
-        .collect();
-    format!(
-        "{pad}--> {file}:{}:{}\n{pad} |\n{number} | {before}{part}{behind}\n{pad} | {lead}{}\n",
-        start.line,
-        start.column + 1,
-        "^".repeat(carets)
-    )
 }
 
 /// The indefinite article before a size in words: a digit, or letters. A single letter is read by its name, as in `an n

@@ -29,8 +29,8 @@ pub(super) fn with_files(gallery: &Gallery) -> Result<Gallery, Failure> {
             bipolar::CASE,
         ),
     ] {
-        let read = clebsch_interpret::card(text);
-        let card = read.map_err(|refused| Failure::Usage(format!("{model}: {refused}")))?;
+        let read = gallery.cache.card(text);
+        let (card, _) = read.map_err(|refused| Failure::Usage(format!("{model}: {refused}")))?;
         let cases = vec![case_file::read(file, case, &card)?.case];
         gallery.entries.push(Entry {
             card,

@@ -235,6 +235,20 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
     }
 }
 
+/// The items that describe a model as data, without its stepper.
+pub fn emit_card(d: &Derivation) -> TokenStream {
+    let (name, card) = (names::item(d, ""), card::card(d, &Names::new(d)));
+    let source = crate::document::source(d);
+    let fingerprint = crate::document::fingerprint(d);
+    quote! {
+        impl #name {
+            pub const SOURCE: &'static str = #source;
+            pub const FINGERPRINT: u64 = #fingerprint;
+        }
+        #card
+    }
+}
+
 /// The compile errors of a rejected model, and placeholder types under the names of its items. The placeholders are
 /// erroneous themselves, so that code using the model causes no further errors. The first error is placed inside such
 /// a type as a projection with a faulty argument, which is the only form for which stable Rust reports nothing else.

@@ -13,6 +13,7 @@ use crate::print::formula::Formula;
 use crate::print::{Format, Style, expression, formula};
 
 /// The description of a lattice with a given number of sites.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CardWords {
     /// A summary of the derivation, in a few lines.
     pub summary: String,
@@ -23,6 +24,7 @@ pub struct CardWords {
 }
 
 /// The description of one invariant, or of the same invariant at several sites.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InvariantWords {
     /// Its name.
     pub name: String,
