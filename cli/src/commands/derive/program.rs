@@ -3,7 +3,8 @@
 
 use crate::models::gallery::{self, Gallery};
 use crate::named::cases::{NamedCases, WhichCase};
-use crate::named::resolve::{ModelText, NamedModel, case_of, entry, named, parts, written};
+use crate::named::model_file::ModelText;
+use crate::named::resolve::{NamedModel, case_of, entry, named, parts, written};
 use crate::plan::Plan;
 use crate::terminal::Streams;
 use crate::terminal::failure::Failure;
@@ -29,6 +30,7 @@ pub(super) fn program(
                 text: entry.card.source.to_owned(),
                 cases: NamedCases::default(),
                 is_path: false,
+                cache: gallery.cache.clone(),
             };
             (text, WhichCase::Text(written(entry, case)?))
         }
