@@ -155,8 +155,8 @@ impl Carded {
         // If the end conditions omit sites from a total, it is not the sum over all sites and is dropped.
         let is_same = |name: &str| {
             let mut there = model.densities(name).peekable();
-            let mut own = derived.totals.iter();
-            let here = |there: &str| own.any(|(own, text)| own == name && text == there);
+            let own = &derived.totals;
+            let here = |there: &str| own.iter().any(|(own, text)| own == name && text == there);
             there.peek().is_none() || there.any(here)
         };
         let (kept, lost): (Vec<Invariant>, Vec<Invariant>) = named.partition(|i| match i.name {
