@@ -121,7 +121,7 @@ pub enum Pattern<T: Real> {
     /// `None`.
     None,
     /// This value.
-    Exactly(Value<T>),
+    Exactly(Box<Value<T>>),
     /// Any of these patterns.
     Or(Vec<Pattern<T>>),
     /// The full name of an enum variant, and patterns of its fields by their numbers.
@@ -162,7 +162,7 @@ pub trait Iterate<T: Real>: std::fmt::Debug + Send + Sync {
 #[derive(Clone, Debug)]
 pub enum Code<T: Real> {
     /// A constant.
-    Constant(Value<T>),
+    Constant(Box<Value<T>>),
     /// A place.
     Place(usize),
     /// A field of a struct, by the number of its name.
@@ -258,7 +258,7 @@ impl<T: Real> Pattern<T> {
                 _ => false,
             },
             Pattern::None => matches!(value, Value::None),
-            Pattern::Exactly(other) => value == other,
+            Pattern::Exactly(other) => *value == **other,
             Pattern::Or(all) => all.iter().any(|p| p.meets(value)),
             Pattern::Variant(name, fields) => match value {
                 Value::Struct(s) => {
@@ -316,6 +316,19 @@ impl<T: Real> Pattern<T> {
 }
 
 impl<T: Real> Code<T> {
+    /// A constant.
+    pub fn constant(value: Value<T>) -> Self {
+        Code::Constant(Box::new(value))
+    }
+
+    /// The constant count, if the expression is one.
+    pub fn constant_count(&self) -> Option<usize> {
+        match self {
+            Code::Constant(value) => value.count(),
+            _ => None,
+        }
+    }
+
     /// The stored value that an expression refers to, if it refers to one.
     #[inline]
     pub fn place<'a>(&'a self, places: &'a Places<T>) -> Option<&'a Value<T>> {
@@ -327,9 +340,7 @@ impl<T: Real> Code<T> {
                 _ => None,
             },
             Code::Index(base, at) => match (base.place(places)?, at.as_slice()) {
-                (Value::List(list), [Code::Constant(Value::Int(i))]) => {
-                    list.get(usize::try_from(*i).ok()?)
-                }
+                (Value::List(list), [index]) => list.get(index.constant_count()?),
                 _ => None,
             },
             _ => None,
@@ -345,9 +356,7 @@ impl<T: Real> Code<T> {
                 _ => None,
             },
             Code::Index(base, at) => match (base.place_mut(places)?, at.as_slice()) {
-                (Value::List(list), [Code::Constant(Value::Int(i))]) => {
-                    list.get_mut(usize::try_from(*i).ok()?)
-                }
+                (Value::List(list), [index]) => list.get_mut(index.constant_count()?),
                 _ => None,
             },
             _ => None,
@@ -391,7 +400,7 @@ impl<T: Real> Code<T> {
     pub fn run(&self, places: &mut Places<T>) -> Evaluated<T> {
         // One function for each kind: a single function would need a stack frame for the values of all kinds.
         match self {
-            Code::Constant(value) => Ok(value.clone()),
+            Code::Constant(value) => Ok(Value::clone(value)),
             Code::Place(at) => Ok(unfit(places.get(*at))?.clone()),
             Code::Field(base, name) => self.field(base, *name, places),
             Code::Inner(base) => apply(base, places, crate::library::inner),

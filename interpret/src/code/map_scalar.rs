@@ -94,7 +94,7 @@ impl<T: Real, U: Library> Change<'_, T, U> {
             Pattern::Done(inner) => Pattern::Done(boxed(inner)?),
             Pattern::Failed(inner) => Pattern::Failed(boxed(inner)?),
             Pattern::None => Pattern::None,
-            Pattern::Exactly(value) => Pattern::Exactly(self.value(value)?),
+            Pattern::Exactly(value) => Pattern::Exactly(Box::new(self.value(value)?)),
             Pattern::Variant(name, fields) => {
                 let field = |(at, p): &(u32, Pattern<T>)| Some((*at, self.pattern(p)?));
                 let fields = fields.iter().map(field).collect::<Option<_>>()?;
@@ -149,7 +149,7 @@ impl<T: Real, U: Library> Change<'_, T, U> {
 
     fn code(self, code: &Code<T>) -> Option<Code<U>> {
         Some(match code {
-            Code::Constant(value) => Code::Constant(self.value(value)?),
+            Code::Constant(value) => Code::constant(self.value(value)?),
             Code::Place(at) => Code::Place(*at),
             Code::Field(base, name) => Code::Field(self.boxed(base)?, *name),
             Code::Inner(a) => Code::Inner(self.boxed(a)?),

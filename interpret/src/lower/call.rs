@@ -152,10 +152,13 @@ impl Lower<'_, '_> {
     ) -> Result<Option<Code<f64>>, Refused> {
         let made = match names {
             ["T", "from_f64"] if c.args.iter().any(is_pi) => {
-                Some(Code::Constant(Value::Real(std::f64::consts::PI)))
+                Some(Code::constant(Value::Real(std::f64::consts::PI)))
             }
             ["T", "from_f64"] => match self.all(c.args.iter())?.pop() {
-                Some(Code::Constant(Value::Double(x))) => Some(Code::Constant(Value::Real(x))),
+                Some(Code::Constant(value)) => match *value {
+                    Value::Double(x) => Some(Code::constant(Value::Real(x))),
+                    other => self.native("from_f64", vec![Code::constant(other)], Vec::new()),
+                },
                 Some(other) => self.native("from_f64", vec![other], Vec::new()),
                 None => None,
             },
@@ -163,8 +166,8 @@ impl Lower<'_, '_> {
                 let arguments = self.all(c.args.iter())?;
                 self.native("from_ratio", arguments, Vec::new())
             }
-            ["T", "zero"] => Some(Code::Constant(Value::Real(0.0))),
-            ["T", "one"] => Some(Code::Constant(Value::Real(1.0))),
+            ["T", "zero"] => Some(Code::constant(Value::Real(0.0))),
+            ["T", "one"] => Some(Code::constant(Value::Real(1.0))),
             ["SMatrix" | "SVector", "zeros"] if sizes.is_empty() => {
                 let sizes = self.sizes_of_type(ty);
                 self.native("zeros", Vec::new(), sizes)
@@ -209,7 +212,7 @@ impl Lower<'_, '_> {
                 });
             }
         };
-        let mut all = vec![Code::Constant(Value::Text(crate::text(name)))];
+        let mut all = vec![Code::constant(Value::Text(crate::text(name)))];
         all.extend(self.all(c.args.iter())?);
         self.native("Functional::new", all, Vec::new())
             .ok_or_else(|| refuse(c))

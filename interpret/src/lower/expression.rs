@@ -18,7 +18,7 @@ impl Lower<'_, '_> {
         ty: Option<&syn::Type>,
     ) -> Result<Code<f64>, Refused> {
         Ok(match e {
-            syn::Expr::Lit(lit) => Code::Constant(self.literal(&lit.lit)?),
+            syn::Expr::Lit(lit) => Code::constant(self.literal(&lit.lit)?),
             syn::Expr::Path(p) => self.path(&p.path)?.ok_or_else(|| refuse(e))?,
             syn::Expr::Paren(p) => self.expression(&p.expr, ty)?,
             syn::Expr::Group(g) => self.expression(&g.expr, ty)?,
@@ -57,7 +57,7 @@ impl Lower<'_, '_> {
             syn::Expr::Return(r) => {
                 let value = match &r.expr {
                     Some(value) => self.expression(value, None)?,
-                    None => Code::Constant(Value::Unit),
+                    None => Code::constant(Value::Unit),
                 };
                 Code::Return(Box::new(value))
             }
@@ -110,7 +110,7 @@ impl Lower<'_, '_> {
         let all: Vec<Code<f64>> = all.collect::<Result<_, _>>()?;
         Ok(match all.is_empty() {
             // An empty array is still a list; an empty tuple is `()`.
-            true => Code::Constant(Value::List(Vec::new())),
+            true => Code::constant(Value::List(Vec::new())),
             false => Code::List(all),
         })
     }
@@ -153,7 +153,7 @@ impl Lower<'_, '_> {
     /// The value of a path: a local, a size, or a constant of the runtime.
     #[inline(never)]
     pub(super) fn path(&self, path: &syn::Path) -> Result<Option<Code<f64>>, Refused> {
-        let constant = |value| Ok(Some(Code::Constant(value)));
+        let constant = |value| Ok(Some(Code::constant(value)));
         if let Some(name) = path.get_ident() {
             let name = name.to_string();
             if let Some(Binding::Place(code, _)) = self.find(&name) {
@@ -169,7 +169,7 @@ impl Lower<'_, '_> {
         }
         let names: Vec<String> = path.segments.iter().map(|s| s.ident.to_string()).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        Ok(Some(Code::Constant(match names.as_slice() {
+        Ok(Some(Code::constant(match names.as_slice() {
             [.., "Method", name] => {
                 let all = Method::ALL.into_iter();
                 let found = all.into_iter().find(|m| format!("{m:?}") == *name);
@@ -248,7 +248,7 @@ impl Lower<'_, '_> {
             guard: None,
             body,
         };
-        let rest = otherwise.unwrap_or(Code::Constant(Value::Unit));
+        let rest = otherwise.unwrap_or(Code::constant(Value::Unit));
         let arms = vec![arm(pattern?, then?), arm(Pattern::Any, rest)];
         Ok(Code::Match(Box::new(value), arms))
     }
@@ -383,16 +383,17 @@ impl Lower<'_, '_> {
         if name == "Call" {
             let all = [by_name("function"), by_name("argument")];
             let all = self.all(all.into_iter().flatten())?;
-            let [
-                Code::Constant(Value::Function(function)),
-                Code::Constant(Value::Text(argument)),
-            ] = all[..]
+            let [Code::Constant(function), Code::Constant(argument)] = all.as_slice() else {
+                return Err(refuse(s));
+            };
+            let (Value::Function(function), Value::Text(argument)) = (&**function, &**argument)
             else {
                 return Err(refuse(s));
             };
+            let (function, argument) = (*function, *argument);
             // Errors contain the name as long as they live.
             let call = Box::leak(Box::new(domain::Call { function, argument }));
-            return Ok(Code::Constant(Value::Call(call)));
+            return Ok(Code::constant(Value::Call(call)));
         }
         let name = match name.as_str() {
             "Self" => self.own_type().to_owned(),
@@ -444,7 +445,7 @@ fn root(code: &Code<f64>) -> Option<usize> {
 
 /// A count.
 pub(super) fn whole(n: usize) -> Code<f64> {
-    Code::Constant(Value::Int(i64::try_from(n).unwrap_or(i64::MAX)))
+    Code::constant(Value::Int(i64::try_from(n).unwrap_or(i64::MAX)))
 }
 
 fn function(name: &str) -> Option<domain::Function> {

@@ -87,7 +87,7 @@ impl Lower<'_, '_> {
                 (Kind::Update, out, None, body)
             }
             // The interpreter already stores equal bodies only once.
-            ("line::once", [_]) => return Ok(Some(Code::Constant(Value::Unit))),
+            ("line::once", [_]) => return Ok(Some(Code::constant(Value::Unit))),
             ("line::try_each", [first, last, body]) => {
                 let range = [self.expression(first, None)?, self.expression(last, None)?];
                 (Kind::TryEach, Vec::new(), Some(range), body)
@@ -167,7 +167,7 @@ impl Lower<'_, '_> {
                     };
                     let list = self.expression(&all.receiver, None)?;
                     let count = self.expression(count, None)?;
-                    let all = vec![list, Code::Constant(Value::None), count];
+                    let all = vec![list, Code::constant(Value::None), count];
                     self.special("slice", all, m)?
                 }
                 ("keep", [sites, other]) => {
@@ -231,7 +231,7 @@ impl Lower<'_, '_> {
                 let arm = |pattern, met| Arm {
                     pattern,
                     guard: None,
-                    body: Code::Constant(Value::Bool(met)),
+                    body: Code::constant(Value::Bool(met)),
                 };
                 let arms = vec![arm(pattern?, true), arm(Pattern::Any, false)];
                 Ok(Code::Match(Box::new(value), arms))
@@ -324,7 +324,7 @@ impl Lower<'_, '_> {
 
 /// The list of a slice, and its two ends as values.
 fn ends(slice: Slice) -> Vec<Code<f64>> {
-    let end = |e: Option<Code<f64>>| e.unwrap_or(Code::Constant(Value::None));
+    let end = |e: Option<Code<f64>>| e.unwrap_or(Code::constant(Value::None));
     vec![slice.list, end(slice.from), end(slice.to)]
 }
 

@@ -104,7 +104,7 @@ impl Lower<'_, '_> {
         };
         let sought = self.sought(ty)?;
         let held = SearchValue::begun(sought, tries);
-        Ok(Some(Code::Constant(Value::Search(held))))
+        Ok(Some(Code::constant(Value::Search(held))))
     }
 
     /// The unknowns of a search, read from its declared type.
@@ -335,7 +335,7 @@ impl<'a> Lower<'a, '_> {
                 body: Code::Block(before.chain([last]).collect()),
             }
         };
-        let unit = unit.unwrap_or(Code::Constant(Value::Real(1.0)));
+        let unit = unit.unwrap_or(Code::constant(Value::Real(1.0)));
         Ok(Solve {
             search,
             node,
@@ -412,7 +412,7 @@ impl<'a> Lower<'a, '_> {
                 continue;
             };
             let mut all = self.statements(looks)?;
-            all.push(Code::Constant(Value::Unit));
+            all.push(Code::constant(Value::Unit));
             return Ok(Some(Code::Function(Box::new(Code::Block(all)))));
         }
         Ok(None)

@@ -65,14 +65,14 @@ impl Lower<'_, '_> {
                     let last = semicolon.is_none() && i + 1 == list.len();
                     out.push(self.expression(e, ty.filter(|_| last))?);
                     if semicolon.is_some() && i + 1 == list.len() {
-                        out.push(Code::Constant(Value::Unit));
+                        out.push(Code::constant(Value::Unit));
                     }
                 }
                 other => return Err(refuse(other)),
             }
         }
         if matches!(list.last(), Some(syn::Stmt::Local(_))) {
-            out.push(Code::Constant(Value::Unit));
+            out.push(Code::constant(Value::Unit));
         }
         self.filled_once(&mut out);
         Ok(out)
@@ -97,7 +97,7 @@ impl Lower<'_, '_> {
             }
             self.steady.push(at);
             let mut all: Vec<Code<f64>> = list.drain(i..=i + count).collect();
-            all.push(Code::Constant(Value::Bool(true)));
+            all.push(Code::constant(Value::Bool(true)));
             let made = Code::Once(self.fresh(), Box::new(Code::Block(all)));
             list.insert(i, made);
         }
@@ -309,7 +309,7 @@ pub(super) fn is_place(code: &Code<f64>) -> bool {
         Code::Place(_) => true,
         Code::Field(base, _) => is_place(base),
         Code::Index(base, at) => {
-            is_place(base) && matches!(at.as_slice(), [Code::Constant(Value::Int(_))])
+            is_place(base) && matches!(at.as_slice(), [index] if index.constant_count().is_some())
         }
         _ => false,
     }
