@@ -56,14 +56,18 @@ class Pendulum:
         return np.array(state[:1])
 
 
+BODIES = range(len(MASSES))
+KINETIC = [f"m{i}*dot(next(x{i}) - x{i}, next(x{i}) - x{i})/(2*h)" for i in BODIES]
+POTENTIAL = [f"G*m{i}*m{j}/sqrt(dot(x{i} - x{j}, x{i} - x{j}))" for i in BODIES for j in BODIES if i < j]
+
+
 class SolarSystem:
     name, end, steps = "outer solar system", 20000.0, [100, 150, 220, 330, 500, 750, 1100, 1700, 2500, 3800]
-    bodies = range(len(MASSES))
-    text = "model Planets {{ param G: Real; {params} {fields} lagrangian = {kinetic} + h*({potential}); }}".format(
-        params=" ".join(f"param m{i}: Real;" for i in bodies),
-        fields=" ".join(f"field x{i}: Vec<3>;" for i in bodies),
-        kinetic=" + ".join(f"m{i}*dot(next(x{i}) - x{i}, next(x{i}) - x{i})/(2*h)" for i in bodies),
-        potential=" + ".join(f"G*m{i}*m{j}/sqrt(dot(x{i} - x{j}, x{i} - x{j}))" for i in bodies for j in bodies if i < j),
+    text = "model Planets {{ param G: Real; {} {} lagrangian = {} + h*({}); }}".format(
+        " ".join(f"param m{i}: Real;" for i in BODIES),
+        " ".join(f"field x{i}: Vec<3>;" for i in BODIES),
+        " + ".join(KINETIC),
+        " + ".join(POTENTIAL),
     )
     parameters = {"G": G, **{f"m{i}": m for i, m in enumerate(MASSES)}}
     initial = {
@@ -78,7 +82,7 @@ class SolarSystem:
 
     @staticmethod
     def places(run):
-        return np.array([run[f"x{i}"][-1] for i in range(len(MASSES))]).ravel()
+        return np.array([run[f"x{i}"][-1] for i in BODIES]).ravel()
 
     @staticmethod
     def of_state(state):

@@ -2,6 +2,7 @@
 
 use crate::machine::Machine;
 use std::fmt::Debug;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, OnceLock};
 
 /// Native code for a machine, with bitwise identical results.
@@ -16,7 +17,7 @@ pub trait Compiled: Debug + Send + Sync {
 pub struct Compiler {
     /// Compiles a machine; returns `None` if the machine is too large, or the processor is not supported.
     pub compile: fn(&Machine) -> Option<Arc<dyn Compiled>>,
-    /// The number of runs in one frame before compilation, which takes as long as several thousand runs.
+    /// The number of runs of a machine before compilation, which takes as long as several thousand runs.
     pub after: u32,
 }
 
@@ -28,21 +29,22 @@ pub fn compile_by(compiler: Compiler) -> bool {
 }
 
 /// The code of one machine.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Code {
     made: OnceLock<Option<Arc<dyn Compiled>>>,
+    /// The number of runs in all frames.
+    runs: AtomicU32,
 }
 
 impl Code {
-    /// The code, compiled at the configured number of runs in a frame.
+    /// The code, compiled at the configured number of runs.
     #[inline]
-    pub(crate) fn at(&self, runs: &mut u32, machine: &Machine) -> Option<&dyn Compiled> {
+    pub(crate) fn of(&self, machine: &Machine) -> Option<&dyn Compiled> {
         if let Some(made) = self.made.get() {
             return made.as_deref();
         }
-        *runs = runs.saturating_add(1);
         let compiler = COMPILER.get()?;
-        if *runs <= compiler.after {
+        if self.runs.fetch_add(1, Ordering::Relaxed) < compiler.after {
             return None;
         }
         let made = self.made.get_or_init(|| (compiler.compile)(machine));

@@ -7,7 +7,7 @@ use crate::layout::Layout;
 use crate::tape::{Function, Tape};
 
 /// An executable tape. The first registers hold inputs, the next constants, the rest results.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Machine {
     pub(crate) inputs: usize,
     pub(crate) reads: Vec<bool>,
@@ -26,8 +26,6 @@ pub struct Frame<const L: usize> {
     registers: Vec<[f64; L]>,
     /// Inputs and outputs of a call.
     called: [Vec<f64>; 2],
-    /// The number of runs of the machine in this frame.
-    runs: u32,
 }
 
 impl Machine {
@@ -108,14 +106,13 @@ impl Machine {
         Frame {
             registers,
             called: [Vec::new(), Vec::new()],
-            runs: 0,
         }
     }
 
     /// Computes on the inputs in `frame`. Returns false if a decision differs from the recorded one; the outputs are then
     /// meaningless.
     pub fn run(&self, frame: &mut Frame<1>) -> bool {
-        match self.code.at(&mut frame.runs, self) {
+        match self.code.of(self) {
             Some(code) => code.run(&mut frame.registers),
             None => self.computes(frame),
         }
