@@ -53,12 +53,12 @@ impl FieldNames {
     }
 
     /// Appends the names of the numbers of a value, in the order in which tapes read them. Vectors have names such as
-    /// `x.1`, matrices `Λ.12` for row 1 and column 2.
+    /// `x.1`, matrices `J.12` for row 1 and column 2. A rotation is its unit quaternion, real part first.
     pub fn numbers(&self, name: &str, value: &Value<f64>, out: &mut Vec<String>) {
         match value {
             Value::Real(_) => out.push(name.to_owned()),
             Value::Vector(_) | Value::Momentum(..) => entries(name, [3, 1], out),
-            Value::Matrix(_) | Value::Rotation(_) => entries(name, [3, 3], out),
+            Value::Matrix(_) => entries(name, [3, 3], out),
             Value::Dense(a) | Value::Element(_, a) | Value::Impulse(_, a) => {
                 entries(name, [a.rows, a.cols], out);
             }

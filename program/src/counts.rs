@@ -15,8 +15,10 @@ pub struct Counts {
     pub products: usize,
     /// Quotients.
     pub quotients: usize,
-    /// Changes of sign, and selections by sign.
+    /// Changes of sign.
     pub signs: usize,
+    /// Selections of a number or zero by the sign of another.
+    pub selections: usize,
     /// Square roots.
     pub roots: usize,
     /// Other functions of one number, such as sines.
@@ -32,7 +34,7 @@ impl Counts {
     #[must_use]
     pub fn operations(&self) -> usize {
         let arithmetic = self.sums + self.products + self.quotients + self.signs;
-        arithmetic + self.roots + self.functions + self.calls
+        arithmetic + self.selections + self.roots + self.functions + self.calls
     }
 }
 
@@ -42,6 +44,7 @@ impl AddAssign for Counts {
         self.products += other.products;
         self.quotients += other.quotients;
         self.signs += other.signs;
+        self.selections += other.selections;
         self.roots += other.roots;
         self.functions += other.functions;
         self.calls += other.calls;
@@ -62,7 +65,8 @@ impl Machine {
                 Instruction::Add(..) | Instruction::Sub(..) => &mut counts.sums,
                 Instruction::Mul(..) => &mut counts.products,
                 Instruction::Div(..) => &mut counts.quotients,
-                Instruction::Neg(..) | Instruction::WherePositive(..) => &mut counts.signs,
+                Instruction::Neg(..) => &mut counts.signs,
+                Instruction::WherePositive(..) => &mut counts.selections,
                 Instruction::Function(Function::Sqrt, ..) => &mut counts.roots,
                 Instruction::Function(..) => &mut counts.functions,
                 Instruction::Call(_) => &mut counts.calls,
@@ -81,6 +85,7 @@ impl fmt::Display for Counts {
             (self.products, "product"),
             (self.quotients, "quotient"),
             (self.signs, "change of sign"),
+            (self.selections, "selection"),
             (self.roots, "square root"),
             (self.functions, "other function"),
             (self.calls, "call"),

@@ -43,7 +43,8 @@ impl Layout {
                 Step::Input(place) => {
                     layout.of[at] = Some(*place);
                     if let Some(reads) = layout.reads.get_mut(*place as usize) {
-                        *reads = last[at].is_some();
+                        // A place may have several steps, of which some are not used.
+                        *reads |= last[at].is_some();
                     }
                 }
                 Step::Double(bits) if last[at].is_some() => {

@@ -55,9 +55,15 @@ fn a_program_counts_and_lists_the_operations_of_a_step() {
             .map(|section| checked(section).to_owned())
             .collect()
     };
-    let nodes = ["step", "observables", "invariants", "scales"];
-    assert_eq!(titles("heavy-top"), nodes);
-    assert_eq!(titles("kepler:eccentric"), nodes);
+    for model in ["heavy-top", "kepler:eccentric"] {
+        let found = titles(model);
+        for title in ["step", "observables", "invariants", "scales"] {
+            assert!(found.iter().any(|x| x == title), "{model}: {found:?}");
+        }
+    }
+    // The solver of a free body is a function of the runtime.
+    let free = program("free-body");
+    assert!(free.contains("which is not recorded"), "{free}");
     // Newton's method evaluates these functions between two parts of a step.
     let newton = titles("coupled-bodies");
     let own = [
@@ -76,6 +82,31 @@ fn a_program_counts_and_lists_the_operations_of_a_step() {
             .any(|title| title.starts_with("loop over sites k")),
         "{loops:?}"
     );
+}
+
+#[test]
+fn names_are_those_of_the_numbers() {
+    // Four numbers of the attitude and three of the momentum; the last number of the workspace is another attitude.
+    let text = program("heavy-top");
+    let step = text
+        .split("\n\n")
+        .find(|section| section.starts_with("step ("));
+    let given = step
+        .and_then(|section| section.lines().nth(1))
+        .unwrap_or("");
+    for name in ["Λ.1", "Λ.4", "momentum.3", "workspace.h"] {
+        assert!(
+            given
+                .split(", ")
+                .any(|x| x.trim_start_matches("    given ") == name),
+            "{name}: {given}"
+        );
+    }
+    assert!(!given.contains("Λ.5"), "{given}");
+    // Standard input has no case.
+    let run = clebsch(&["derive", "-", "--format", "program"]);
+    assert_eq!(run.code, 2, "{}", run.err);
+    assert!(run.err.contains("no case"), "{}", run.err);
 }
 
 #[test]

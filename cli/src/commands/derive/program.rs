@@ -22,6 +22,11 @@ pub(super) fn program(
     name: &str,
     streams: &mut Streams<'_>,
 ) -> Result<String, Failure> {
+    if name == "-" {
+        return Err(Failure::Usage(
+            "a text from standard input has no case; save it as NAME.clebsch, with a case NAME.toml".to_owned(),
+        ));
+    }
     let (name, case) = parts(name, None)?;
     let (text, case) = match named(gallery, name, "derive needs a model or its text")? {
         NamedModel::Compiled(entry) => {
@@ -61,8 +66,14 @@ pub(super) fn program(
             card.kebab
         )));
     };
+    let is_listed = |line: &str| line.starts_with("step") || line.starts_with("loop");
+    let remark = match sections.lines().any(is_listed) {
+        true => "",
+        false => "\nthe step is a function of the runtime, which is not recorded",
+    };
     Ok(format!(
-        "program of {}, case {}, h = {}; any parameters and step size with these decisions\n\n{sections}",
+        "program of {}, case {}, h = {}; any parameters and step size with these decisions\nrotations are unit quaternions; a \
+         number of the model such as factor.1 is prepared from the parameters{remark}\n\n{sections}",
         card.kebab,
         plan.case.name,
         plain(plan.case.h)

@@ -85,7 +85,8 @@ impl Sweep<'_> {
             return true;
         };
         let steps = plan.case.steps;
-        let mut watch = Watch::new(trajectory.as_ref(), steps, 0);
+        // Samples at looks: if a number is not finite, the row has the state of the last look before it.
+        let mut watch = Watch::new(trajectory.as_ref(), steps, Plan::default_every(steps));
         let mut last = Last(vec![f64::NAN; self.card.observable_count()]);
         let status = loop {
             match watch.advance(trajectory.as_mut(), &mut last, AT_A_TIME) {
