@@ -91,7 +91,7 @@ impl FieldNames {
         name
     }
 
-    /// A path such as `state.q`; a local of the function has no name.
+    /// A path such as `state.q`; a local of the function is called `local` with its number.
     pub fn path(&self, path: &Code<f64>) -> String {
         match path {
             Code::Place(at::MODEL) => String::new(),

@@ -46,7 +46,7 @@ impl Names {
 
 impl Machine {
     /// The inputs that it reads, its operations, its decisions and its outputs. `inputs` and `outputs` are their names; an
-    /// output that is an input of the same name is left out. `_` stands for an unused result of a call.
+    /// output that is an input of the same name is left out. `_` marks an unused result of a call.
     #[must_use]
     pub fn listing(&self, inputs: &[String], outputs: &[String]) -> String {
         let mut lines = Vec::new();

@@ -103,7 +103,7 @@ fn names_are_those_of_the_numbers() {
         );
     }
     assert!(!given.contains("Λ.5"), "{given}");
-    // Standard input has no case.
+    // Standard input gives a model without a case.
     let run = clebsch(&["derive", "-", "--format", "program"]);
     assert_eq!(run.code, 2, "{}", run.err);
     assert!(run.err.contains("no case"), "{}", run.err);

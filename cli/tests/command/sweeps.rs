@@ -70,6 +70,24 @@ fn a_row_is_the_run_of_its_point() {
     assert!(column(&out, "Lambda_11")[3] != column(&out, "Lambda_11")[0]);
 }
 
+#[test]
+fn a_row_stopped_by_an_infinite_number_has_the_last_finite_state() {
+    let folder = Folder::new("sweep-overflow");
+    let model = "model Grow { param k: Real; field q: Real; lagrangian = (next(q) - q)^2/(2*h) + h*k*q^2/2; }";
+    folder.write("grow.clebsch", model);
+    let case = "model = \"grow\"\nh = 1.0\nsteps = 60\n[parameters]\nk = 1e6\n[initial]\nq = 1.0\nmomentum = 0.5\n";
+    folder.write("grow.toml", case);
+    folder.clebsch("sweep @grow.clebsch --vary k=1,1e6 --out @sweep");
+    folder.clebsch("run @grow.clebsch --out @run");
+    let text = folder.read("run/trajectory.csv");
+    let last = text.lines().last().and_then(|row| row.split(',').nth(2));
+    let expected: f64 = last.and_then(|q| q.parse().ok()).expect("a number");
+    assert!(expected > 1e100, "{text}");
+    let out = folder.path("sweep");
+    assert_eq!(column(&out, "status"), [0.0, 1.0]);
+    assert_eq!(column(&out, "q")[1].to_bits(), expected.to_bits());
+}
+
 /// As in a case file, a name without the number of a site means all sites. For an end it means the parameter of
 /// the end.
 #[test]

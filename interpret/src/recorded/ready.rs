@@ -1,4 +1,4 @@
-//! A tape with its registers, ready to run. What depends only on the model and the step size is computed once.
+//! A tape with its registers, ready to run. Numbers that depend only on the model and the step size are computed once.
 
 use super::load;
 use crate::listing::{Section, numbered};
@@ -91,8 +91,8 @@ impl Ready {
         &self.machine
     }
 
-    /// The operations that are computed once, unless there are none, and those of a run. `names` are the names of the
-    /// steady numbers.
+    /// A section for the operations that are computed once, if there are any, and a section for each run. `names` are the
+    /// names of the steady numbers.
     pub fn sections(
         &self,
         title: &str,
