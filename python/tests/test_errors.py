@@ -83,6 +83,9 @@ def test_a_step_that_fails_keeps_what_was_computed():
 
 
 def interrupt_after(seconds: float) -> None:
+    # A process in the background of a script ignores the signal, and so would never end.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
     def later() -> None:
         time.sleep(seconds)
         os.kill(os.getpid(), signal.SIGINT)
