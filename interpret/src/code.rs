@@ -316,19 +316,6 @@ impl<T: Real> Pattern<T> {
 }
 
 impl<T: Real> Code<T> {
-    /// A constant.
-    pub fn constant(value: Value<T>) -> Self {
-        Code::Constant(Box::new(value))
-    }
-
-    /// The constant count, if the expression is one.
-    pub fn constant_count(&self) -> Option<usize> {
-        match self {
-            Code::Constant(value) => value.count(),
-            _ => None,
-        }
-    }
-
     /// The stored value that an expression refers to, if it refers to one.
     #[inline]
     pub fn place<'a>(&'a self, places: &'a Places<T>) -> Option<&'a Value<T>> {
@@ -359,14 +346,6 @@ impl<T: Real> Code<T> {
                 (Value::List(list), [index]) => list.get_mut(index.constant_count()?),
                 _ => None,
             },
-            _ => None,
-        }
-    }
-
-    /// The number of the place, if the expression is a whole place.
-    pub fn number(&self) -> Option<usize> {
-        match self {
-            Code::Place(at) => Some(*at),
             _ => None,
         }
     }

@@ -4,7 +4,6 @@ use crate::instruction::Instruction;
 use crate::machine::Machine;
 use crate::tape::Function;
 use core::fmt;
-use core::ops::AddAssign;
 
 /// Numbers of operations by kind.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Debug)]
@@ -35,20 +34,6 @@ impl Counts {
     pub fn operations(&self) -> usize {
         let arithmetic = self.sums + self.products + self.quotients + self.signs;
         arithmetic + self.selections + self.roots + self.functions + self.calls
-    }
-}
-
-impl AddAssign for Counts {
-    fn add_assign(&mut self, other: Counts) {
-        self.sums += other.sums;
-        self.products += other.products;
-        self.quotients += other.quotients;
-        self.signs += other.signs;
-        self.selections += other.selections;
-        self.roots += other.roots;
-        self.functions += other.functions;
-        self.calls += other.calls;
-        self.decisions += other.decisions;
     }
 }
 

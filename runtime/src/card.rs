@@ -421,8 +421,7 @@ pub trait Trajectory: Send {
     /// component, see [`Drift`](crate::integrate::Drift).
     fn scales(&self, out: &mut [f64]);
 
-    /// The operations of the step and of the functions that are evaluated at nodes, as text. `None` if they are not
-    /// recorded: in a compiled model, and before a model file has taken some ten steps.
+    /// The operations of a step and of what is evaluated at nodes, as text; `None` if they are not recorded (yet).
     fn operations(&self) -> Option<String> {
         None
     }

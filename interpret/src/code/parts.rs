@@ -1,12 +1,26 @@
-//! The parts of an operation, and the places around it that it reads.
+//! Constants, the parts of an operation, and the places around it that it reads.
 
 use super::{Code, Operator, Pattern};
 use crate::listing::{FieldNames, Section};
+use crate::value::Value;
 use clebsch::Real;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 impl<T: Real> Code<T> {
+    /// A constant.
+    pub fn constant(value: Value<T>) -> Self {
+        Code::Constant(Box::new(value))
+    }
+
+    /// The constant count, if the expression is one.
+    pub fn constant_count(&self) -> Option<usize> {
+        match self {
+            Code::Constant(value) => value.count(),
+            _ => None,
+        }
+    }
+
     /// The direct operands, without the operations of called functions.
     pub fn parts(&self) -> Vec<&Code<T>> {
         match self {
@@ -89,6 +103,14 @@ impl<T: Real> Code<T> {
         }
         for part in self.parts() {
             part.fills(out);
+        }
+    }
+
+    /// The number of the place, if the expression is a whole place.
+    pub fn number(&self) -> Option<usize> {
+        match self {
+            Code::Place(at) => Some(*at),
+            _ => None,
         }
     }
 

@@ -1,23 +1,11 @@
 //! Listings of random tapes, read back line by line and evaluated: the results agree with the tapes bit for bit.
 
-use crate::random_tapes::{INPUTS, Random, computed, random_tape, same};
-use clebsch_program::{Function, Machine};
+use crate::random_tapes::{FUNCTIONS, INPUTS, Random, computed, random_tape, same};
+use clebsch_program::Machine;
 use std::collections::BTreeMap;
 
 /// Number of random tapes.
 const TAPES: u64 = 300;
-
-const FUNCTIONS: [Function; 9] = [
-    Function::Sqrt,
-    Function::Exp,
-    Function::Log,
-    Function::Sin,
-    Function::Cos,
-    Function::Sinh,
-    Function::Cosh,
-    Function::Tanh,
-    Function::Balance,
-];
 
 /// The values of a listing by their names.
 struct Evaluated {

@@ -33,7 +33,8 @@ impl Random {
     }
 }
 
-const FUNCTIONS: [Function; 9] = [
+/// All functions of one number.
+pub const FUNCTIONS: [Function; 9] = [
     Function::Sqrt,
     Function::Exp,
     Function::Log,
