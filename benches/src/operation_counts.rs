@@ -117,7 +117,6 @@ macro_rules! functions {
 impl Real for Counted {
     type One = Self;
     const EPSILON: f64 = <f64 as Real>::EPSILON;
-    const ORDER: u32 = 0;
 
     fn one_of(&self, _: usize) -> Self {
         *self

@@ -3,6 +3,7 @@
 
 use crate::Refused;
 use crate::cache::Cache;
+use crate::derivatives::Differentiated;
 use crate::derived::{self, Body, Expanded};
 use crate::lines::{Carded, LineModel, NoLine};
 use crate::opened::{Opened, Text};
@@ -318,7 +319,12 @@ fn kept(
         Some(model) if model.sizes == sizes => Some(model.card),
         _ => resize(sizes).map(|(card, _)| card),
     };
+    let differentiate = move |parameters: &[Vec<f64>], initial: &[Vec<f64>], settings: Settings| {
+        let model = place.get().ok_or(NOT_OPEN)?;
+        Differentiated::open(model, parameters, initial, settings)
+    };
     model.card.open = Box::leak(Box::new(open));
+    model.card.differentiate = Some(Box::leak(Box::new(differentiate)));
     model.card.sized = Box::leak(Box::new(sized));
     place.get_or_init(|| model).card
 }

@@ -28,6 +28,28 @@ pub struct Part {
 }
 
 impl Part {
+    /// One step of the model from a state. Returns the solutions of the equations of the step, if tapes took it.
+    pub fn advance(
+        &mut self,
+        model: &Model,
+        state: &mut Packed,
+    ) -> Result<Option<&[f64]>, StepError> {
+        let Part { places, recorded } = self;
+        if recorded.step_from(state, places) {
+            return Ok(recorded.solutions());
+        }
+        recorded.write(places);
+        recorded.follow();
+        if let Some(here) = places.get_mut(at::STATE) {
+            state.put(here);
+        }
+        run(&model.opened.functions.step, places).map_err(|e| e.step(state.node))?;
+        if let Some(next) = places.get(at::STATE).and_then(Packed::of) {
+            *state = next;
+        }
+        Ok(None)
+    }
+
     /// Saves or restores the data that the solver of this step keeps.
     pub fn words(&mut self, words: &mut Words) {
         self.recorded.write(&mut self.places);
@@ -49,6 +71,20 @@ impl Model {
         put(&mut places, at::STEP, Value::Real(h));
         places
     }
+
+    /// The workspace of a state for steps of size `h`, prepared with this choice.
+    pub fn workspace_by(
+        &self,
+        state: &Packed,
+        h: f64,
+        choice: Value<f64>,
+    ) -> Result<Part, StartError> {
+        let mut places = self.places(state, h);
+        self.opened
+            .prepare(&mut places, Settings::step(h), choice)?;
+        let recorded = Recorded::new(self.opened.recordable(), true);
+        Ok(Part { places, recorded })
+    }
 }
 
 impl Stepper for Model {
@@ -57,27 +93,11 @@ impl Stepper for Model {
     type Workspace = Part;
 
     fn workspace(&self, state: &Packed, h: f64) -> Result<Part, StartError> {
-        let mut places = self.places(state, h);
-        self.opened
-            .prepare(&mut places, Settings::step(h), self.opened.usual())?;
-        let recorded = Recorded::new(self.opened.recordable(), true);
-        Ok(Part { places, recorded })
+        self.workspace_by(state, h, self.opened.usual())
     }
 
     fn advance(&self, state: &mut Packed, part: &mut Part) -> Result<(), StepError> {
-        let Part { places, recorded } = part;
-        if recorded.step_from(state, places) {
-            return Ok(());
-        }
-        recorded.write(places);
-        recorded.follow();
-        if let Some(here) = places.get_mut(at::STATE) {
-            state.put(here);
-        }
-        run(&self.opened.functions.step, places).map_err(|e| e.step(state.node))?;
-        if let Some(next) = places.get(at::STATE).and_then(Packed::of) {
-            *state = next;
-        }
+        part.advance(self, state)?;
         Ok(())
     }
 

@@ -8,6 +8,7 @@ mod cards;
 mod code;
 mod composed;
 mod constants;
+mod derivatives;
 mod derived;
 mod failure;
 mod functional;

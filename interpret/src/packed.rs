@@ -4,7 +4,7 @@ use crate::map_scalar::{fill, numbers};
 use crate::value::Value;
 
 /// How many numbers a state may have.
-const MOST: usize = 512;
+pub const MOST: usize = 512;
 
 /// A state at one node.
 #[derive(Clone, Copy, Debug)]
@@ -66,6 +66,12 @@ impl Packed {
             }
         }
     }
+}
+
+/// How many numbers a state has.
+pub fn count(state: &Value<f64>) -> usize {
+    let mut all = Vec::new();
+    numbers(state, &mut all).map_or(0, |()| all.len())
 }
 
 /// The count among the fields of a state.

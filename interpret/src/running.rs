@@ -43,6 +43,18 @@ fn take(places: &mut Places<f64>, at: usize) -> Value<f64> {
         .map_or(Value::Unit, |p| std::mem::replace(p, Value::Unit))
 }
 
+/// A trajectory before its first step.
+pub struct Begun {
+    /// The places, with the model, the state and the step size.
+    pub places: Places<f64>,
+    /// The parameters.
+    pub parameters: Value<f64>,
+    /// The initial values.
+    pub initial: Value<f64>,
+    /// The warning about the kinetic energy, which may explain why a step fails.
+    pub kinetic: Option<KineticWarning>,
+}
+
 impl Opened {
     /// Starts a trajectory.
     ///
@@ -54,34 +66,12 @@ impl Opened {
         initial: &[Vec<f64>],
         settings: Settings,
     ) -> Result<Box<dyn Trajectory>, OpenError> {
-        let (card, f) = (&self.card, &self.functions);
-        counted(card, parameters, initial)?;
-        let mut places = self.places(Value::Unit);
-        let own = collected(&self.parameters, card.parameters, parameters)?;
-        put(&mut places, at::GIVEN, own);
-        let model = run(&f.new, &mut places).map_err(Failure::open)?;
-        put(&mut places, at::MODEL, model);
-        let mut initial = initial.to_vec();
-        for signs in &self.signs {
-            let made = signs.make(parameters, &mut initial);
-            made.map_err(|e| OpenError::Start(StartError::Initial(e)))?;
-        }
-        let given = collected(&self.initial, card.initial, &initial)?;
-        put(&mut places, at::GIVEN, given);
-        let projecting = f.projecting.as_ref().filter(|_| settings.inquiry);
-        let begin = projecting.unwrap_or(&f.begin);
-        let state = run(begin, &mut places).map_err(Failure::start)?;
-        put(&mut places, at::STATE, state.clone());
-        // Check the kinetic energy before the first step, since it may explain why the step fails.
-        let kinetic = match &f.kinetic {
-            Some(kinetic) => match run(kinetic, &mut places).map_err(Failure::open)? {
-                Value::Warning(warning) => Some(warning),
-                _ => None,
-            },
-            None => None,
-        };
-        put(&mut places, at::STATE, state.clone());
-        put(&mut places, at::STEP, Value::Real(settings.h));
+        let card = &self.card;
+        let Begun {
+            mut places,
+            kinetic,
+            ..
+        } = self.begin(parameters, initial, settings)?;
         let steps = self
             .ways(card, &mut places, settings)
             .map_err(|e| e.beside(kinetic))?;
@@ -95,6 +85,64 @@ impl Opened {
             h: settings.h,
             kinetic,
         }))
+    }
+
+    /// Builds the model and its initial state.
+    ///
+    /// # Errors
+    /// As [`Opened::open`].
+    pub fn begin(
+        &self,
+        parameters: &[Vec<f64>],
+        initial: &[Vec<f64>],
+        settings: Settings,
+    ) -> Result<Begun, OpenError> {
+        let (card, f) = (&self.card, &self.functions);
+        counted(card, parameters, initial)?;
+        let mut places = self.places(Value::Unit);
+        let own = collected(&self.parameters, card.parameters, parameters)?;
+        put(&mut places, at::GIVEN, own.clone());
+        let model = run(&f.new, &mut places).map_err(Failure::open)?;
+        put(&mut places, at::MODEL, model);
+        let mut initial = initial.to_vec();
+        for signs in &self.signs {
+            let made = signs.make(parameters, &mut initial);
+            made.map_err(|e| OpenError::Start(StartError::Initial(e)))?;
+        }
+        let given = self.initial_values(&initial)?;
+        put(&mut places, at::GIVEN, given.clone());
+        let projecting = f.projecting.as_ref().filter(|_| settings.inquiry);
+        let begin = projecting.unwrap_or(&f.begin);
+        let state = run(begin, &mut places).map_err(Failure::start)?;
+        put(&mut places, at::STATE, state.clone());
+        // Check the kinetic energy before the first step, since it may explain why the step fails.
+        let kinetic = match &f.kinetic {
+            Some(kinetic) => match run(kinetic, &mut places).map_err(Failure::open)? {
+                Value::Warning(warning) => Some(warning),
+                _ => None,
+            },
+            None => None,
+        };
+        put(&mut places, at::STATE, state);
+        put(&mut places, at::STEP, Value::Real(settings.h));
+        if let Some(method) = chosen_solver(settings, card.solvers)?
+            && let Some(with_solver) = &f.with_solver
+        {
+            put(&mut places, at::GIVEN, Value::Method(method));
+            let model = run(with_solver, &mut places).map_err(Failure::open)?;
+            put(&mut places, at::MODEL, model);
+        }
+        Ok(Begun {
+            places,
+            parameters: own,
+            initial: given,
+            kinetic,
+        })
+    }
+
+    /// The initial values from lists of numbers, one for each field.
+    pub fn initial_values(&self, initial: &[Vec<f64>]) -> Result<Value<f64>, OpenError> {
+        collected(&self.initial, self.card.initial, initial)
     }
 
     /// The functions that are recorded as tapes.
@@ -111,13 +159,6 @@ impl Opened {
         settings: Settings,
     ) -> Result<Steps, OpenError> {
         let f = &self.functions;
-        if let Some(method) = chosen_solver(settings, card.solvers)?
-            && let Some(with_solver) = &f.with_solver
-        {
-            put(places, at::GIVEN, Value::Method(method));
-            let model = run(with_solver, places).map_err(Failure::open)?;
-            put(places, at::MODEL, model);
-        }
         let way = Way::of(Offer::of(card), settings, card.orders)?;
         let order = match way {
             Way::Composed(order) => order,

@@ -9,6 +9,7 @@ mod arithmetic;
 mod array;
 mod compiled;
 mod counts;
+mod derivative;
 mod evaluate;
 mod instruction;
 mod kernel;

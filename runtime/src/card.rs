@@ -1,6 +1,7 @@
 //! A model as data, for command lines, tests and language bindings.
 //! Emitted code provides one [`Card`] per model. Read it to list, start and observe models.
 
+use crate::derivatives::Differentiate;
 use crate::integrate::{CompositionOrder, Halvings};
 use crate::kinetic::KineticWarning;
 use crate::saved::Words;
@@ -282,6 +283,8 @@ pub struct Card {
     pub dimensions: &'static [Dimension],
     /// The card of the same model at other sizes.
     pub sized: Resize,
+    /// Starts a trajectory with its derivatives. `None` for compiled models: read their text with `clebsch-interpret`.
+    pub differentiate: Option<Differentiate>,
 }
 
 impl fmt::Debug for Card {
@@ -342,6 +345,7 @@ impl Card {
             solvers: &[],
             dimensions: &[],
             sized,
+            differentiate: None,
         }
     }
 

@@ -20,6 +20,7 @@
 
 mod any_error;
 pub mod card;
+pub mod derivatives;
 pub mod domain;
 #[doc(hidden)]
 pub mod emitted;

@@ -5,7 +5,7 @@ use crate::library::groups::{composed_kept, inverse_kept};
 use crate::value::{MatrixGroup, Value};
 use clebsch::groups::{Coordinate, Part};
 use clebsch::linalg::{Dense, Reals};
-use clebsch::{Group, OfScalars, PlaneMotion, RigidMotion, Rotation, UnitQuaternion};
+use clebsch::{Group, OfScalars, PlaneMotion, Real, RigidMotion, Rotation, UnitQuaternion};
 
 /// A group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -228,6 +228,38 @@ impl Kind {
     }
 }
 
+/// An element moved by coordinates, from the right or from the left, for any scalar. Returns nothing if the value is not an
+/// element of a group.
+pub fn moved<T: Real>(element: &Value<T>, xi: &[T], from_left: bool) -> Option<Value<T>> {
+    fn typed<T: Real, G: Group<T>>(g: &G, xi: &[T], from_left: bool) -> G {
+        match from_left {
+            true => g.retract_from_left(xi),
+            false => g.retract(xi),
+        }
+    }
+    Some(match element {
+        Value::Rotation(g) => Value::Rotation(typed(g, xi, from_left)),
+        Value::Quaternion(g) => Value::Quaternion(typed(g, xi, from_left)),
+        Value::Motion(g) => Value::Motion(Box::new(typed(&**g, xi, from_left))),
+        Value::Plane(g) => Value::Plane(Box::new(typed(&**g, xi, from_left))),
+        Value::Element(group, a) => {
+            let matrix = Matrix(*group, a.rows, a.cols);
+            let moved = match from_left {
+                true => {
+                    let one = match group {
+                        MatrixGroup::Field => Dense::zeros(a.rows, a.cols),
+                        _ => Dense::identity(a.rows, a.cols),
+                    };
+                    composed_kept(*group, &matrix.retract(&one, xi), a)
+                }
+                false => matrix.retract(a, xi),
+            };
+            Value::Element(*group, moved)
+        }
+        _ => return None,
+    })
+}
+
 /// The group of a matrix, its rows and its columns.
 #[derive(Clone, Copy)]
 struct Matrix(MatrixGroup, usize, usize);
@@ -266,11 +298,11 @@ impl Matrix {
         (0..rows * cols).map(move |k| (k % rows, k / rows, k))
     }
 
-    fn coordinate(self, xi: &[f64], i: usize, j: usize) -> f64 {
-        xi.get(self.2 * i + j).copied().unwrap_or(0.0)
+    fn coordinate<T: Real>(self, xi: &[T], i: usize, j: usize) -> T {
+        xi.get(self.2 * i + j).copied().unwrap_or(T::zero())
     }
 
-    fn coordinates(self, xi: &[f64]) -> Dense<f64> {
+    fn coordinates<T: Real>(self, xi: &[T]) -> Dense<T> {
         Dense::from_fn(self.1, self.2, |i, j| self.coordinate(xi, i, j))
     }
 
@@ -291,12 +323,12 @@ impl Matrix {
         }
     }
 
-    fn retract(self, a: &Dense<f64>, xi: &[f64]) -> Dense<f64> {
+    fn retract<T: Real>(self, a: &Dense<T>, xi: &[T]) -> Dense<T> {
         match self.0 {
             MatrixGroup::Linear => a.plus(&a.times(&self.coordinates(xi))),
             MatrixGroup::Field => a.plus(&self.coordinates(xi)),
             MatrixGroup::Orthogonal => {
-                let half = Dense::skew_from(a.rows, xi).scaled(0.5);
+                let half = Dense::skew_from(a.rows, xi).scaled(T::from_f64(0.5));
                 let one = Dense::identity(a.rows, a.rows);
                 match one.minus(&half).solved(&one) {
                     Some(inverse) => a

@@ -6,7 +6,7 @@ mod search;
 mod shape;
 mod solve;
 
-pub use kind::Kind;
+pub use kind::{Kind, moved};
 pub use search::{SearchValue, Sought, remember, solution_value};
 pub use shape::Shape;
 pub use solve::{AtTrial, Settled, Solve, matrix, vector};

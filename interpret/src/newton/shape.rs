@@ -1,6 +1,6 @@
 //! The groups of the velocities that a search solves for. An element is the concatenation of all their numbers.
 
-use super::kind::{Kind, read, write};
+use super::kind::{Kind, moved, read, write};
 use crate::value::Value;
 use clebsch::groups::{Coordinate, Part};
 use clebsch::linalg::Reals;
@@ -70,6 +70,23 @@ impl Shape {
                 _ => value.clone(),
             })
             .collect()
+    }
+
+    /// Elements moved by coordinates, for any scalar. Returns nothing for values of other groups.
+    pub fn moved<T: Real>(
+        &self,
+        elements: &[Value<T>],
+        xi: &[T],
+        from_left: bool,
+    ) -> Option<Vec<Value<T>>> {
+        let mut rest = xi;
+        let pairs = self.kinds.iter().zip(elements);
+        let each = pairs.map(|(kind, element)| {
+            let (own, others) = rest.split_at_checked(kind.dimension())?;
+            rest = others;
+            moved(element, own, from_left)
+        });
+        each.collect()
     }
 
     /// The numbers of each group.

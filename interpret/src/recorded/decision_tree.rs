@@ -41,6 +41,12 @@ impl OutcomeTape {
         self.last.begin(steady)
     }
 
+    /// The solutions of the equations of the last evaluation.
+    pub fn solutions(&self) -> Option<&[f64]> {
+        let count: usize = self.between.iter().map(SolveBetweenTapes::solution).sum();
+        self.numbers.get(self.numbers.len().checked_sub(count)?..)
+    }
+
     /// Computes the function at a node.
     fn follows(&mut self, node: &mut Node) -> TapeOutcome {
         let given = match self.between.first() {
@@ -131,6 +137,11 @@ impl TapesByOutcome {
         }
         all.extend(newest.last.sections(title, steady, &inputs, outputs));
         all
+    }
+
+    /// The tapes that have computed the function last.
+    pub fn newest(&self) -> Option<&OutcomeTape> {
+        self.known.last().map(|(_, tape)| tape)
     }
 
     /// The tapes that have just computed the function at a node. If no tape of this trajectory fits, a tape of another

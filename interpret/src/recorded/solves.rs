@@ -5,14 +5,14 @@ use super::equations::{EquationValues, Equations, NewtonFunction, Recorded};
 use super::form::value_of;
 use super::function::run as run_alone;
 use super::ready::Ready;
-use super::traced::{Traced, aside, cut, steps, with_newest_cut, with_some_cut};
+use super::traced::{Traced, aside, cut, has_derivatives, steps, with_newest_cut, with_some_cut};
 use crate::code::{Code, Exit, Iterate, Places, unfit};
 use crate::listing::{Section, numbered};
 use crate::map_scalar::{map_scalar, numbers};
 use crate::newton::{AtTrial, SearchValue, Solve, Sought, matrix, solution_value, vector};
 use crate::opened::at;
 use crate::value::{Struct, Value};
-use clebsch::linalg::Reals;
+use clebsch::linalg::{Dense, Reals};
 use clebsch::solvers::newton::{Chart, Solved};
 use clebsch_program::{Guard, Part, Scalar, Tape};
 use std::sync::Arc;
@@ -136,6 +136,10 @@ impl Iterate<Traced> for RecordedSolve {
             &mut EquationValues::Places(&mut seen),
         );
         let solved = unfit(solved.ok())?;
+        let sought = held.sought();
+        if has_derivatives() {
+            return self.corrected(sought, &solved, places);
+        }
         cut(SolvedHere {
             with: self.with.clone(),
             equations: None,
@@ -143,7 +147,6 @@ impl Iterate<Traced> for RecordedSolve {
             solution: Vec::new(),
             remembers: false,
         });
-        let sought = held.sought();
         let values = sought.all().value(&solved.element);
         let element = unfit(map_scalar(&values, &mut Traced::input))?;
         let mut inputs = Vec::new();
@@ -178,6 +181,65 @@ impl Iterate<Traced> for RecordedSolve {
 fn part(numbers: &[Traced], guards: Vec<Guard>) -> Part {
     let outputs = steps(numbers);
     Part { outputs, guards }
+}
+
+impl RecordedSolve {
+    /// The solution after one more correction of Newton's method. The solution itself is an input; the correction is zero
+    /// up to rounding, and its derivative is the derivative of the solution by the implicit function theorem.
+    fn corrected(
+        &self,
+        sought: &Sought,
+        solved: &Solved<Reals>,
+        places: &mut Places<Traced>,
+    ) -> Result<Value<Traced>, Exit<Traced>> {
+        let found = sought.all().value(&solved.element);
+        let Some(Value::List(found)) = map_scalar(&found, &mut Traced::input) else {
+            return unfit(None);
+        };
+        let trial = sought.shape.part_of(&found);
+        let size = sought.shape.parts().dimension();
+        let in_part = self.with.completed_at.is_some();
+        let at_trial = |body: &Option<Code<Traced>>, place: usize, trial: &[Value<Traced>]| {
+            let mut own = places.clone();
+            *own.get_mut(place)? = Value::List(trial.to_vec());
+            value_of(body.as_ref()?, &mut own)
+        };
+        let residual = |trial: &[Value<Traced>]| {
+            let place = self.with.residual.place;
+            match at_trial(&self.residual, place, trial)? {
+                Value::List(both) => Some(both),
+                _ => None,
+            }
+        };
+        let own = unfit(residual(&trial).and_then(|both| vector(both.last()?, size)))?;
+        let tangent = unfit(at_trial(&self.tangent, self.with.tangent.place, &trial))?;
+        let (tangent, unit) = match &tangent {
+            Value::List(both) => match both.as_slice() {
+                [tangent, Value::Real(unit)] => (unfit(matrix(tangent, size))?, *unit),
+                _ => return unfit(None),
+            },
+            _ => return unfit(None),
+        };
+        let right = own.iter().map(|x| -*x * unit).collect();
+        let correction = unfit(tangent.solved(&Dense::column_of(right)))?.data;
+        let from_left = self.with.from_left;
+        let mut moved = unfit(sought.shape.moved(&trial, &correction, from_left))?;
+        if in_part {
+            let both = unfit(residual(&moved))?;
+            moved = match both.into_iter().next() {
+                Some(Value::List(whole)) => whole,
+                _ => return unfit(None),
+            };
+        }
+        let told = solution_value(sought.all(), solved);
+        let Value::Struct(Struct { layout, .. }) = told else {
+            return unfit(None);
+        };
+        Ok(Value::Struct(Struct {
+            layout,
+            values: vec![Value::List(moved), Value::Unit, Value::Unit],
+        }))
+    }
 }
 
 /// The parts of a recording that evaluate equations, and which numbers of a solution a trial has.
@@ -286,6 +348,9 @@ pub fn remember(
     places: &mut Places<Traced>,
     a: &[Code<Traced>],
 ) -> Result<Value<Traced>, Exit<Traced>> {
+    if has_derivatives() {
+        return Ok(Value::Unit);
+    }
     let [_, node, found] = a else {
         return unfit(None);
     };

@@ -22,9 +22,12 @@ pub struct Traced {
 #[derive(Default)]
 struct Here {
     recording: Recording,
-    inputs: u32,
+    /// The values of the inputs.
+    inputs: Vec<f64>,
     spoiled: bool,
     cuts: Vec<RecordingPause>,
+    /// Whether derivatives of the tape must be exact, too.
+    has_derivatives: bool,
 }
 
 thread_local! {
@@ -33,6 +36,9 @@ thread_local! {
 
 /// Maximum number of steps of a tape; longer evaluations are not recorded.
 const MOST: usize = 1 << 17;
+
+/// Maximum number of steps of a tape whose derivatives are exact: about 2 GiB with its derivatives.
+const MOST_WITH_DERIVATIVES: usize = 1 << 25;
 
 /// Records `body`, which returns the numbers that the tape computes. Returns nothing if they depend on more than tests
 /// of numbers, or if the tape is too long.
@@ -52,7 +58,43 @@ pub fn record_with_solves(
     let outputs = outputs.filter(|_| fits)?;
     let steps = outputs.iter().map(|x| x.step_in(&mut here.recording));
     let steps: Vec<Scalar> = steps.collect();
-    Some((here.recording.tape(steps), here.inputs as usize, here.cuts))
+    Some((here.recording.tape(steps), here.inputs.len(), here.cuts))
+}
+
+/// A recording with exact derivatives.
+#[derive(Debug)]
+pub struct WithDerivatives {
+    /// The operations. Iterations take one correction more than for values alone, which makes first derivatives exact.
+    pub tape: Tape,
+    /// The inputs of the recorded evaluation. Solutions of equations are inputs, too; the tape corrects them once.
+    pub inputs: Vec<f64>,
+    /// Whether the tape also serves other inputs, as long as its decisions come out as recorded.
+    pub serves_others: bool,
+}
+
+/// Records `body` with exact derivatives. Returns nothing if it gives nothing, or if the tape is too long.
+pub fn record_with_derivatives(
+    body: impl FnOnce() -> Option<Vec<Traced>>,
+) -> Option<WithDerivatives> {
+    HERE.set(Some(Here {
+        has_derivatives: true,
+        ..Here::default()
+    }));
+    let outputs = body();
+    let mut here = HERE.take()?;
+    let outputs = outputs.filter(|_| here.recording.len() <= MOST_WITH_DERIVATIVES)?;
+    let steps = outputs.iter().map(|x| x.step_in(&mut here.recording));
+    let steps: Vec<Scalar> = steps.collect();
+    Some(WithDerivatives {
+        tape: here.recording.tape(steps),
+        inputs: here.inputs,
+        serves_others: !here.spoiled,
+    })
+}
+
+/// Whether the recording of this thread has exact derivatives.
+pub fn has_derivatives() -> bool {
+    noted(|here| here.has_derivatives).unwrap_or(false)
 }
 
 /// Ends a part of the recording. The solution of the equations is the input of the next part.
@@ -60,7 +102,7 @@ pub fn cut(solved: SolvedHere) {
     noted(|here| {
         here.cuts.push(RecordingPause {
             guards: here.recording.guards(),
-            inputs: here.inputs as usize,
+            inputs: here.inputs.len(),
             solved,
         });
     });
@@ -115,8 +157,9 @@ impl Traced {
     /// The next input, with the value that it has while the tape is recorded.
     pub fn input(value: f64) -> Self {
         let at = noted(|here| {
-            here.inputs += 1;
-            here.recording.step(Step::Input(here.inputs - 1))
+            here.inputs.push(value);
+            let last = u32::try_from(here.inputs.len() - 1).unwrap_or(u32::MAX);
+            here.recording.step(Step::Input(last))
         });
         Traced { value, at }
     }
@@ -238,7 +281,10 @@ impl One for Traced {
 impl Real for Traced {
     type One = Self;
     const EPSILON: f64 = <f64 as Real>::EPSILON;
-    const ORDER: u32 = 0;
+
+    fn order() -> u32 {
+        u32::from(has_derivatives())
+    }
 
     fn from_f64(x: f64) -> Self {
         Traced::constant(x)
@@ -332,6 +378,9 @@ impl Real for Traced {
         inputs: &dyn Fn() -> Vec<Self>,
         outputs: usize,
     ) -> Option<Vec<Self>> {
+        if has_derivatives() {
+            return None;
+        }
         let inputs = inputs();
         // A call on constants is computed now.
         if inputs.iter().all(|x| x.at.is_none()) {

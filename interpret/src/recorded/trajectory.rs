@@ -204,6 +204,11 @@ impl Recorded {
         true
     }
 
+    /// The solutions of the equations of the last step. Returns nothing if no tape has taken a step.
+    pub fn solutions(&self) -> Option<&[f64]> {
+        self.step.newest()?.solutions()
+    }
+
     /// Takes a step from this state; returns false if the function itself must run, from the places.
     pub fn step_from(&mut self, state: &mut Packed, places: &mut Places<f64>) -> bool {
         if self.step.are_none() || !self.put(state, places) || !self.step(places) {

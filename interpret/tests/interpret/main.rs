@@ -5,6 +5,7 @@
 #![allow(mixed_script_confusables)]
 
 mod constraints;
+mod derivatives;
 mod fluids;
 mod forms_of_lines;
 mod gallery;

@@ -300,7 +300,7 @@ fn trace_of_root<A: Number, const N: usize>(
     }
     let mut u = A::constant(start);
     let precise = u32::from(A::Base::EPSILON < 1e-20);
-    for _ in 0..A::Base::ORDER + precise + A::DEPTH {
+    for _ in 0..A::Base::order() + precise + A::DEPTH {
         u = improved(Jet::variable(u, None), first, second, root).value;
     }
     improved(Jet::variable(u, None), first, second, root)

@@ -366,7 +366,7 @@ fn turned_by<T: Real>(xi: &[T], product: impl Fn([T; 4]) -> [T; 4]) -> Rotation<
     // (1 + e)^(-1/2) is 1 - e/2 up to 3 e^2/8: for small corrections, root and quotient are
     // not waited for. The element itself is unit.
     let excess = x * x + y * y + z * z;
-    if T::ORDER == 0 && (excess * excess).is_below(T::EPSILON) {
+    if T::order() == 0 && (excess * excess).is_below(T::EPSILON) {
         let scale = T::one() - excess * half;
         return Rotation {
             q: times(turned, scale),
@@ -408,7 +408,7 @@ impl<T: Real> Group<T> for Rotation<T> {
         let half = T::from_f64(0.5);
         let excess = norm_squared(q) - T::one();
         let largest = largest_real_part(excess);
-        if T::ORDER == 0 && largest * largest * largest < T::EPSILON {
+        if T::order() == 0 && largest * largest * largest < T::EPSILON {
             let scale = T::one() - half * excess + T::from_f64(0.375) * (excess * excess);
             return Self { q: times(q, scale) };
         }

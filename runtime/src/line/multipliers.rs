@@ -194,7 +194,7 @@ impl<T: Real> Multipliers<T> {
         self.impulses.fill(T::zero());
         self.from.fill(T::zero());
         (self.phase, self.share, self.length) = (Phase::Begin, 0.0, 1.0);
-        (self.passes, self.further) = (0, T::ORDER);
+        (self.passes, self.further) = (0, T::order());
     }
 
     /// Whether the search continues and needs the positions for the current impulses.

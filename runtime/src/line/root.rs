@@ -317,7 +317,7 @@ fn stage<T: Real>(
         return Some(WORSE);
     }
     // Each further correction makes the solution's derivatives exact to one more order.
-    let further = if last { T::ORDER } else { 0 };
+    let further = if last { T::order() } else { 0 };
     for _ in 0..further {
         equations.at(lists.velocity, lists.momenta);
         residual(known, end, lists);

@@ -6,7 +6,6 @@ use super::Real;
 impl Real for f64 {
     type One = Self;
     const EPSILON: f64 = f64::EPSILON / 2.0;
-    const ORDER: u32 = 0;
 
     #[inline(always)]
     fn one_of(&self, _: usize) -> Self {

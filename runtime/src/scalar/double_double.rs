@@ -233,7 +233,6 @@ impl Real for DoubleDouble {
     type One = Self;
     // 2^-104: the worst error of one operation, four times the representation's 2^-106.
     const EPSILON: f64 = f64::EPSILON * f64::EPSILON;
-    const ORDER: u32 = 0;
 
     #[inline(always)]
     fn one_of(&self, _: usize) -> Self {

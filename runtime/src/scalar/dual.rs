@@ -181,7 +181,11 @@ impl<const N: usize> One for Dual<N> {
 impl<const N: usize> Real for Dual<N> {
     type One = Self;
     const EPSILON: f64 = <f64 as Real>::EPSILON;
-    const ORDER: u32 = 1;
+
+    #[inline(always)]
+    fn order() -> u32 {
+        1
+    }
 
     #[inline(always)]
     fn one_of(&self, _: usize) -> Self {

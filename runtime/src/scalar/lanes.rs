@@ -104,7 +104,6 @@ impl<const N: usize> Real for Lanes<N> {
     type One = f64;
 
     const EPSILON: f64 = <f64 as Real>::EPSILON;
-    const ORDER: u32 = 0;
     const LANES: usize = N;
 
     #[inline(always)]

@@ -61,7 +61,10 @@ pub trait Real:
     ///
     /// An iteration that stops on the real part must be followed by this many more Newton steps,
     /// each of which makes one more order of derivatives exact.
-    const ORDER: u32;
+    #[inline(always)]
+    fn order() -> u32 {
+        0
+    }
 
     /// The number of lanes (1 unless the type has lanes).
     const LANES: usize = 1;

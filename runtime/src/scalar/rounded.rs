@@ -179,8 +179,12 @@ impl One for Rounded {
 impl Real for Rounded {
     type One = Self;
     const EPSILON: f64 = UNIT;
+
     /// Shortcuts of plain numbers are not taken.
-    const ORDER: u32 = 1;
+    #[inline]
+    fn order() -> u32 {
+        1
+    }
 
     #[inline]
     fn one_of(&self, _: usize) -> Self {

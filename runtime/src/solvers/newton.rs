@@ -450,7 +450,7 @@ where
     pub fn assess(&mut self, residual: SVector<T, D>) -> bool {
         self.size = largest(&residual.component_mul(&self.search.weights));
         self.residual = residual;
-        if T::ORDER > 0 {
+        if T::order() > 0 {
             return true;
         }
         if self.iteration > 0 {

@@ -46,7 +46,7 @@ impl<T: Real> Iteration<T> {
         right: &[T],
         x: &mut [T],
     ) -> Result<usize, MeshError> {
-        if T::ORDER == 0 {
+        if T::order() == 0 {
             self.conjugate(operator, right, x)
         } else {
             Ok(self.chebyshev(operator, right, x))
@@ -134,7 +134,7 @@ impl<T: Real> Iteration<T> {
         let width = (1.0 - least).max(1e-3);
         let rate = width / (1.0 + (1.0 - width * width).sqrt());
         let cycle = ((TOLERANCE * T::EPSILON * 1e-3).ln() / rate.ln()).ceil() as usize;
-        for _ in 0..=T::ORDER {
+        for _ in 0..=T::order() {
             self.direction.fill(T::zero());
             // The weight in the three-term recurrence.
             let mut weight = 0.0;
@@ -155,6 +155,6 @@ impl<T: Real> Iteration<T> {
                 }
             }
         }
-        cycle * (T::ORDER as usize + 1)
+        cycle * (T::order() as usize + 1)
     }
 }

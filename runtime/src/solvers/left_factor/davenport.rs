@@ -43,7 +43,7 @@ pub fn davenport<T: Real>(c: &Matrix3<T>, v: &Vector3<T>) -> Result<Rotation<T>,
     let unit = T::EPSILON * 2.0 * size;
     let mut omega = start;
     let mut previous = f64::INFINITY;
-    let mut rest = T::ORDER;
+    let mut rest = T::order();
     for _ in 0..POLISHING {
         let a = omega.matrix() * c.transpose();
         let f = axial_of_difference(&a) - v;

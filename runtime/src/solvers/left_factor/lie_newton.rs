@@ -102,7 +102,7 @@ fn attempt<T: Real, const N: usize>(
     let mut previous = f64::INFINITY;
     let mut size = f64::NAN;
     // The number of steps after the real parts have converged: one for each order of derivatives.
-    let mut rest = T::ORDER;
+    let mut rest = T::order();
     for _ in 0..MOST_STEPS {
         let a = product(&r, &turned_factor);
         let f = a - a.transpose() - v;
@@ -120,7 +120,7 @@ fn attempt<T: Real, const N: usize>(
         if done {
             rest -= 1;
         }
-        if !factorised || T::ORDER > 0 || size > QUICK * previous {
+        if !factorised || T::order() > 0 || size > QUICK * previous {
             if !linear.factorise(&a) {
                 return Err(Failed::NotConverged(size));
             }
@@ -211,7 +211,7 @@ pub(super) fn solve<T: Real, const N: usize>(
         }
     };
     let guess = match guess {
-        Ok(r) if T::ORDER == 0 => return Ok(factor.unframed(&r)),
+        Ok(r) if T::order() == 0 => return Ok(factor.unframed(&r)),
         Ok(r) | Err(r) => r,
     };
     match attempt(factor, &v, &guess) {

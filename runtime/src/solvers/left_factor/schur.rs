@@ -168,7 +168,7 @@ pub(super) fn solve<T: Real, const N: usize>(
 ) -> Result<Orthogonal<N, T>, Unsolved> {
     let refuse = |refusal| factor.unsolved(Method::Schur, h_n, refusal);
     // Double precision cannot represent derivatives, lanes or more digits.
-    if T::ORDER > 0 || T::LANES > 1 || T::EPSILON < 1e-17 {
+    if T::order() > 0 || T::LANES > 1 || T::EPSILON < 1e-17 {
         return Err(refuse(Refusal::DoesNotApply));
     }
     if !h_n.iter().all(|x| x.is_finite()) {

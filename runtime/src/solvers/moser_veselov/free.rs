@@ -578,7 +578,7 @@ impl<T: Real> Free<T> {
 /// Whether the scalar type is without derivatives.
 #[inline(always)]
 fn plain<T: Real>() -> bool {
-    T::ORDER == 0
+    T::order() == 0
 }
 
 /// The principal axes, if they are used.

@@ -153,7 +153,7 @@ impl<T: Real> Quartic<T> {
     /// Newton steps that make the derivative parts of `k` exact; none for plain numbers.
     #[inline(always)]
     fn polished(&self, mut k: T) -> T {
-        for _ in 0..T::ORDER {
+        for _ in 0..T::order() {
             k += self.value(k) / self.fall(k);
         }
         k
@@ -193,7 +193,7 @@ impl<T: Real> Quartic<T> {
     fn finished(&self, mut k: T) -> Option<T> {
         let one = T::one();
         let threshold = (one + self.turn) * T::from_f64(T::EPSILON.sqrt());
-        for _ in 0..=T::ORDER {
+        for _ in 0..=T::order() {
             let fall = self.fall(k);
             let steep = (fall - threshold).where_positive(one);
             let safe = steep * fall + (one - steep);

@@ -78,7 +78,7 @@ impl Corrections {
     /// least once.
     #[inline(always)]
     pub fn are_polished<T: Real>(&self, r: Residual) -> bool {
-        T::ORDER == 0
+        T::order() == 0
             && r.iteration > 0
             && r.size <= POLISHED_ROUNDINGS * T::EPSILON
             && self.leave_rounding::<T>(r.size / r.previous)
@@ -106,7 +106,7 @@ impl Corrections {
             false => CorrectionAssessment::More,
         };
         // A correction is needed to make derivatives exact.
-        let may_end = T::ORDER == 0 && r.iteration > 0;
+        let may_end = T::order() == 0 && r.iteration > 0;
         if may_end && r.size <= POLISHED_ROUNDINGS * unit && judged == CorrectionAssessment::Last {
             return NextAction::End;
         }

@@ -52,7 +52,7 @@ pub(super) fn turn<T: Real>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<Turn<
     let equation = Equation::new::<false>(body, u);
     let start = equation.start();
     let mut s = equation.improved(start);
-    for _ in 0..T::ORDER {
+    for _ in 0..T::order() {
         s = equation.improved(s);
     }
     if !beyond.nowhere_positive() {
@@ -117,7 +117,7 @@ fn polished<T: Real>(
     u: [T; 3],
     mut q: UnitQuaternion<T>,
 ) -> Option<UnitQuaternion<T>> {
-    for _ in 0..(2 * u32::from(wide::<T>()) + T::ORDER) {
+    for _ in 0..(2 * u32::from(wide::<T>()) + T::order()) {
         let (residual, tangent) = balance(body, u, &q);
         q = q.retract((-solve(&tangent, &residual)?).as_slice());
     }

@@ -305,6 +305,6 @@ fn principal<T: Real, const DIAGONAL: bool>(
 }
 
 /// Whether one step of Newton's method with an approximate slope may be exact to rounding.
-pub(super) const fn quick<T: Real>() -> bool {
-    T::ORDER == 0 && T::EPSILON > 1e-20
+pub(super) fn quick<T: Real>() -> bool {
+    T::order() == 0 && T::EPSILON > 1e-20
 }

@@ -1,0 +1,320 @@
+//! A trajectory with its derivatives: steps, their tangents, and what is observed.
+
+use super::coordinates::dimensions;
+use super::functions::Around;
+use super::linear::Linear;
+use super::start::Started;
+use crate::composed::Part;
+use crate::opened::Opened;
+use crate::packed::Packed;
+use crate::value::Value;
+use clebsch::card::{Card, Settings};
+use clebsch::derivatives::{Cost, Derivatives, Gradient, Jacobian, NoDerivative, Point};
+use clebsch::{StartError, validate};
+
+/// The most recordings of one function that are kept, one for each outcome of its decisions.
+const MOST: usize = 32;
+
+/// A substep: a step of the model with its own workspace.
+pub struct Stage {
+    pub h: f64,
+    pub part: Part,
+    /// Recordings of the step with derivatives.
+    steps: Vec<Linear>,
+}
+
+/// A step of the model as it was taken: the state before it, and the solutions of its equations if they are known.
+pub struct Taken {
+    pub before: Packed,
+    pub solutions: Option<Vec<f64>>,
+}
+
+/// A trajectory with its derivatives.
+pub struct Differentiated {
+    pub started: Started,
+    pub stages: Vec<Stage>,
+    /// The state that the workspaces of the substeps remember.
+    remembered: Packed,
+    observed: Vec<Linear>,
+    invariants: Vec<Linear>,
+    pub charts: Vec<Linear>,
+    pub conserved: Vec<Linear>,
+}
+
+/// A use of a recording at changing inputs.
+type Use<'a, R> = &'a dyn Fn(&mut Linear, &[f64]) -> Option<R>;
+
+/// Uses a recording of a function, or a new one if no known recording has the same decisions at these inputs. Returns
+/// nothing if the function cannot be recorded.
+pub fn by_recording<R>(
+    known: &mut Vec<Linear>,
+    late: &[f64],
+    record: impl FnOnce() -> Option<Linear>,
+    used: Use<'_, R>,
+) -> Option<R> {
+    for at in (0..known.len()).rev() {
+        let linear = known.get_mut(at)?;
+        if linear.late() == late.len()
+            && let Some(value) = used(linear, late)
+        {
+            let newest = known.remove(at);
+            known.push(newest);
+            return Some(value);
+        }
+    }
+    let mut linear = record()?;
+    let own = linear.recorded().to_vec();
+    let value = used(&mut linear, &own)?;
+    if linear.serves_others {
+        if known.len() == MOST {
+            known.remove(0);
+        }
+        known.push(linear);
+    }
+    Some(value)
+}
+
+impl Differentiated {
+    /// Starts a trajectory with derivatives.
+    ///
+    /// # Errors
+    /// As [`Opened::open`].
+    pub fn open(
+        opened: &'static Opened,
+        parameters: &[Vec<f64>],
+        initial: &[Vec<f64>],
+        settings: Settings,
+    ) -> Result<Box<dyn Derivatives>, NoDerivative> {
+        Ok(Box::new(Self::from(Started::new(
+            opened, parameters, initial, settings,
+        )?)?))
+    }
+
+    fn from(started: Started) -> Result<Self, NoDerivative> {
+        let parts = started.parts(&started.state)?.into_iter();
+        let stages = parts.map(|(h, part)| Stage {
+            h,
+            part,
+            steps: Vec::new(),
+        });
+        Ok(Differentiated {
+            stages: stages.collect(),
+            remembered: started.state,
+            started,
+            observed: Vec::new(),
+            invariants: Vec::new(),
+            charts: Vec::new(),
+            conserved: Vec::new(),
+        })
+    }
+
+    /// The state in the form that the functions of the model take.
+    pub fn state(&self, at: &Packed) -> Value<f64> {
+        let mut state = self.started.model.state.clone();
+        at.put(&mut state);
+        state
+    }
+
+    /// Where functions are recorded, for steps of size `h`.
+    pub fn around(started: &Started, h: f64) -> Around<'_> {
+        Around {
+            model: &started.model.model,
+            h,
+            choice: &started.choice,
+        }
+    }
+
+    /// Takes a step; appends its substeps to `taken`.
+    pub fn advance(
+        &mut self,
+        state: &mut Packed,
+        mut taken: Option<&mut Vec<Taken>>,
+    ) -> Result<(), NoDerivative> {
+        let node = state.node;
+        if state.numbers() != self.remembered.numbers() || node != self.remembered.node {
+            self.forget(state)?;
+        }
+        for stage in &mut self.stages {
+            *state = state.counted(node);
+            let before = *state;
+            let solutions = stage.part.advance(&self.started.model, state)?;
+            if let Some(taken) = &mut taken {
+                taken.push(Taken {
+                    before,
+                    solutions: solutions.map(<[f64]>::to_vec),
+                });
+            }
+        }
+        *state = state.counted(node + 1);
+        self.remembered = *state;
+        Ok(())
+    }
+
+    /// Prepares new workspaces, because the next step does not continue the last one.
+    fn forget(&mut self, state: &Packed) -> Result<(), NoDerivative> {
+        let parts = self.started.parts(state)?;
+        for (stage, (_, part)) in self.stages.iter_mut().zip(parts) {
+            stage.part = part;
+        }
+        Ok(())
+    }
+
+    /// Uses a recording of a substep with derivatives, at a step that was taken.
+    pub fn at_step<R>(
+        &mut self,
+        stage: usize,
+        taken: &Taken,
+        used: Use<'_, R>,
+    ) -> Result<R, NoDerivative> {
+        let state = self.state(&taken.before);
+        let started = &self.started;
+        let what = "a step";
+        let Some(Stage { h, steps, .. }) = self.stages.get_mut(stage) else {
+            return Err(NoDerivative::Unrecorded { what });
+        };
+        let mut late = taken.before.numbers().to_vec();
+        // Without solutions, no known recording has this number of inputs, unless the step solves no equations.
+        if let Some(solutions) = &taken.solutions {
+            late.extend_from_slice(solutions);
+        }
+        let record = || started.traceable.step(&Self::around(started, *h), &state);
+        by_recording(steps, &late, record, used).ok_or(NoDerivative::Unrecorded { what })
+    }
+
+    /// Uses a recording of the observables.
+    pub fn at_observables<R>(&mut self, at: &Packed, used: Use<'_, R>) -> Result<R, NoDerivative> {
+        let (state, started) = (self.state(at), &self.started);
+        let around = Self::around(started, started.h);
+        let record = || started.traceable.observed(&around, &state);
+        let found = by_recording(&mut self.observed, at.numbers(), record, used);
+        found.ok_or(NoDerivative::Unrecorded {
+            what: "the observables",
+        })
+    }
+
+    /// Uses a recording of the invariants.
+    pub fn at_invariants<R>(&mut self, at: &Packed, used: Use<'_, R>) -> Result<R, NoDerivative> {
+        let (state, started) = (self.state(at), &self.started);
+        let around = Self::around(started, started.h);
+        let record = || started.traceable.invariants(&around, &state);
+        let found = by_recording(&mut self.invariants, at.numbers(), record, used);
+        found.ok_or(NoDerivative::Unrecorded {
+            what: "the invariants",
+        })
+    }
+
+    /// The numbers of a point.
+    pub fn packed(&self, at: &Point) -> Result<Packed, NoDerivative> {
+        let numbers = Packed::of_numbers(&at.numbers, at.node);
+        numbers.ok_or(NoDerivative::TooLarge {
+            numbers: at.numbers.len(),
+            most: crate::packed::MOST,
+        })
+    }
+}
+
+/// The numbers of a state as a point.
+pub fn point(state: &Packed) -> Point {
+    Point {
+        numbers: state.numbers().to_vec(),
+        node: state.node,
+    }
+}
+
+impl Derivatives for Differentiated {
+    fn card(&self) -> &'static Card {
+        &self.started.opened.card
+    }
+
+    fn h(&self) -> f64 {
+        self.started.h
+    }
+
+    fn with_step(&self, h: f64) -> Result<Box<dyn Derivatives>, NoDerivative> {
+        validate::directed_step(h).map_err(StartError::from)?;
+        let started = Started {
+            h,
+            ..self.started.clone()
+        };
+        Ok(Box::new(Self::from(started)?))
+    }
+
+    fn start(&self) -> Point {
+        point(&self.started.state)
+    }
+
+    fn dimensions(&self) -> Vec<usize> {
+        dimensions(&self.started.initial, &self.started.forms)
+    }
+
+    fn observe(&mut self, at: &Point) -> Result<Vec<f64>, NoDerivative> {
+        let at = self.packed(at)?;
+        self.at_observables(&at, &|linear, late| linear.value(late))
+    }
+
+    fn invariants(&mut self, at: &Point) -> Result<Vec<f64>, NoDerivative> {
+        let at = self.packed(at)?;
+        self.at_invariants(&at, &|linear, late| linear.value(late))
+    }
+
+    fn moved(&mut self, at: &Point, by: &[f64]) -> Result<Point, NoDerivative> {
+        let at = self.packed(at)?;
+        Ok(point(&self.moved_by(&at, by)?))
+    }
+
+    fn difference(&mut self, from: &Point, to: &Point) -> Result<Vec<f64>, NoDerivative> {
+        let (from, to) = (self.packed(from)?, self.packed(to)?);
+        self.coordinates_between(&from, &to)
+    }
+
+    fn step(&mut self, at: &Point) -> Result<Point, NoDerivative> {
+        let mut state = self.packed(at)?;
+        self.advance(&mut state, None)?;
+        Ok(point(&state))
+    }
+
+    fn tangent(&mut self, at: &Point) -> Result<(Point, Jacobian), NoDerivative> {
+        let mut state = self.packed(at)?;
+        let mut columns = self.columns(&state)?;
+        let mut taken = Vec::new();
+        self.advance(&mut state, Some(&mut taken))?;
+        for (stage, taken) in taken.iter().enumerate() {
+            let pushed = |linear: &mut Linear, late: &[f64]| -> Option<Vec<Vec<f64>>> {
+                let each = columns.iter().map(|x| linear.push_from(late, 0, x));
+                each.collect()
+            };
+            columns = self.at_step(stage, taken, &pushed)?;
+        }
+        let tangent = self.in_coordinates(&state, &columns)?;
+        Ok((point(&state), tangent))
+    }
+
+    fn observed(&mut self, at: &Point) -> Result<Jacobian, NoDerivative> {
+        let at = self.packed(at)?;
+        let columns = self.columns(&at)?;
+        let pushed = |linear: &mut Linear, late: &[f64]| -> Option<Vec<Vec<f64>>> {
+            let each = columns.iter().map(|x| linear.push_from(late, 0, x));
+            each.collect()
+        };
+        let pushed = self.at_observables(&at, &pushed)?;
+        Ok(Jacobian {
+            rows: self.card().observable_count(),
+            cols: pushed.len(),
+            entries: pushed.concat(),
+        })
+    }
+
+    fn conserved(&mut self, at: &Point) -> Result<Jacobian, NoDerivative> {
+        let at = self.packed(at)?;
+        self.slopes_of_invariants(&at)
+    }
+
+    fn curvature(&mut self, at: &Point, weights: &[f64]) -> Result<Jacobian, NoDerivative> {
+        let at = self.packed(at)?;
+        self.curvature_of_invariants(&at, weights)
+    }
+
+    fn gradient(&mut self, steps: u64, cost: &mut dyn Cost) -> Result<Gradient, NoDerivative> {
+        self.pulled_back(steps, cost)
+    }
+}

@@ -1,0 +1,4 @@
+//! Derivatives of model files against differences of their steps, and gradients against products of tangents.
+
+mod differences;
+mod gallery;
