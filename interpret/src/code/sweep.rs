@@ -4,11 +4,13 @@
 use super::{Code, Evaluated, Exit, Iterate, Places, WRONG, unfit};
 use crate::failure::Failure;
 use crate::listing::{FieldNames, Section};
-use crate::recorded::{Lists, SiteFunction};
+use crate::recorded::{Lists, SiteBody, SiteFunction, Traced, TracedSite, has_derivatives};
 use crate::sites::Column;
 use crate::value::Value;
+use clebsch::Real;
 use clebsch::linalg::Dense;
 use clebsch::line;
+use std::sync::Arc;
 
 /// How a loop uses the values of its body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,38 +40,54 @@ pub enum Terms {
 
 /// A list of sites or part of it.
 #[derive(Clone, Debug)]
-pub struct Slice {
+pub struct Slice<T: Real> {
     /// The place of the list.
-    pub list: Code<f64>,
+    pub list: Code<T>,
     /// The first site.
-    pub from: Option<Code<f64>>,
+    pub from: Option<Code<T>>,
     /// The site after the last.
-    pub to: Option<Code<f64>>,
+    pub to: Option<Code<T>>,
 }
 
 /// A loop.
 #[derive(Debug)]
-pub struct Sweep {
+pub struct Sweep<T: Real, S> {
     /// How the loop uses the values.
     pub kind: Kind,
     /// The lists that the loop fills.
-    pub out: Vec<Slice>,
+    pub out: Vec<Slice<T>>,
     /// The range of sites, if the loop fills no list.
-    pub range: Option<[Code<f64>; 2]>,
+    pub range: Option<[Code<T>; 2]>,
     /// The body.
-    pub sites: SiteFunction,
+    pub sites: S,
 }
 
 /// A list that is taken out of its place, and its sites.
-struct TakenList {
-    column: Column<f64>,
+struct TakenList<T: Real> {
+    column: Column<T>,
     from: usize,
     to: usize,
 }
 
-impl Slice {
+impl Slice<f64> {
+    /// This list over the recording scalar.
+    fn recorded(&self) -> Option<Slice<Traced>> {
+        let over = |code: &Code<f64>| code.map_scalar(Traced::constant);
+        let perhaps = |code: &Option<Code<f64>>| match code {
+            Some(code) => over(code).map(Some),
+            None => Some(None),
+        };
+        Some(Slice {
+            list: over(&self.list)?,
+            from: perhaps(&self.from)?,
+            to: perhaps(&self.to)?,
+        })
+    }
+}
+
+impl<T: Real> Slice<T> {
     /// The first site, and the one after the last.
-    pub fn range(&self, places: &mut Places<f64>) -> Result<[usize; 2], Exit<f64>> {
+    pub fn range(&self, places: &mut Places<T>) -> Result<[usize; 2], Exit<T>> {
         let from = match &self.from {
             Some(from) => from.count(places)?,
             None => 0,
@@ -84,7 +102,7 @@ impl Slice {
         Ok([from, to])
     }
 
-    fn taken(&self, places: &mut Places<f64>) -> Result<TakenList, Exit<f64>> {
+    fn taken(&self, places: &mut Places<T>) -> Result<TakenList<T>, Exit<T>> {
         let [from, to] = self.range(places)?;
         let place = unfit(self.list.place_mut(places))?;
         match std::mem::replace(place, Value::Unit) {
@@ -98,14 +116,15 @@ impl Slice {
         }
     }
 
-    fn put_back(&self, taken: TakenList, places: &mut Places<f64>) -> Result<(), Exit<f64>> {
+    fn put_back(&self, taken: TakenList<T>, places: &mut Places<T>) -> Result<(), Exit<T>> {
         *unfit(self.list.place_mut(places))? = Value::Sites(taken.column);
         Ok(())
     }
 }
 
-impl Iterate<f64> for Sweep {
-    fn run(&self, places: &mut Places<f64>) -> Evaluated<f64> {
+impl<T: Real, S: SiteBody<T>> Sweep<T, S> {
+    /// Runs the loop.
+    fn swept(&self, places: &mut Places<T>) -> Evaluated<T> {
         match (self.kind, self.out.as_slice()) {
             (Kind::Fill | Kind::TryFill, [out]) => {
                 let mut taken = out.taken(places)?;
@@ -128,7 +147,7 @@ impl Iterate<f64> for Sweep {
                     if i == to {
                         break;
                     }
-                    if let Value::Failed(e) = self.sites.at([site(i)].into_iter(), places)? {
+                    if let Value::Failed(e) = self.sites.at(&[site(i)], places)? {
                         return Ok(Value::failed(Failure::At(i, e)));
                     }
                     i += 1;
@@ -142,6 +161,12 @@ impl Iterate<f64> for Sweep {
             _ => Err(Exit::Unfit(WRONG)),
         }
     }
+}
+
+impl Iterate<f64> for Sweep<f64, SiteFunction> {
+    fn run(&self, places: &mut Places<f64>) -> Evaluated<f64> {
+        self.swept(places)
+    }
 
     fn section(&self, names: &FieldNames) -> Option<Section> {
         let filled: Vec<String> = self.out.iter().map(|out| names.path(&out.list)).collect();
@@ -153,11 +178,36 @@ impl Iterate<f64> for Sweep {
         };
         self.sites.section(&title, names)
     }
+
+    fn recorded(self: Arc<Self>) -> Option<Arc<dyn Iterate<Traced>>> {
+        let over = |code: &Code<f64>| code.map_scalar(Traced::constant);
+        let range = match &self.range {
+            Some([from, to]) => Some([over(from)?, over(to)?]),
+            None => None,
+        };
+        Some(Arc::new(Sweep {
+            kind: self.kind,
+            out: self.out.iter().map(Slice::recorded).collect::<Option<_>>()?,
+            range,
+            sites: self.sites.recorded_at_each()?,
+        }))
+    }
 }
 
-impl Sweep {
+/// A loop within a recording with derivatives: its body is recorded at every site. Other recordings stop here, because loops
+/// record their bodies themselves.
+impl Iterate<Traced> for Sweep<Traced, TracedSite> {
+    fn run(&self, places: &mut Places<Traced>) -> Evaluated<Traced> {
+        match has_derivatives() {
+            true => self.swept(places),
+            false => unfit(None),
+        }
+    }
+}
+
+impl<T: Real, S: SiteBody<T>> Sweep<T, S> {
     /// The values of the body at all sites.
-    fn gathered(&self, places: &mut Places<f64>) -> Result<Column<f64>, Exit<f64>> {
+    fn gathered(&self, places: &mut Places<T>) -> Result<Column<T>, Exit<T>> {
         let [from, to] = self.whole(places)?;
         let mut all = Column::Values(Vec::new());
         let mut i = from;
@@ -173,7 +223,7 @@ impl Sweep {
                     break;
                 }
             }
-            let value = self.sites.at([site(i)].into_iter(), places)?;
+            let value = self.sites.at(&[site(i)], places)?;
             if i == from {
                 all = Column::like(&value);
             }
@@ -183,12 +233,12 @@ impl Sweep {
         Ok(all)
     }
 
-    fn whole(&self, places: &mut Places<f64>) -> Result<[usize; 2], Exit<f64>> {
+    fn whole(&self, places: &mut Places<T>) -> Result<[usize; 2], Exit<T>> {
         let [from, to] = unfit(self.range.as_ref())?;
         Ok([from.count(places)?, to.count(places)?])
     }
 
-    fn filled(&self, taken: &mut TakenList, places: &mut Places<f64>) -> Evaluated<f64> {
+    fn filled(&self, taken: &mut TakenList<T>, places: &mut Places<T>) -> Evaluated<T> {
         let (mut i, to) = (0, taken.to - taken.from);
         while i < to {
             let mut lists = Lists {
@@ -199,7 +249,7 @@ impl Sweep {
             if i == to {
                 break;
             }
-            let value = self.sites.at([site(i)].into_iter(), places)?;
+            let value = self.sites.at(&[site(i)], places)?;
             if let Value::Failed(e) = value {
                 return Ok(Value::failed(Failure::At(i, e)));
             }
@@ -211,10 +261,10 @@ impl Sweep {
 
     fn updated(
         &self,
-        out: &mut TakenList,
-        kept: &mut TakenList,
-        places: &mut Places<f64>,
-    ) -> Evaluated<f64> {
+        out: &mut TakenList<T>,
+        kept: &mut TakenList<T>,
+        places: &mut Places<T>,
+    ) -> Evaluated<T> {
         let (mut i, to) = (0, (out.to - out.from).min(kept.to - kept.from));
         while i < to {
             let mut lists = Lists {
@@ -227,7 +277,7 @@ impl Sweep {
                 break;
             }
             let keep = unfit(kept.column.get(kept.from + i))?;
-            match self.sites.at([site(i), keep].into_iter(), places)? {
+            match self.sites.at(&[site(i), keep], places)? {
                 Value::None => return Ok(Value::failed(Failure::Site(i))),
                 Value::List(both) => {
                     let [value, keep] = both.as_slice() else {
@@ -244,13 +294,16 @@ impl Sweep {
     }
 }
 
-fn site(i: usize) -> Value<f64> {
+fn site<T: Real>(i: usize) -> Value<T> {
     Value::Int(i64::try_from(i).unwrap_or(i64::MAX))
 }
 
 /// The sum of numbers, or of arrays component by component.
-fn summed(all: &Column<f64>, terms: Terms, sizes: bool) -> Option<Value<f64>> {
-    let of = |x: f64| if sizes { x.abs() } else { x };
+fn summed<T: Real>(all: &Column<T>, terms: Terms, sizes: bool) -> Option<Value<T>> {
+    let of = |x: T| match sizes {
+        true => T::from_f64(x.magnitude()),
+        false => x,
+    };
     Some(match all {
         Column::Numbers(list) => Value::Real(line::sum(list.len(), |i| of(list[i]))),
         Column::Arrays([rows, cols], list) => {
@@ -263,7 +316,7 @@ fn summed(all: &Column<f64>, terms: Terms, sizes: bool) -> Option<Value<f64>> {
             })
         }
         Column::Values(none) if none.is_empty() => match terms {
-            Terms::Numbers => Value::Real(0.0),
+            Terms::Numbers => Value::Real(T::zero()),
             Terms::Arrays => Value::Zeros,
         },
         _ => return None,

@@ -15,7 +15,7 @@ use syn::parse::Parser;
 
 impl Lower<'_, '_> {
     /// A list of sites, or a part of it.
-    fn slice(&mut self, e: &syn::Expr) -> Result<Slice, Refused> {
+    fn slice(&mut self, e: &syn::Expr) -> Result<Slice<f64>, Refused> {
         let inner = past_references(e);
         let part = match inner {
             syn::Expr::Index(i) => range(&i.index).map(|r| (&*i.expr, r)),
@@ -323,7 +323,7 @@ impl Lower<'_, '_> {
 }
 
 /// The list of a slice, and its two ends as values.
-fn ends(slice: Slice) -> Vec<Code<f64>> {
+fn ends(slice: Slice<f64>) -> Vec<Code<f64>> {
     let end = |e: Option<Code<f64>>| e.unwrap_or(Code::constant(Value::None));
     vec![slice.list, end(slice.from), end(slice.to)]
 }

@@ -24,9 +24,9 @@ pub use form::value_of;
 pub use function::{Function, run as run_alone};
 pub use loop_inputs::List;
 pub use ready::Ready;
-pub use sites::{Lists, SiteFunction};
+pub use sites::{Lists, SiteBody, SiteFunction, TracedSite};
 pub use solves::RecordedSolve;
-pub use traced::{Traced, WithDerivatives, record_with_derivatives};
+pub use traced::{Traced, WithDerivatives, has_derivatives, record_with_derivatives};
 pub use trajectory::{Recordable, Recorded, Watched};
 
 use crate::code::{Iterate, Library, Native, Special};

@@ -9,26 +9,79 @@ mod run;
 use super::form::Form;
 use super::loop_inputs::{Fixed, ReadValue, SiteReader};
 use super::tape_storage::MOST;
-use super::traced::record;
+use super::traced::{Traced, record};
 use crate::code::{Code, Evaluated, Places, unfit};
 use crate::listing::{FieldNames, Section};
 use crate::map_scalar::{map_scalar, numbers};
 use crate::sites::Column;
 use crate::value::Value;
+use clebsch::Real;
 use clebsch::linalg::Dense;
 use run::SiteTape;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 
 /// The lists that a loop fills, each with its first site.
-#[derive(Default)]
-pub struct Lists<'a> {
+pub struct Lists<'a, T: Real = f64> {
     /// The list that the loop fills.
-    pub out: Option<(&'a mut Column<f64>, usize)>,
+    pub out: Option<(&'a mut Column<T>, usize)>,
     /// The list that the loop reads and changes, site by site.
-    pub kept: Option<(&'a mut Column<f64>, usize)>,
+    pub kept: Option<(&'a mut Column<T>, usize)>,
     /// The list to which the loop appends values.
-    pub gathered: Option<&'a mut Column<f64>>,
+    pub gathered: Option<&'a mut Column<T>>,
+}
+
+impl<T: Real> Default for Lists<'_, T> {
+    fn default() -> Self {
+        Lists {
+            out: None,
+            kept: None,
+            gathered: None,
+        }
+    }
+}
+
+/// The body of a loop: a function of a site and, in some loops, of the stored value at the site.
+pub trait SiteBody<T: Real> {
+    /// The value of the body at these arguments.
+    ///
+    /// # Errors
+    /// [`Exit`](crate::code::Exit) if the operations do not fit their values.
+    fn at(&self, arguments: &[Value<T>], places: &mut Places<T>) -> Evaluated<T>;
+
+    /// Runs sites by tapes as far as possible; returns the next site, which the body itself must compute.
+    fn advance(
+        &self,
+        _places: &Places<T>,
+        [from, _]: [usize; 2],
+        _lists: &mut Lists<'_, T>,
+    ) -> usize {
+        from
+    }
+}
+
+/// The body of a loop over the recording scalar, recorded at each site.
+#[derive(Debug)]
+pub struct TracedSite {
+    parameters: Vec<usize>,
+    body: Code<Traced>,
+}
+
+impl SiteBody<Traced> for TracedSite {
+    fn at(&self, arguments: &[Value<Traced>], places: &mut Places<Traced>) -> Evaluated<Traced> {
+        at_arguments((&self.parameters, &self.body), arguments, places)
+    }
+}
+
+fn at_arguments<T: Real>(
+    (parameters, body): (&[usize], &Code<T>),
+    arguments: &[Value<T>],
+    places: &mut Places<T>,
+) -> Evaluated<T> {
+    for (at, value) in parameters.iter().zip(arguments) {
+        *unfit(places.get_mut(*at))? = value.clone();
+    }
+    body.returned(places)
 }
 
 impl Lists<'_> {
@@ -45,7 +98,7 @@ impl Lists<'_> {
     }
 }
 
-/// The body of a loop: a function of a site and, in some loops, of the stored value at the site.
+/// The body of a loop with its tapes.
 #[derive(Debug)]
 pub struct SiteFunction {
     parameters: Vec<usize>,
@@ -70,75 +123,18 @@ impl SiteFunction {
         }
     }
 
+    /// The body over the recording scalar, recorded at each site. Returns nothing if it cannot be recorded.
+    pub fn recorded_at_each(&self) -> Option<TracedSite> {
+        Some(TracedSite {
+            parameters: self.parameters.clone(),
+            body: self.body.map_scalar(Traced::constant)?,
+        })
+    }
+
     /// The newest tape as text.
     pub fn section(&self, title: &str, names: &FieldNames) -> Option<Section> {
         let tapes = self.tapes.read().unwrap_or_else(PoisonError::into_inner);
         tapes.last().map(|tape| tape.section(title, names))
-    }
-
-    /// The value of the body, without a tape.
-    pub fn at(
-        &self,
-        arguments: impl Iterator<Item = Value<f64>>,
-        places: &mut Places<f64>,
-    ) -> Evaluated<f64> {
-        for (at, value) in self.parameters.iter().zip(arguments) {
-            *unfit(places.get_mut(*at))? = value;
-        }
-        self.body.returned(places)
-    }
-
-    /// Runs sites by tapes as far as possible; returns the next site, which the body itself must compute.
-    pub fn advance(
-        &self,
-        places: &Places<f64>,
-        [from, to]: [usize; 2],
-        lists: &mut Lists<'_>,
-    ) -> usize {
-        let Some(form) = self.form.get_or_init(|| self.form()) else {
-            return from;
-        };
-        let mut site = from;
-        while site < to {
-            let before = site;
-            let fitting: Vec<Arc<SiteTape>> = {
-                let tapes = self.tapes.read().unwrap_or_else(PoisonError::into_inner);
-                tapes
-                    .iter()
-                    .rev()
-                    .filter(|tape| tape.fits(places))
-                    .cloned()
-                    .collect()
-            };
-            // The newest tape runs as many sites as it can, older tapes the remaining ones.
-            for (k, tape) in fitting.iter().enumerate() {
-                let end = if k == 0 { to } else { to.min(site + 1) };
-                site = tape.run(places, [site, end], lists).unwrap_or(site);
-                if site > before {
-                    break;
-                }
-            }
-            if site > before {
-                continue;
-            }
-            // Record in the middle, where neighbours exist, or at the site where a decision differs.
-            let at = match fitting.first() {
-                None => from + (to - from - 1) / 2,
-                Some(tape) if tape.admits(places, site) => site,
-                Some(_) => return site,
-            };
-            let made = (at + 1 < to)
-                .then(|| self.recorded(form, places, at, lists))
-                .flatten();
-            let Some(tape) = made else {
-                return site;
-            };
-            site = tape.run(places, [site, to], lists).unwrap_or(site);
-            if site == before {
-                return site;
-            }
-        }
-        site
     }
 
     fn form(&self) -> Option<(Form, bool)> {
@@ -225,6 +221,64 @@ impl SiteFunction {
             fixed,
             gives,
         })
+    }
+}
+
+impl SiteBody<f64> for SiteFunction {
+    fn at(&self, arguments: &[Value<f64>], places: &mut Places<f64>) -> Evaluated<f64> {
+        at_arguments((&self.parameters, &self.body), arguments, places)
+    }
+
+    fn advance(
+        &self,
+        places: &Places<f64>,
+        [from, to]: [usize; 2],
+        lists: &mut Lists<'_>,
+    ) -> usize {
+        let Some(form) = self.form.get_or_init(|| self.form()) else {
+            return from;
+        };
+        let mut site = from;
+        while site < to {
+            let before = site;
+            let fitting: Vec<Arc<SiteTape>> = {
+                let tapes = self.tapes.read().unwrap_or_else(PoisonError::into_inner);
+                tapes
+                    .iter()
+                    .rev()
+                    .filter(|tape| tape.fits(places))
+                    .cloned()
+                    .collect()
+            };
+            // The newest tape runs as many sites as it can, older tapes the remaining ones.
+            for (k, tape) in fitting.iter().enumerate() {
+                let end = if k == 0 { to } else { to.min(site + 1) };
+                site = tape.run(places, [site, end], lists).unwrap_or(site);
+                if site > before {
+                    break;
+                }
+            }
+            if site > before {
+                continue;
+            }
+            // Record in the middle, where neighbours exist, or at the site where a decision differs.
+            let at = match fitting.first() {
+                None => from + (to - from - 1) / 2,
+                Some(tape) if tape.admits(places, site) => site,
+                Some(_) => return site,
+            };
+            let made = (at + 1 < to)
+                .then(|| self.recorded(form, places, at, lists))
+                .flatten();
+            let Some(tape) = made else {
+                return site;
+            };
+            site = tape.run(places, [site, to], lists).unwrap_or(site);
+            if site == before {
+                return site;
+            }
+        }
+        site
     }
 }
 
