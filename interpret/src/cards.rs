@@ -263,7 +263,12 @@ fn card_of_line(
         let line = place.get().ok_or(NOT_OPEN)?;
         line.open(parameters, initial, settings)
     };
+    let differentiate = move |parameters: &[Vec<f64>], initial: &[Vec<f64>], settings: Settings| {
+        let line = place.get().ok_or(NOT_OPEN)?;
+        Differentiated::open(line, parameters, initial, settings)
+    };
     carded.card.open = Box::leak(Box::new(open));
+    carded.card.differentiate = Some(Box::leak(Box::new(differentiate)));
     Ok((place.get_or_init(|| carded).card, warnings))
 }
 

@@ -3,7 +3,7 @@
 use crate::Refused;
 use crate::code::{Places, Routine};
 use crate::constants::Constants;
-use crate::derivatives::Traceable;
+use crate::derivatives::TracedBody;
 use crate::derived::{self, Body};
 use crate::listing::FieldNames;
 use crate::lower::{self, Shared, entry};
@@ -97,7 +97,7 @@ pub struct Opened {
     /// The functions over the scalar that records them.
     pub recordable: OnceLock<Recordable>,
     /// The functions that are recorded with derivatives.
-    pub traceable: OnceLock<Traceable>,
+    pub traced: OnceLock<TracedBody>,
 }
 
 /// A derived text, and the items of its emitted program, which is the same for all sizes.
@@ -168,14 +168,14 @@ impl Opened {
             names: shared.names(),
             places: places.unwrap_or(at::FIRST),
             recordable: OnceLock::new(),
-            traceable: OnceLock::new(),
+            traced: OnceLock::new(),
         })
     }
 
     /// The functions that are recorded with derivatives.
-    pub fn traceable(&self) -> &Traceable {
-        let traceable = || Traceable::of(&self.functions, self.places);
-        self.traceable.get_or_init(traceable)
+    pub fn traced(&self) -> &TracedBody {
+        let traced = || TracedBody::of(&self.functions, self.places);
+        self.traced.get_or_init(traced)
     }
 
     /// Places for its functions, with the model where they expect it.

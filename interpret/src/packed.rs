@@ -68,12 +68,6 @@ impl Packed {
     }
 }
 
-/// How many numbers a state has.
-pub fn count(state: &Value<f64>) -> usize {
-    let mut all = Vec::new();
-    numbers(state, &mut all).map_or(0, |()| all.len())
-}
-
 /// The count among the fields of a state.
 fn node(state: &Value<f64>) -> u64 {
     let Value::Struct(s) = state else {

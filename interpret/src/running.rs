@@ -240,7 +240,7 @@ fn only_try(work: &mut Value<f64>) {
 }
 
 /// The values of a struct from lists of numbers.
-fn collected(
+pub fn collected(
     (layout, reads): &(Arc<Layout>, Vec<InitialForm>),
     fields: &'static [Field],
     lists: &[Vec<f64>],

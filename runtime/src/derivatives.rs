@@ -72,8 +72,8 @@ pub enum NoDerivative {
         /// What the function computes.
         what: &'static str,
     },
-    /// The model is too large: it is stepped by loops over sites.
-    Loops,
+    /// A chain whose group elements the program stores in coordinates.
+    InCoordinates,
     /// An initial value is not among the observables, so states do not have local coordinates.
     Unseen {
         /// The initial value.
@@ -107,9 +107,10 @@ impl fmt::Display for NoDerivative {
                 f,
                 "a state has {numbers} numbers, and clebsch differentiates states of at most {most}; use fewer sites"
             ),
-            Self::Loops => write!(
+            Self::InCoordinates => write!(
                 f,
-                "clebsch does not differentiate models that it steps by loops over sites yet; use fewer sites"
+                "clebsch stores the group elements of this chain in coordinates, and does not differentiate such chains yet; \
+                 use fewer sites, or rotations and positions in place of rigid motions"
             ),
         }
     }

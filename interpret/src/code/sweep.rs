@@ -187,7 +187,11 @@ impl Iterate<f64> for Sweep<f64, SiteFunction> {
         };
         Some(Arc::new(Sweep {
             kind: self.kind,
-            out: self.out.iter().map(Slice::recorded).collect::<Option<_>>()?,
+            out: self
+                .out
+                .iter()
+                .map(Slice::recorded)
+                .collect::<Option<_>>()?,
             range,
             sites: self.sites.recorded_at_each()?,
         }))

@@ -3,14 +3,12 @@
 use super::coordinates::moved_all;
 use super::linear::Linear;
 use super::trajectory::{Differentiated, by_recording};
-use crate::failure::Failure;
-use crate::map_scalar::numbers;
-use crate::opened::at;
-use crate::packed::Packed;
-use crate::running::{put, run};
+use super::values::numbers;
+use crate::sites::Column;
 use crate::value::Value;
-use clebsch::derivatives::{Jacobian, NoDerivative};
+use clebsch::derivatives::{Derivatives, Jacobian, NoDerivative, Point};
 use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
 
 /// The most corrections that a difference of two states takes.
 const CORRECTIONS: usize = 40;
@@ -27,17 +25,14 @@ struct Chart {
 impl Differentiated {
     /// The number of local coordinates.
     pub fn dimension(&self) -> usize {
-        use clebsch::derivatives::Derivatives;
         self.dimensions().iter().sum()
     }
 
     /// The initial values that begin this state.
-    fn chart(&mut self, at: &Packed) -> Result<Chart, NoDerivative> {
-        let seen = self.at_observables(at, &|linear, late| linear.value(late))?;
-        let places = self.started.places.clone()?;
-        let own = |range: &std::ops::Range<usize>| seen.get(range.clone()).map(<[f64]>::to_vec);
-        let lists: Vec<Vec<f64>> = places.iter().filter_map(own).collect();
-        let given = self.started.opened.initial_values(&lists)?;
+    fn chart(&mut self, at: &Point) -> Result<Chart, NoDerivative> {
+        let lists = self.initial_of(at)?;
+        let started = &self.started;
+        let given = started.source.initial_value(&started.lists, &lists)?;
         let mut all = Vec::new();
         let counted = numbers(&given, &mut all);
         counted.ok_or(NoDerivative::Unrecorded {
@@ -49,25 +44,58 @@ impl Differentiated {
         })
     }
 
+    /// The initial values that the observables of a state give, one list for each field.
+    fn initial_of(&mut self, at: &Point) -> Result<Vec<Vec<f64>>, NoDerivative> {
+        let seen = self.at_observables(at, &|linear, late| linear.value(late))?;
+        self.among(&seen)
+    }
+
+    /// The initial values among the observables, or their derivatives.
+    fn among(&self, seen: &[f64]) -> Result<Vec<Vec<f64>>, NoDerivative> {
+        let places = self.started.places.as_ref().map_err(Clone::clone)?;
+        let own = |range: &Range<usize>| seen.get(range.clone()).map(<[f64]>::to_vec);
+        Ok(places.iter().filter_map(own).collect())
+    }
+
+    /// Derivatives of the initial values that the observables give, along changes of the numbers of a state.
+    fn seen_along(
+        &mut self,
+        at: &Point,
+        changes: &[Vec<f64>],
+    ) -> Result<Vec<Vec<f64>>, NoDerivative> {
+        let pushed = self.at_observables(at, &|linear, late| {
+            let each = changes.iter().map(|x| linear.push_from(late, 0, x));
+            each.collect::<Option<Vec<_>>>()
+        })?;
+        let each = pushed.iter().map(|seen| Ok(self.among(seen)?.concat()));
+        each.collect()
+    }
+
     /// The state moved by local coordinates.
-    pub fn moved_by(&mut self, at: &Packed, by: &[f64]) -> Result<Packed, NoDerivative> {
+    pub fn moved_by(&mut self, at: &Point, by: &[f64]) -> Result<Point, NoDerivative> {
         let chart = self.chart(at)?;
-        let state = self.begun(&chart, by)?;
-        Ok(state.counted(at.node))
+        let mut state = self.begun(&chart, by)?;
+        state.node = at.node;
+        Ok(state)
     }
 
     /// The state at coordinates of a chart.
-    fn begun(&self, chart: &Chart, xi: &[f64]) -> Result<Packed, NoDerivative> {
+    fn begun(&self, chart: &Chart, xi: &[f64]) -> Result<Point, NoDerivative> {
         let unrecorded = NoDerivative::Unrecorded {
             what: "the initial state",
         };
-        let given = moved_all(&chart.given, &self.started.forms, xi);
+        let started = &self.started;
+        let given = moved_all(&chart.given, &started.coordinates, xi);
         let given = given.ok_or(unrecorded.clone())?;
-        let opened = self.started.opened;
-        let mut places = opened.places(self.started.model.model.clone());
-        put(&mut places, at::GIVEN, given);
-        let begun = run(&opened.functions.begin, &mut places).map_err(Failure::start)?;
-        Packed::of(&begun).ok_or(unrecorded)
+        let begun = started
+            .source
+            .state(&started.begun.model, given, started.h)?;
+        let mut all = Vec::new();
+        numbers(&begun, &mut all).ok_or(unrecorded)?;
+        Ok(Point {
+            numbers: all,
+            node: 0,
+        })
     }
 
     /// Uses a recording of the state as a function of the coordinates.
@@ -79,11 +107,7 @@ impl Differentiated {
     ) -> Result<R, NoDerivative> {
         let started = &self.started;
         let late: Vec<f64> = chart.numbers.iter().chain(xi).copied().collect();
-        let around = Self::around(started, started.h);
-        let record = || {
-            let traceable = started.traceable;
-            traceable.chart(&around, &chart.given, (&started.forms, xi))
-        };
+        let record = || started.record_chart(&chart.given, xi);
         let found = by_recording(&mut self.charts, &late, record, used);
         found.ok_or(NoDerivative::Unrecorded {
             what: "the initial state",
@@ -92,7 +116,7 @@ impl Differentiated {
 
     /// The derivatives of the numbers of the initial state along the coordinates of the initial values.
     pub fn columns_at_start(&mut self) -> Result<Vec<Vec<f64>>, NoDerivative> {
-        let given = self.started.initial.clone();
+        let given = self.started.begun.initial.clone();
         let mut all = Vec::new();
         let counted = numbers(&given, &mut all);
         counted.ok_or(NoDerivative::Unrecorded {
@@ -109,7 +133,7 @@ impl Differentiated {
     }
 
     /// The derivatives of the numbers of a state along each of its coordinates.
-    pub fn columns(&mut self, at: &Packed) -> Result<Vec<Vec<f64>>, NoDerivative> {
+    pub fn columns(&mut self, at: &Point) -> Result<Vec<Vec<f64>>, NoDerivative> {
         let chart = self.chart(at)?;
         let zero = vec![0.0; self.dimension()];
         let columns = self.columns_at(&chart, &zero)?;
@@ -133,12 +157,17 @@ impl Differentiated {
     /// The coordinates at a state of changes of its numbers.
     pub fn in_coordinates(
         &mut self,
-        at: &Packed,
+        at: &Point,
         changes: &[Vec<f64>],
     ) -> Result<Jacobian, NoDerivative> {
-        let columns = self.columns(at)?;
+        let chart = self.chart(at)?;
+        let zero = vec![0.0; self.dimension()];
+        let columns = self.columns_at(&chart, &zero)?;
+        let begun = self.begun(&chart, &zero)?;
+        let columns = self.seen_along(&begun, &columns)?;
+        let changes = self.seen_along(at, changes)?;
         let (rows, cols) = (columns.len(), changes.len());
-        let entries = solved(&columns, changes).ok_or(NoDerivative::Unrecorded {
+        let entries = solved(&columns, &changes).ok_or(NoDerivative::Unrecorded {
             what: "the coordinates",
         })?;
         Ok(Jacobian {
@@ -151,18 +180,19 @@ impl Differentiated {
     /// The coordinates at `from` that move it nearest to `to`, by the method of Gauss and Newton.
     pub fn coordinates_between(
         &mut self,
-        from: &Packed,
-        to: &Packed,
+        from: &Point,
+        to: &Point,
     ) -> Result<Vec<f64>, NoDerivative> {
         let chart = self.chart(from)?;
+        let there = self.initial_of(to)?.concat();
         let mut xi = vec![0.0; self.dimension()];
         let mut before = f64::INFINITY;
         for _ in 0..CORRECTIONS {
             let here = self.begun(&chart, &xi)?;
-            let signs = self.signs(to, &here);
-            let off = to.numbers().iter().zip(here.numbers()).zip(&signs);
-            let off: Vec<f64> = off.map(|((to, here), sign)| to * sign - here).collect();
+            let own = self.initial_of(&here)?.concat();
+            let off = there.iter().zip(&own).map(|(to, here)| to - here).collect();
             let columns = self.columns_at(&chart, &xi)?;
+            let columns = self.seen_along(&here, &columns)?;
             let correction = solved(&columns, &[off]).ok_or(NoDerivative::Unrecorded {
                 what: "the coordinates",
             })?;
@@ -181,15 +211,18 @@ impl Differentiated {
 
     /// For each number of a state, -1 if it belongs to a rotation whose quaternions in both states are nearly opposite,
     /// otherwise 1. A rotation has two unit quaternions.
-    fn signs(&self, one: &Packed, other: &Packed) -> Vec<f64> {
-        let mut out = Vec::with_capacity(one.numbers().len());
-        signs_of(&self.state(one), &self.state(other), &mut out);
+    fn signs(&self, one: &Point, other: &Point) -> Vec<f64> {
+        let mut out = Vec::with_capacity(one.numbers.len());
+        if let (Ok(one), Ok(other)) = (self.state(one), self.state(other)) {
+            signs_of(&one, &other, &mut out);
+        }
+        out.resize(one.numbers.len(), 1.0);
         out
     }
 
     /// The derivative of the invariants in coordinates.
-    pub fn slopes_of_invariants(&mut self, at: &Packed) -> Result<Jacobian, NoDerivative> {
-        let (rows, cols) = (self.started.opened.card.invariant_count(), self.dimension());
+    pub fn slopes_of_invariants(&mut self, at: &Point) -> Result<Jacobian, NoDerivative> {
+        let (rows, cols) = (self.card().invariant_count(), self.dimension());
         let slopes = self.in_chart_of_invariants(at, &move |linear, late, first| {
             let row = |k: usize| {
                 let mut unit = vec![0.0; rows];
@@ -210,7 +243,7 @@ impl Differentiated {
     /// The second derivative of the weighted sum of the invariants in coordinates.
     pub fn curvature_of_invariants(
         &mut self,
-        at: &Packed,
+        at: &Point,
         weights: &[f64],
     ) -> Result<Jacobian, NoDerivative> {
         let cols = self.dimension();
@@ -234,7 +267,7 @@ impl Differentiated {
     /// the given index on.
     fn in_chart_of_invariants<R>(
         &mut self,
-        at: &Packed,
+        at: &Point,
         used: InChart<'_, R>,
     ) -> Result<R, NoDerivative> {
         let chart = self.chart(at)?;
@@ -242,12 +275,7 @@ impl Differentiated {
         let started = &self.started;
         let first = chart.numbers.len();
         let late: Vec<f64> = chart.numbers.iter().chain(&zero).copied().collect();
-        let around = Self::around(started, started.h);
-        let record = || {
-            let traceable = started.traceable;
-            let given = (&chart.given, &started.forms[..], zero.as_slice());
-            traceable.invariants_in_chart(&around, given)
-        };
+        let record = || started.record_invariants_in_chart(&chart.given, &zero);
         let used = |linear: &mut Linear, late: &[f64]| used(linear, late, first);
         let found = by_recording(&mut self.conserved, &late, record, &used);
         found.ok_or(NoDerivative::Unrecorded {
@@ -274,13 +302,14 @@ fn signs_of(one: &Value<f64>, other: &Value<f64>, out: &mut Vec<f64>) {
     match (one, other) {
         (Value::Struct(a), Value::Struct(b)) => signs_of_all(&a.values, &b.values, out),
         (Value::List(a), Value::List(b)) => signs_of_all(a, b, out),
+        (Value::Sites(a), Value::Sites(b)) => signs_of_columns(a, b, out),
         _ => {
             let (mut a, mut b) = (Vec::new(), Vec::new());
             if numbers(one, &mut a).is_none() || numbers(other, &mut b).is_none() {
                 return;
             }
             let turned = match one {
-                Value::Rotation(_) => 0..4,
+                Value::Rotation(_) | Value::Attitude(_) => 0..4,
                 Value::Motion(g) => {
                     // The numbers of the rotation are among those of the motion, in one piece.
                     let mut own = Vec::new();
@@ -290,7 +319,11 @@ fn signs_of(one: &Value<f64>, other: &Value<f64>, out: &mut Vec<f64>) {
                 }
                 _ => 0..0,
             };
-            let along = turned.clone().map(|k| a[k] * b[k]).sum::<f64>();
+            let pairs = a.iter().zip(&b).enumerate();
+            let along: f64 = pairs
+                .filter(|(k, _)| turned.contains(k))
+                .map(|(_, (a, b))| a * b)
+                .sum();
             let sign = if along < 0.0 { -1.0 } else { 1.0 };
             let each = (0..a.len()).map(|k| if turned.contains(&k) { sign } else { 1.0 });
             out.extend(each);
@@ -301,5 +334,21 @@ fn signs_of(one: &Value<f64>, other: &Value<f64>, out: &mut Vec<f64>) {
 fn signs_of_all(one: &[Value<f64>], other: &[Value<f64>], out: &mut Vec<f64>) {
     for (a, b) in one.iter().zip(other) {
         signs_of(a, b, out);
+    }
+}
+
+/// Lists store structs field by field.
+fn signs_of_columns(one: &Column<f64>, other: &Column<f64>, out: &mut Vec<f64>) {
+    match (one, other) {
+        (Column::Structs(_, a, _), Column::Structs(_, b, _)) => {
+            for (a, b) in a.iter().zip(b) {
+                signs_of_columns(a, b, out);
+            }
+        }
+        _ => {
+            for (a, b) in one.values().zip(other.values()) {
+                signs_of(&a, &b, out);
+            }
+        }
     }
 }

@@ -1,9 +1,11 @@
 //! Local coordinates of initial values. A group element is moved from the right, by coordinates in the body frame; every other
 //! value is moved entry by entry, within the symmetric, skew or diagonal matrices if it is one of these.
 
-use crate::map_scalar::{map_scalar, numbers};
+use super::source::Coordinates;
+use super::values::{count, map, numbers};
 use crate::newton::moved;
 use crate::opened::InitialForm;
+use crate::sites::Column;
 use crate::value::{MatrixGroup, Struct, Value};
 use clebsch::Real;
 use clebsch::card::{Field, Kind};
@@ -70,33 +72,41 @@ pub fn dimensions<T: Real>(given: &Value<T>, forms: &[LocalForm]) -> Vec<usize> 
     pairs.map(|(value, form)| dimension(value, *form)).collect()
 }
 
-fn dimension<T: Real>(value: &Value<T>, form: LocalForm) -> usize {
-    let count = || {
-        let mut all = Vec::new();
-        numbers(value, &mut all).map_or(0, |()| all.len())
-    };
+/// The number of local coordinates of a value.
+pub fn dimension<T: Real>(value: &Value<T>, form: LocalForm) -> usize {
     // The number of rows of a square matrix.
-    let rows = || count().isqrt();
+    let rows = || count(value).isqrt();
     match (value, form) {
-        (Value::Rotation(_) | Value::Quaternion(_) | Value::Plane(_), _) => 3,
+        (Value::Sites(column), form) => column.values().map(|v| dimension(&v, form)).sum(),
+        (Value::Rotation(_) | Value::Quaternion(_) | Value::Plane(_) | Value::Attitude(_), _) => 3,
         (Value::Motion(_), _) => 6,
         (Value::Element(MatrixGroup::Orthogonal, _), _) | (_, LocalForm::Skew) => {
             rows() * rows().saturating_sub(1) / 2
         }
         (_, LocalForm::Symmetric) => rows() * (rows() + 1) / 2,
         (_, LocalForm::Diagonal) => rows(),
-        _ => count(),
+        _ => count(value),
     }
 }
 
-/// The initial values moved by local coordinates. Returns nothing if there are too few coordinates.
-pub fn moved_all<T: Real>(given: &Value<T>, forms: &[LocalForm], xi: &[T]) -> Option<Value<T>> {
+/// The initial values moved by local coordinates, in the order of the card. Returns nothing if there are too few coordinates.
+pub fn moved_all<T: Real>(
+    given: &Value<T>,
+    coordinates: &Coordinates,
+    xi: &[T],
+) -> Option<Value<T>> {
     let Value::Struct(s) = given else {
         return None;
     };
-    let mut rest = xi;
+    let pairs = s.values.iter().zip(&coordinates.forms);
+    let all = pairs.map(|(value, form)| dimension(value, *form)).sum();
+    let mut of_fields = vec![T::zero(); all];
+    for (place, x) in coordinates.order.iter().zip(xi) {
+        *of_fields.get_mut(*place)? = *x;
+    }
+    let mut rest = of_fields.as_slice();
     let mut values = s.values.clone();
-    for (value, form) in values.iter_mut().zip(forms) {
+    for (value, form) in values.iter_mut().zip(&coordinates.forms) {
         let (own, others) = rest.split_at_checked(dimension(value, *form))?;
         rest = others;
         *value = moved_one(value, *form, own)?;
@@ -108,6 +118,19 @@ pub fn moved_all<T: Real>(given: &Value<T>, forms: &[LocalForm], xi: &[T]) -> Op
 }
 
 fn moved_one<T: Real>(value: &Value<T>, form: LocalForm, xi: &[T]) -> Option<Value<T>> {
+    if let Value::Sites(column) = value {
+        let mut rest = xi;
+        let each = column.values().map(|value| {
+            let (own, others) = rest.split_at_checked(dimension(&value, form))?;
+            rest = others;
+            moved_one(&value, form, own)
+        });
+        let all = each.collect::<Option<Vec<_>>>()?;
+        return Some(Value::Sites(match column {
+            Column::Values(_) => Column::Values(all),
+            _ => Column::of(all)?,
+        }));
+    }
     if form == LocalForm::Element {
         return moved(value, xi, false);
     }
@@ -120,7 +143,7 @@ fn moved_one<T: Real>(value: &Value<T>, form: LocalForm, xi: &[T]) -> Option<Val
     };
     let change = change(form, shape, xi);
     let mut by = change.data.iter();
-    map_scalar(value, &mut |x: T| by.next().map_or(x, |by| x + *by))
+    map(value, &mut |x: T| by.next().map_or(x, |by| x + *by))
 }
 
 /// The change of a matrix by coordinates.

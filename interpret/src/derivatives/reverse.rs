@@ -1,13 +1,12 @@
 //! The gradient of a cost of a run, from its last step to its first. States are stored at about the square root of the number of
 //! steps; the run between two of them is repeated when its derivatives are needed.
 
+use super::functions::by_parameter;
 use super::linear::Linear;
 use super::trajectory::{Differentiated, Taken, by_recording};
-use crate::map_scalar::numbers;
-use crate::packed::Packed;
-use crate::value::Value;
+use super::values::{count, numbers};
 use clebsch::card::{Field, Kind};
-use clebsch::derivatives::{Cost, Derivatives, Gradient, NoDerivative, Seen};
+use clebsch::derivatives::{Cost, Derivatives, Gradient, NoDerivative, Point, Seen};
 
 /// Sums of derivatives while the run is read backwards.
 struct Sums {
@@ -49,28 +48,27 @@ impl Differentiated {
         steps: u64,
         cost: &mut dyn Cost,
     ) -> Result<Gradient, NoDerivative> {
-        let start = self.started.state;
         let stride = steps.isqrt().max(1);
-        let (mut state, mut stored) = (start, vec![start]);
+        let mut state = self.started.state.clone();
+        let mut stored = vec![state.clone()];
         for node in 1..=steps {
             self.advance(&mut state, None)?;
             if node % stride == 0 && node < steps {
-                stored.push(state);
+                stored.push(state.clone());
             }
         }
-        let mut of_model = Vec::new();
-        let _ = numbers(&self.started.model.model, &mut of_model);
         let mut sums = Sums {
-            model: vec![0.0; of_model.len()],
+            model: vec![0.0; count(&self.started.begun.model)],
             step: 0.0,
-            state: vec![0.0; start.numbers().len()],
+            state: vec![0.0; state.numbers.len()],
         };
         self.weighed(&state, cost, &mut sums)?;
         let mut last = steps;
         while let Some(first) = stored.pop() {
+            let node = first.node;
             let mut state = first;
             let mut run = Vec::new();
-            for _ in first.node..last {
+            for _ in node..last {
                 let mut taken = Vec::with_capacity(self.stages.len());
                 self.advance(&mut state, Some(&mut taken))?;
                 run.push(taken);
@@ -81,7 +79,7 @@ impl Differentiated {
                     self.weighed(before, cost, &mut sums)?;
                 }
             }
-            last = first.node;
+            last = node;
         }
         self.at_start(&sums)
     }
@@ -101,7 +99,7 @@ impl Differentiated {
     /// Adds the derivatives of the cost at a node.
     fn weighed(
         &mut self,
-        at: &Packed,
+        at: &Point,
         cost: &mut dyn Cost,
         sums: &mut Sums,
     ) -> Result<(), NoDerivative> {
@@ -136,15 +134,11 @@ impl Differentiated {
     fn at_start(&mut self, sums: &Sums) -> Result<Gradient, NoDerivative> {
         let started = &self.started;
         let mut given = Vec::new();
-        let _ = numbers(&started.parameters, &mut given);
+        let _ = numbers(&started.begun.parameters, &mut given);
         let of_parameters = given.len();
-        let _ = numbers(&started.initial, &mut given);
+        let _ = numbers(&started.begun.initial, &mut given);
         let weights: Vec<f64> = sums.model.iter().chain(&sums.state).copied().collect();
-        let record = || {
-            started
-                .traceable
-                .start(&started.parameters, &started.initial)
-        };
+        let record = || started.record_start();
         let pulled = by_recording(
             &mut Vec::new(),
             &given,
@@ -155,7 +149,12 @@ impl Differentiated {
             what: "the initial state",
         })?;
         let of_parameters = pulled.get(..of_parameters).unwrap_or_default();
-        let parameters = by_field(&started.parameters, self.card().parameters, of_parameters);
+        let parameters = by_parameter(started.source, of_parameters);
+        let parameters = parameters.ok_or(NoDerivative::Unrecorded {
+            what: "the parameters",
+        })?;
+        let fields = self.card().parameters.iter().zip(&parameters);
+        let parameters = fields.map(|(field, own)| shared(field, own)).collect();
         let columns = self.columns_at_start()?;
         let along = |column: &Vec<f64>| column.iter().zip(&sums.state).map(|(x, w)| x * w).sum();
         let moved: Vec<f64> = columns.iter().map(along).collect();
@@ -174,28 +173,15 @@ impl Differentiated {
     }
 }
 
-/// Derivatives with respect to the numbers of parameters as one row-major list for each field.
-fn by_field(parameters: &Value<f64>, fields: &[Field], pulled: &[f64]) -> Vec<Vec<f64>> {
-    let Value::Struct(s) = parameters else {
-        return Vec::new();
+/// Shares the derivatives of entries that must be equal or opposite.
+fn shared(field: &Field, own: &[f64]) -> Vec<f64> {
+    let cols = field.cols;
+    let entry = |i: usize, j: usize| own.get(i * cols + j).copied().unwrap_or(f64::NAN);
+    let of = |i: usize, j: usize| match field.kind {
+        Kind::Symmetric | Kind::SecondMoments => 0.5 * (entry(i, j) + entry(j, i)),
+        Kind::Skew => 0.5 * (entry(i, j) - entry(j, i)),
+        Kind::Diagonal if i != j => 0.0,
+        _ => entry(i, j),
     };
-    let mut rest = pulled;
-    let each = s.values.iter().zip(fields).map(|(value, field)| {
-        let mut all = Vec::new();
-        let _ = numbers(value, &mut all);
-        let (own, others) = rest.split_at(all.len().min(rest.len()));
-        rest = others;
-        let (rows, cols) = (field.rows, field.cols);
-        let entry = |i: usize, j: usize| own.get(j * rows + i).copied().unwrap_or(f64::NAN);
-        let mirrored = |i: usize, j: usize| match field.kind {
-            Kind::Symmetric | Kind::SecondMoments => 0.5 * (entry(i, j) + entry(j, i)),
-            Kind::Skew => 0.5 * (entry(i, j) - entry(j, i)),
-            Kind::Diagonal if i != j => 0.0,
-            _ => entry(i, j),
-        };
-        (0..rows * cols)
-            .map(|k| mirrored(k / cols, k % cols))
-            .collect()
-    });
-    each.collect()
+    (0..field.count()).map(|k| of(k / cols, k % cols)).collect()
 }

@@ -1,30 +1,24 @@
 //! The start of a trajectory with derivatives: the model, the way of its steps and the initial state.
 
-use super::coordinates::LocalForm;
-use super::functions::Traceable;
-use crate::composed::{Model, Part};
-use crate::opened::{Opened, at};
-use crate::packed::{self, Packed};
-use crate::running::Begun;
+use super::source::{Begun, Coordinates, Source, Stepping};
+use super::values::numbers;
 use crate::value::Value;
 use clebsch::card::{Card, Settings};
-use clebsch::derivatives::NoDerivative;
+use clebsch::derivatives::{NoDerivative, Point};
 use clebsch::integrate::{Offer, Way};
 use std::ops::Range;
 
 /// A model, its initial state, and how it is stepped.
 #[derive(Clone)]
 pub struct Started {
-    pub opened: &'static Opened,
-    pub traceable: &'static Traceable,
-    pub model: Model,
-    pub parameters: Value<f64>,
-    /// The initial values, and how they are moved.
-    pub initial: Value<f64>,
-    pub forms: Vec<LocalForm>,
+    pub source: &'static dyn Source,
+    pub begun: Begun,
+    /// The parameters, one list for each field of the card.
+    pub lists: Vec<Vec<f64>>,
+    pub coordinates: Coordinates,
     /// The initial values among the observables, if all of them are.
     pub places: Result<Vec<Range<usize>>, NoDerivative>,
-    pub state: Packed,
+    pub state: Point,
     pub h: f64,
     /// The share of each substep in the step size.
     pub factors: Vec<f64>,
@@ -35,62 +29,42 @@ pub struct Started {
 impl Started {
     /// Starts from the same data as a trajectory.
     pub fn new(
-        opened: &'static Opened,
+        source: &'static dyn Source,
         parameters: &[Vec<f64>],
         initial: &[Vec<f64>],
         settings: Settings,
     ) -> Result<Self, NoDerivative> {
-        let card = &opened.card;
+        let card = source.card();
         let way = Way::of(Offer::of(card), settings, card.orders)?;
-        let Begun {
-            mut places,
-            parameters,
-            initial,
-            ..
-        } = opened.begin(parameters, initial, settings)?;
-        let mut taken = |at: usize| {
-            places
-                .get_mut(at)
-                .map_or(Value::Unit, |value| std::mem::replace(value, Value::Unit))
-        };
-        let (model, state) = (taken(at::MODEL), taken(at::STATE));
-        let packed = Packed::of(&state).ok_or_else(|| NoDerivative::TooLarge {
-            numbers: packed::count(&state),
-            most: packed::MOST,
-        })?;
+        let begun = source.begin(parameters, initial, settings)?;
+        let mut all = Vec::new();
+        let counted = numbers(&begun.state, &mut all);
+        counted.ok_or(NoDerivative::Unrecorded { what: "the state" })?;
         let factors = match way {
             Way::Composed(order) => order.factors(),
             Way::Plain | Way::Modified(..) => vec![1.0],
         };
-        let choice = match card.preprocessed {
-            true => Value::Order(way.moments()),
-            false => opened.usual(),
-        };
         Ok(Started {
-            opened,
-            traceable: opened.traceable(),
-            model: Model {
-                opened,
-                model,
-                state,
-            },
-            parameters,
-            initial,
-            forms: LocalForm::of_fields(&opened.initial.1, card.initial),
+            source,
+            coordinates: source.coordinates(&begun.initial)?,
+            begun,
+            lists: parameters.to_vec(),
             places: among_observables(card),
-            state: packed,
+            state: Point {
+                numbers: all,
+                node: 0,
+            },
             h: settings.h,
             factors,
-            choice,
+            choice: source.choice(way),
         })
     }
 
     /// The step sizes of the substeps, with workspaces for a step from this state.
-    pub fn parts(&self, state: &Packed) -> Result<Vec<(f64, Part)>, NoDerivative> {
+    pub fn parts(&self, state: &Point) -> Result<Vec<(f64, Box<dyn Stepping>)>, NoDerivative> {
         let each = self.factors.iter().map(|factor| {
             let h = self.h * factor;
-            let choice = self.choice.clone();
-            let part = self.model.workspace_by(state, h, choice)?;
+            let part = self.source.stepping(&self.begun, state, h, &self.choice)?;
             Ok((h, part))
         });
         each.collect()

@@ -1,12 +1,9 @@
 //! A trajectory with its derivatives: steps, their tangents, and what is observed.
 
-use super::coordinates::dimensions;
-use super::functions::Around;
 use super::linear::Linear;
+use super::source::{Source, Stepping};
 use super::start::Started;
-use crate::composed::Part;
-use crate::opened::Opened;
-use crate::packed::Packed;
+use super::values::filled;
 use crate::value::Value;
 use clebsch::card::{Card, Settings};
 use clebsch::derivatives::{Cost, Derivatives, Gradient, Jacobian, NoDerivative, Point};
@@ -17,15 +14,15 @@ const MOST: usize = 32;
 
 /// A substep: a step of the model with its own workspace.
 pub struct Stage {
-    pub h: f64,
-    pub part: Part,
+    h: f64,
+    part: Box<dyn Stepping>,
     /// Recordings of the step with derivatives.
     steps: Vec<Linear>,
 }
 
 /// A step of the model as it was taken: the state before it, and the solutions of its equations if they are known.
 pub struct Taken {
-    pub before: Packed,
+    pub before: Point,
     pub solutions: Option<Vec<f64>>,
 }
 
@@ -34,7 +31,7 @@ pub struct Differentiated {
     pub started: Started,
     pub stages: Vec<Stage>,
     /// The state that the workspaces of the substeps remember.
-    remembered: Packed,
+    remembered: Point,
     observed: Vec<Linear>,
     invariants: Vec<Linear>,
     pub charts: Vec<Linear>,
@@ -78,15 +75,15 @@ impl Differentiated {
     /// Starts a trajectory with derivatives.
     ///
     /// # Errors
-    /// As [`Opened::open`].
+    /// As opening a trajectory.
     pub fn open(
-        opened: &'static Opened,
+        source: &'static dyn Source,
         parameters: &[Vec<f64>],
         initial: &[Vec<f64>],
         settings: Settings,
     ) -> Result<Box<dyn Derivatives>, NoDerivative> {
         Ok(Box::new(Self::from(Started::new(
-            opened, parameters, initial, settings,
+            source, parameters, initial, settings,
         )?)?))
     }
 
@@ -99,7 +96,7 @@ impl Differentiated {
         });
         Ok(Differentiated {
             stages: stages.collect(),
-            remembered: started.state,
+            remembered: started.state.clone(),
             started,
             observed: Vec::new(),
             invariants: Vec::new(),
@@ -109,49 +106,38 @@ impl Differentiated {
     }
 
     /// The state in the form that the functions of the model take.
-    pub fn state(&self, at: &Packed) -> Value<f64> {
-        let mut state = self.started.model.state.clone();
-        at.put(&mut state);
-        state
-    }
-
-    /// Where functions are recorded, for steps of size `h`.
-    pub fn around(started: &Started, h: f64) -> Around<'_> {
-        Around {
-            model: &started.model.model,
-            h,
-            choice: &started.choice,
-        }
+    pub fn state(&self, at: &Point) -> Result<Value<f64>, NoDerivative> {
+        let state = filled(&self.started.begun.state, &at.numbers);
+        let mut state = state.ok_or(NoDerivative::Unrecorded { what: "the state" })?;
+        self.started.source.set_node(&mut state, at.node);
+        Ok(state)
     }
 
     /// Takes a step; appends its substeps to `taken`.
     pub fn advance(
         &mut self,
-        state: &mut Packed,
+        state: &mut Point,
         mut taken: Option<&mut Vec<Taken>>,
     ) -> Result<(), NoDerivative> {
         let node = state.node;
-        if state.numbers() != self.remembered.numbers() || node != self.remembered.node {
+        if *state != self.remembered {
             self.forget(state)?;
         }
         for stage in &mut self.stages {
-            *state = state.counted(node);
-            let before = *state;
-            let solutions = stage.part.advance(&self.started.model, state)?;
-            if let Some(taken) = &mut taken {
-                taken.push(Taken {
-                    before,
-                    solutions: solutions.map(<[f64]>::to_vec),
-                });
+            state.node = node;
+            let before = taken.is_some().then(|| state.clone());
+            let solutions = stage.part.advance(state)?;
+            if let (Some(taken), Some(before)) = (&mut taken, before) {
+                taken.push(Taken { before, solutions });
             }
         }
-        *state = state.counted(node + 1);
-        self.remembered = *state;
+        state.node = node + 1;
+        self.remembered.clone_from(state);
         Ok(())
     }
 
     /// Prepares new workspaces, because the next step does not continue the last one.
-    fn forget(&mut self, state: &Packed) -> Result<(), NoDerivative> {
+    fn forget(&mut self, state: &Point) -> Result<(), NoDerivative> {
         let parts = self.started.parts(state)?;
         for (stage, (_, part)) in self.stages.iter_mut().zip(parts) {
             stage.part = part;
@@ -166,64 +152,45 @@ impl Differentiated {
         taken: &Taken,
         used: Use<'_, R>,
     ) -> Result<R, NoDerivative> {
-        let state = self.state(&taken.before);
+        let state = self.state(&taken.before)?;
         let started = &self.started;
         let what = "a step";
         let Some(Stage { h, steps, .. }) = self.stages.get_mut(stage) else {
             return Err(NoDerivative::Unrecorded { what });
         };
-        let mut late = taken.before.numbers().to_vec();
+        let mut late = taken.before.numbers.clone();
         // Without solutions, no known recording has this number of inputs, unless the step solves no equations.
         if let Some(solutions) = &taken.solutions {
             late.extend_from_slice(solutions);
         }
-        let record = || started.traceable.step(&Self::around(started, *h), &state);
+        let record = || started.record_step(*h, &state);
         by_recording(steps, &late, record, used).ok_or(NoDerivative::Unrecorded { what })
     }
 
     /// Uses a recording of the observables.
-    pub fn at_observables<R>(&mut self, at: &Packed, used: Use<'_, R>) -> Result<R, NoDerivative> {
-        let (state, started) = (self.state(at), &self.started);
-        let around = Self::around(started, started.h);
-        let record = || started.traceable.observed(&around, &state);
-        let found = by_recording(&mut self.observed, at.numbers(), record, used);
+    pub fn at_observables<R>(&mut self, at: &Point, used: Use<'_, R>) -> Result<R, NoDerivative> {
+        let (state, started) = (self.state(at)?, &self.started);
+        let record = || started.record_observables(&state);
+        let found = by_recording(&mut self.observed, &at.numbers, record, used);
         found.ok_or(NoDerivative::Unrecorded {
             what: "the observables",
         })
     }
 
     /// Uses a recording of the invariants.
-    pub fn at_invariants<R>(&mut self, at: &Packed, used: Use<'_, R>) -> Result<R, NoDerivative> {
-        let (state, started) = (self.state(at), &self.started);
-        let around = Self::around(started, started.h);
-        let record = || started.traceable.invariants(&around, &state);
-        let found = by_recording(&mut self.invariants, at.numbers(), record, used);
+    pub fn at_invariants<R>(&mut self, at: &Point, used: Use<'_, R>) -> Result<R, NoDerivative> {
+        let (state, started) = (self.state(at)?, &self.started);
+        let record = || started.record_invariants(&state);
+        let found = by_recording(&mut self.invariants, &at.numbers, record, used);
         found.ok_or(NoDerivative::Unrecorded {
             what: "the invariants",
         })
-    }
-
-    /// The numbers of a point.
-    pub fn packed(&self, at: &Point) -> Result<Packed, NoDerivative> {
-        let numbers = Packed::of_numbers(&at.numbers, at.node);
-        numbers.ok_or(NoDerivative::TooLarge {
-            numbers: at.numbers.len(),
-            most: crate::packed::MOST,
-        })
-    }
-}
-
-/// The numbers of a state as a point.
-pub fn point(state: &Packed) -> Point {
-    Point {
-        numbers: state.numbers().to_vec(),
-        node: state.node,
     }
 }
 
 impl Derivatives for Differentiated {
     fn card(&self) -> &'static Card {
-        &self.started.opened.card
+        self.started.source.card()
     }
 
     fn h(&self) -> f64 {
@@ -240,41 +207,37 @@ impl Derivatives for Differentiated {
     }
 
     fn start(&self) -> Point {
-        point(&self.started.state)
+        self.started.state.clone()
     }
 
     fn dimensions(&self) -> Vec<usize> {
-        dimensions(&self.started.initial, &self.started.forms)
+        self.started.coordinates.dimensions.clone()
     }
 
     fn observe(&mut self, at: &Point) -> Result<Vec<f64>, NoDerivative> {
-        let at = self.packed(at)?;
-        self.at_observables(&at, &|linear, late| linear.value(late))
+        self.at_observables(at, &|linear, late| linear.value(late))
     }
 
     fn invariants(&mut self, at: &Point) -> Result<Vec<f64>, NoDerivative> {
-        let at = self.packed(at)?;
-        self.at_invariants(&at, &|linear, late| linear.value(late))
+        self.at_invariants(at, &|linear, late| linear.value(late))
     }
 
     fn moved(&mut self, at: &Point, by: &[f64]) -> Result<Point, NoDerivative> {
-        let at = self.packed(at)?;
-        Ok(point(&self.moved_by(&at, by)?))
+        self.moved_by(at, by)
     }
 
     fn difference(&mut self, from: &Point, to: &Point) -> Result<Vec<f64>, NoDerivative> {
-        let (from, to) = (self.packed(from)?, self.packed(to)?);
-        self.coordinates_between(&from, &to)
+        self.coordinates_between(from, to)
     }
 
     fn step(&mut self, at: &Point) -> Result<Point, NoDerivative> {
-        let mut state = self.packed(at)?;
+        let mut state = at.clone();
         self.advance(&mut state, None)?;
-        Ok(point(&state))
+        Ok(state)
     }
 
     fn tangent(&mut self, at: &Point) -> Result<(Point, Jacobian), NoDerivative> {
-        let mut state = self.packed(at)?;
+        let mut state = at.clone();
         let mut columns = self.columns(&state)?;
         let mut taken = Vec::new();
         self.advance(&mut state, Some(&mut taken))?;
@@ -286,17 +249,16 @@ impl Derivatives for Differentiated {
             columns = self.at_step(stage, taken, &pushed)?;
         }
         let tangent = self.in_coordinates(&state, &columns)?;
-        Ok((point(&state), tangent))
+        Ok((state, tangent))
     }
 
     fn observed(&mut self, at: &Point) -> Result<Jacobian, NoDerivative> {
-        let at = self.packed(at)?;
-        let columns = self.columns(&at)?;
+        let columns = self.columns(at)?;
         let pushed = |linear: &mut Linear, late: &[f64]| -> Option<Vec<Vec<f64>>> {
             let each = columns.iter().map(|x| linear.push_from(late, 0, x));
             each.collect()
         };
-        let pushed = self.at_observables(&at, &pushed)?;
+        let pushed = self.at_observables(at, &pushed)?;
         Ok(Jacobian {
             rows: self.card().observable_count(),
             cols: pushed.len(),
@@ -305,13 +267,11 @@ impl Derivatives for Differentiated {
     }
 
     fn conserved(&mut self, at: &Point) -> Result<Jacobian, NoDerivative> {
-        let at = self.packed(at)?;
-        self.slopes_of_invariants(&at)
+        self.slopes_of_invariants(at)
     }
 
     fn curvature(&mut self, at: &Point, weights: &[f64]) -> Result<Jacobian, NoDerivative> {
-        let at = self.packed(at)?;
-        self.curvature_of_invariants(&at, weights)
+        self.curvature_of_invariants(at, weights)
     }
 
     fn gradient(&mut self, steps: u64, cost: &mut dyn Cost) -> Result<Gradient, NoDerivative> {

@@ -3,6 +3,7 @@
 
 use super::LineModel;
 use super::coordinates::{self, UserRole};
+use super::differentiated::TracedLine;
 use crate::cache::Cache;
 use crate::cards::named;
 use crate::constants::Constants;
@@ -15,7 +16,7 @@ use clebsch_core::line::Coordinates;
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::Model;
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// The origin of a field of the card: a quantity of the emitted program, and its site.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,6 +44,8 @@ pub struct Carded {
     pub observables: Vec<Place>,
     /// The number of sites of each quantity, by name.
     pub sites: BTreeMap<String, usize>,
+    /// The functions that are recorded with derivatives.
+    pub traced: OnceLock<TracedLine>,
 }
 
 /// The short chain from which the card is built.
@@ -226,6 +229,7 @@ impl Carded {
             initial: at_initial,
             observables: at_observables,
             sites: sites.collect(),
+            traced: OnceLock::new(),
         };
         Ok((carded, derived.warnings))
     }

@@ -254,6 +254,18 @@ impl InputStruct {
         })
     }
 
+    /// The names of its fields, and whether the values of a field are elements of a group.
+    pub fn names(&self) -> impl Iterator<Item = (&str, bool)> {
+        self.fields.iter().map(|(name, read)| {
+            let of_site = match read {
+                FieldForm::Sites(inner) => inner,
+                other => other,
+            };
+            let is_element = matches!(of_site, FieldForm::Rotation | FieldForm::Quaternion);
+            (name.as_str(), is_element)
+        })
+    }
+
     /// The value of one of its fields.
     pub fn one(&self, field: &str, numbers: &Numbers<'_>) -> Result<Value<f64>, Unstarted> {
         let own = self.fields.iter().find(|(name, _)| name == field);

@@ -4,6 +4,7 @@
 mod card;
 mod composed;
 mod coordinates;
+mod differentiated;
 mod inputs;
 mod kinetic;
 mod node_values;
@@ -27,8 +28,8 @@ use crate::opened::at;
 use crate::running::{put, run};
 use crate::sites::Column;
 use crate::value::Value;
-use clebsch::StepCause;
 use clebsch::line::LineError;
+use clebsch::{Real, StepCause};
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::ChainConfig;
 use clebsch_core::line::Coordinates;
@@ -413,11 +414,20 @@ impl LineModel {
         numbers: &Numbers<'_>,
         places: &mut Places<f64>,
     ) -> Result<Value<f64>, Unstarted> {
-        put(
-            places,
-            at::GIVEN,
-            self.parameters.value(numbers, &|_| None)?,
-        );
+        let [parameters, sites] = self.parameter_values(choice, numbers)?;
+        put(places, at::GIVEN, parameters);
+        put(places, at::OUT, sites);
+        let model = run(&self.new, places).map_err(Failure::line)?;
+        put(places, at::OUT, Value::Unit);
+        Ok(model)
+    }
+
+    /// The parameters of the whole chain, and those of sites and ends.
+    fn parameter_values(
+        &self,
+        choice: &ChainConfig,
+        numbers: &Numbers<'_>,
+    ) -> Result<[Value<f64>; 2], Unstarted> {
         let ends = match self.has_line {
             true => self.ends.value(choice, numbers)?,
             false => Value::Unit,
@@ -426,10 +436,10 @@ impl LineModel {
             "ends" => Some(ends.clone()),
             field => inputs::counts(&self.counts, choice, field),
         };
-        put(places, at::OUT, self.sites.value(numbers, &of_sites)?);
-        let model = run(&self.new, places).map_err(Failure::line)?;
-        put(places, at::OUT, Value::Unit);
-        Ok(model)
+        Ok([
+            self.parameters.value(numbers, &|_| None)?,
+            self.sites.value(numbers, &of_sites)?,
+        ])
     }
 
     /// Starts a chain with step size `h`. `numbers` returns parameters and initial values by their names in the model,
@@ -541,7 +551,7 @@ fn as_arrays(value: Value<f64>) -> Value<f64> {
 }
 
 /// The numbers of all sites, one site after the other.
-fn columns(value: &Value<f64>) -> Option<Vec<f64>> {
+fn columns<T: Real>(value: &Value<T>) -> Option<Vec<T>> {
     let Value::Sites(column) = value else {
         return None;
     };
@@ -553,7 +563,7 @@ fn columns(value: &Value<f64>) -> Option<Vec<f64>> {
 }
 
 /// The numbers of a value: matrices and rotations in row-major order, unit quaternions as components.
-fn numbers(value: &Value<f64>) -> Option<Vec<f64>> {
+fn numbers<T: Real>(value: &Value<T>) -> Option<Vec<T>> {
     Some(match value {
         Value::Real(x) => vec![*x],
         Value::Momentum(_, v) => v.as_slice().to_vec(),

@@ -1,7 +1,7 @@
 //! Trajectories of chains as the command runs them: numbers in the order of a card.
 
 use super::card::{Carded, Place};
-use super::{LineTrajectory, Unstarted};
+use super::{LineTrajectory, Numbers, Unstarted};
 use crate::text;
 use clebsch::card::{Card, Field, OpenError, PartSeen, Settings, Trajectory, chosen_solver};
 use clebsch::integrate::{Offer, Way, counted};
@@ -15,7 +15,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 /// The error of a step with its site.
-fn cause(e: LineError) -> StepCause {
+pub(super) fn cause(e: LineError) -> StepCause {
     match e {
         LineError::Step {
             at, cause, works, ..
@@ -54,6 +54,18 @@ impl Carded {
         counted(card, parameters, initial)?;
         chosen_solver(settings, card.solvers)?;
         let way = Way::of(Offer::of(card), settings, card.orders)?;
+        self.read(parameters, initial, |numbers| {
+            self.started((way, settings), numbers)
+        })
+    }
+
+    /// Calls `then` with the numbers of parameters and initial values by their names in the program.
+    pub(super) fn read<R>(
+        &self,
+        parameters: &[Vec<f64>],
+        initial: &[Vec<f64>],
+        then: impl FnOnce(&Numbers<'_>) -> R,
+    ) -> R {
         let mut given: BTreeMap<&str, Sites<'_>> = BTreeMap::new();
         let of_tables = [(&self.parameters, parameters), (&self.initial, initial)];
         for (places, lists) in of_tables {
@@ -101,6 +113,14 @@ impl Carded {
                 _ => None,
             }
         };
+        then(&numbers)
+    }
+
+    fn started(
+        &'static self,
+        (way, settings): (Way, Settings),
+        numbers: &Numbers<'_>,
+    ) -> Result<Box<dyn Trajectory>, OpenError> {
         // The first substep of a composed step is shorter than the whole step.
         let h = match way {
             Way::Composed(order) => order
@@ -110,8 +130,8 @@ impl Carded {
             Way::Plain | Way::Modified(..) => settings.h,
         };
         let start = |h: f64| match settings.inquiry {
-            true => self.model.start_projected(&self.choice, h, &numbers),
-            false => self.model.start(&self.choice, h, &numbers),
+            true => self.model.start_projected(&self.choice, h, numbers),
+            false => self.model.start(&self.choice, h, numbers),
         };
         let mut started = start(h);
         // If a substep fails, the whole step fails. The error of the whole step names a step size that succeeds.
@@ -130,7 +150,7 @@ impl Carded {
         };
         let line = started.map_err(|e| self.refused(e))?;
         let sites = |name: &str| self.sites.get(name).copied();
-        let kinetic = self.model.kinetic_warning(&self.choice, &numbers, sites);
+        let kinetic = self.model.kinetic_warning(&self.choice, numbers, sites);
         Ok(Box::new(Running {
             carded: self,
             order: self.order(),
@@ -189,7 +209,7 @@ impl Carded {
         out.trim_end().to_owned()
     }
 
-    fn refused(&self, e: Unstarted) -> OpenError {
+    pub(super) fn refused(&self, e: Unstarted) -> OpenError {
         let at_start = |e: ParameterError| {
             let own = |f: &&Field| f.name == e.field || f.ascii == e.field;
             match self.card.initial.iter().any(|f| own(&f)) {
@@ -245,7 +265,7 @@ impl Carded {
     }
 
     /// The index of the observer and the site, for each observable.
-    fn order(&self) -> Vec<(usize, usize)> {
+    pub(super) fn order(&self) -> Vec<(usize, usize)> {
         let names: Vec<String> = self.model.observers().map(|o| ascii(&o)).collect();
         let place = |p: &Place| {
             let observer = names.iter().position(|n| *n == p.key);
