@@ -1,0 +1,12 @@
+//! Tests on maps and energies with known answers.
+
+mod continuation;
+mod eigen;
+mod equilibrium;
+mod fit;
+mod linear;
+mod lyapunov;
+mod orbit;
+mod refusals;
+mod section;
+mod systems;
