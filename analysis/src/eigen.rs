@@ -31,7 +31,8 @@ pub struct Eigen {
     pub errors: Vec<f64>,
     /// The condition number of each eigenvalue in balanced coordinates: 1 at best, very large near a defective one.
     pub conditions: Vec<f64>,
-    norm: f64,
+    /// The Frobenius norm of the balanced matrix.
+    pub(crate) norm: f64,
 }
 
 /// Why eigenvalues could not be computed.
@@ -152,7 +153,7 @@ pub fn eigen(a: &DMatrix<f64>) -> Result<Eigen, EigenError> {
         norm: scale * norm,
     };
     result.pair();
-    result.errors = result.errors_for(f64::EPSILON * (n as f64).sqrt() * result.norm);
+    result.errors = result.errors_for(f64::EPSILON * n as f64 * result.norm);
     Ok(result)
 }
 

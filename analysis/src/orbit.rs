@@ -191,7 +191,10 @@ pub fn orbit<F: Flow>(
             .step(&state, h)
             .map_err(|source| OrbitError::Step { step, source })?;
     }
-    let floquet = eigen(&monodromy)?;
+    let mut floquet = eigen(&monodromy)?;
+    // The product of tangents has a rounding in each factor, with random signs.
+    let roundings = n as f64 * (1.0 + (steps as f64).sqrt());
+    floquet.errors = floquet.errors_for(roundings * f64::EPSILON * floquet.norm);
     let pairing_defect = pairing_defect(&floquet.values);
     let (state, iterations) = (ended.state, ended.iterations);
     Ok(Orbit {
