@@ -123,27 +123,33 @@ impl<E: Energy> Stepper<'_, E> {
         None
     }
 
-    /// The place between two places where `function` is zero. None if it has no change of sign, or a step fails.
+    /// The place between two places where `function` is zero, and whether it was located to rounding. Steps near other
+    /// branches may fail; the place is then the best one before. None if `function` has no change of sign.
     pub fn zero(
         &self,
         from: &Place<E::State>,
         s: f64,
         to: &Place<E::State>,
         function: impl Fn(&Place<E::State>) -> Option<f64>,
-    ) -> Option<Place<E::State>> {
+    ) -> Option<(Place<E::State>, bool)> {
         let (start, end) = (function(from)?, function(to)?);
-        if start * end > 0.0 {
+        if start * end > 0.0 || (start * end).is_nan() {
             return None;
         }
-        if start == 0.0 || end == 0.0 {
-            return Some(if end == 0.0 { to.clone() } else { from.clone() });
-        }
-        let value = |theta: f64| {
-            self.step(from, theta * s)
-                .and_then(|place| function(&place))
-                .ok_or(())
+        let mut best = if start.abs() < end.abs() {
+            (start.abs(), from.clone())
+        } else {
+            (end.abs(), to.clone())
         };
-        let theta = bracketed(value, (0.0, start), (1.0, end)).ok()?;
-        self.step(from, theta * s)
+        let value = |theta: f64| {
+            let place = self.step(from, theta * s).ok_or(())?;
+            let value = function(&place).ok_or(())?;
+            if value.abs() < best.0 {
+                best = (value.abs(), place);
+            }
+            Ok::<_, ()>(value)
+        };
+        let located = bracketed(value, (0.0, start), (1.0, end)).is_ok();
+        Some((best.1, located))
     }
 }

@@ -1,156 +1,12 @@
 //! Continuation of relative equilibria in a parameter, through folds.
 
 use crate::branch::{Place, Stepper};
-use crate::equilibrium::{EquilibriumError, equilibrium};
+use crate::equilibrium::equilibrium;
 use crate::error::{self, Invalid};
 use crate::flow::Energy;
 use crate::kkt::{Kkt, Point};
-use crate::newton::Search;
-use crate::variation::Variation;
+use crate::track::{Branch, BranchPoint, ContinuationError, End, Event, Special, Track};
 use nalgebra::DVector;
-use std::{error::Error, fmt};
-
-/// The sizes of steps. They are lengths in the space of states, multipliers and the parameter together.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Track {
-    /// The first step.
-    pub first: f64,
-    /// The largest step. It bounds the distance of points, and so the folds that can be missed.
-    pub largest: f64,
-    /// The smallest step. The continuation fails below it.
-    pub smallest: f64,
-    /// The largest number of points.
-    pub points: usize,
-    /// When the corrections of a step end.
-    pub search: Search,
-}
-
-impl Track {
-    /// First step |b - a| / 50, largest |b - a| / 10, smallest 1e-9 |b - a|, and at most 1000 points.
-    #[must_use]
-    pub fn between(a: f64, b: f64) -> Self {
-        let span = (b - a).abs();
-        Self {
-            first: span / 50.0,
-            largest: span / 10.0,
-            smallest: 1e-9 * span,
-            points: 1000,
-            search: Search::default(),
-        }
-    }
-}
-
-/// A point of a branch.
-#[derive(Clone, Debug)]
-pub struct BranchPoint<S> {
-    /// The parameter.
-    pub p: f64,
-    /// The state.
-    pub state: S,
-    /// The m multipliers.
-    pub multipliers: DVector<f64>,
-    /// The norm of the equations.
-    pub residual: f64,
-    /// The derivative of p along the branch, per unit of length. It is zero at a fold.
-    pub slope: f64,
-    /// The second variation.
-    pub variation: Variation,
-}
-
-/// What happens between two points of a branch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Event {
-    /// The branch turns back in p.
-    Fold,
-    /// The number of negative directions of the second variation changes, so that other branches may meet this one.
-    BranchPoint {
-        /// The number before.
-        before: usize,
-        /// The number after.
-        after: usize,
-    },
-}
-
-/// An event of a branch.
-#[derive(Clone, Debug)]
-pub struct Special<S> {
-    /// What happens.
-    pub event: Event,
-    /// The number of the point before it.
-    pub after_point: usize,
-    /// The point of the event; if it could not be located, the point after it.
-    pub at: BranchPoint<S>,
-    /// Whether it could be located.
-    pub located: bool,
-}
-
-/// How a branch ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
-    /// The last point has p = b.
-    Reached,
-    /// The branch turned back, and the last point has p = a again.
-    Returned,
-    /// The largest number of points was reached.
-    Points,
-}
-
-/// A branch of critical points.
-#[derive(Clone, Debug)]
-pub struct Branch<S> {
-    /// The points, in order along the branch. The first has p = a.
-    pub points: Vec<BranchPoint<S>>,
-    /// Folds and branch points, in order along the branch.
-    pub specials: Vec<Special<S>>,
-    /// How the branch ended.
-    pub end: End,
-}
-
-/// Why a continuation failed.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ContinuationError<E> {
-    /// An argument cannot be used.
-    Invalid(Invalid),
-    /// There is no critical point at p = a near the start.
-    Start(EquilibriumError<E>),
-    /// Steps became too small.
-    Stalled {
-        /// The last good value of the parameter.
-        p: f64,
-        /// The step that failed.
-        step: f64,
-        /// The number of points up to there.
-        points: usize,
-    },
-}
-
-impl<E: fmt::Display> fmt::Display for ContinuationError<E> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Invalid(why) => why.fmt(f),
-            Self::Start(why) => why.fmt(f),
-            Self::Stalled { p, step, points } => write!(
-                f,
-                "The branch could not be followed beyond parameter {p} (point {points}): a step of {step:e} failed. Start at another branch, or allow smaller steps."
-            ),
-        }
-    }
-}
-
-impl<E: Error + 'static> Error for ContinuationError<E> {
-    fn source(&self) -> Option<&(dyn Error + 'static)> {
-        match self {
-            Self::Start(source) => Some(source),
-            _ => None,
-        }
-    }
-}
-
-impl<E> From<Invalid> for ContinuationError<E> {
-    fn from(why: Invalid) -> Self {
-        Self::Invalid(why)
-    }
-}
 
 /// The branch of critical points that begins near `start` at p = `a` and leads towards p = `b`, with fixed `values` of
 /// the m conserved quantities.
@@ -206,39 +62,18 @@ pub fn continuation<E: Energy>(
     };
     let mut step = track.first.min(track.largest);
     while branch.points.len() < track.points {
-        let Some(mut next) = stepper.step(&here, step) else {
-            step /= 2.0;
-            if step < track.smallest {
+        let Some((next, length, end)) = attempt(&stepper, &here, step, (a, b)) else {
+            if step / 2.0 < track.smallest {
                 let points = branch.points.len();
                 return Err(ContinuationError::Stalled {
                     p: here.point.p,
-                    step: 2.0 * step,
+                    step,
                     points,
                 });
             }
+            step /= 2.0;
             continue;
         };
-        let ended = [(b, End::Reached), (a, End::Returned)]
-            .into_iter()
-            .find(|&(at, end)| {
-                let beyond = (next.point.p - at) * (b - a).signum();
-                if end == End::Reached {
-                    beyond >= 0.0
-                } else {
-                    beyond <= 0.0
-                }
-            });
-        let mut length = step;
-        if let Some((at, end)) = ended {
-            // The last point lies within the step, at p = a or p = b.
-            if let Some(place) = stepper.zero(&here, step, &next, |place| Some(place.point.p - at))
-            {
-                length = (place.point.p - here.point.p) / (next.point.p - here.point.p) * step;
-                next = place;
-                next.point.p = at;
-            }
-            branch.end = end;
-        }
         branch.specials.extend(special(
             &stepper,
             &here,
@@ -247,7 +82,8 @@ pub fn continuation<E: Energy>(
             branch.points.len() - 1,
         ));
         branch.points.push(branch_point(&next));
-        if ended.is_some() {
+        if let Some(end) = end {
+            branch.end = end;
             break;
         }
         step = match next.iterations {
@@ -258,6 +94,29 @@ pub fn continuation<E: Energy>(
         here = next;
     }
     Ok(branch)
+}
+
+/// A place within one step, its distance, and the end of the branch if the place is at p = `a` or p = `b`.
+type Attempt<E> = (Place<<E as Energy>::State>, f64, Option<End>);
+
+/// One step along the branch, shortened at the ends of the range. None if the step is too long.
+fn attempt<E: Energy>(
+    stepper: &Stepper<'_, E>,
+    here: &Place<E::State>,
+    step: f64,
+    (a, b): (f64, f64),
+) -> Option<Attempt<E>> {
+    let next = stepper.step(here, step)?;
+    let forward = (b - a).signum();
+    let (at, end) = match next.point.p {
+        p if (p - b) * forward >= 0.0 => (b, End::Reached),
+        p if (p - a) * forward <= 0.0 => (a, End::Returned),
+        _ => return Some((next, step, None)),
+    };
+    let (mut place, located) = stepper.zero(here, step, &next, |place| Some(place.point.p - at))?;
+    let length = (place.point.p - here.point.p) / (next.point.p - here.point.p) * step;
+    place.point.p = at;
+    located.then_some((place, length, Some(end)))
 }
 
 fn branch_point<S: Clone>(of: &Place<S>) -> BranchPoint<S> {
@@ -300,11 +159,11 @@ fn special<E: Energy>(
     } else {
         return None;
     };
-    let located = zero.is_some();
+    let (place, located) = zero.unwrap_or_else(|| (to.clone(), false));
     Some(Special {
         event,
         after_point,
-        at: branch_point(zero.as_ref().unwrap_or(to)),
+        at: branch_point(&place),
         located,
     })
 }

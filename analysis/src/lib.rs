@@ -15,6 +15,7 @@
 
 mod branch;
 mod continuation;
+mod crossing;
 mod eigen;
 mod eigen_pairs;
 mod equilibrium;
@@ -26,25 +27,28 @@ mod kkt;
 mod linear;
 mod lyapunov;
 mod marquardt;
+mod mode;
 mod newton;
 mod orbit;
 mod root;
 mod section;
 mod singular;
+mod track;
 mod variation;
 
-pub use continuation::{
-    Branch, BranchPoint, ContinuationError, End, Event, Special, Track, continuation,
-};
+pub use continuation::continuation;
+pub use crossing::{Crossing, Direction, Section, SectionError, Sections};
 pub use eigen::{Eigen, EigenError, eigen, pairing_defect};
 pub use equilibrium::{Equilibrium, EquilibriumError, equilibrium};
 pub use error::Invalid;
 pub use fit::{Fit, FitError, Residuals, UNDETERMINED};
 pub use flow::{Energy, First, Flow};
-pub use linear::{FIXED, Linear, LinearError, Mode, Stability, Verdict, linear};
+pub use linear::{FIXED, Linear, LinearError, linear};
 pub use lyapunov::{Estimate, Lyapunov, LyapunovError, lyapunov};
 pub use marquardt::fit;
+pub use mode::{Mode, Stability, Verdict};
 pub use newton::Search;
 pub use orbit::{Orbit, OrbitError, orbit};
-pub use section::{Crossing, Direction, Section, SectionError, Sections, sections};
+pub use section::sections;
+pub use track::{Branch, BranchPoint, ContinuationError, End, Event, Special, Track};
 pub use variation::{Definiteness, NULL, Variation};
