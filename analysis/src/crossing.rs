@@ -1,6 +1,6 @@
 //! Surfaces, their crossings, and why none is found.
 
-use crate::error::Invalid;
+use crate::error::{Invalid, clause};
 use std::{error::Error, fmt};
 
 /// Which crossings count.
@@ -80,7 +80,8 @@ impl<E: fmt::Display> fmt::Display for SectionError<E> {
             Self::Step { step, source } => {
                 write!(
                     f,
-                    "Step {step} of the trajectory failed: {source} Use a smaller step size, or start elsewhere."
+                    "Step {step} of the trajectory failed: {}. Use a smaller step size, or start elsewhere.",
+                    clause(source)
                 )
             }
             Self::Never {

@@ -4,7 +4,7 @@
 //! symmetry, the multipliers are minus the velocities of the group along the motion. See Marsden and Ratiu,
 //! *Introduction to Mechanics and Symmetry*.
 
-use crate::error::Invalid;
+use crate::error::{Invalid, clause};
 use crate::flow::Energy;
 use crate::kkt::{Kkt, Point};
 use crate::newton::{Search, newton};
@@ -65,7 +65,8 @@ impl<E: fmt::Display> fmt::Display for EquilibriumError<E> {
             Self::Invalid(why) => why.fmt(f),
             Self::Energy { p, source } => write!(
                 f,
-                "The energy at parameter {p} failed: {source} Start elsewhere."
+                "The energy at parameter {p} failed: {}. Start elsewhere.",
+                clause(source)
             ),
             Self::NoConvergence {
                 p,

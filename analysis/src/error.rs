@@ -139,3 +139,8 @@ pub(crate) fn vector(what: &'static str, of: &DVector<f64>, length: usize) -> Re
         }),
     }
 }
+
+/// The text of an error without its full stop, as a part of a longer sentence.
+pub(crate) fn clause(of: &impl fmt::Display) -> String {
+    of.to_string().trim_end().trim_end_matches('.').to_owned()
+}

@@ -1,6 +1,6 @@
 //! What a fit by least squares needs and gives. Parameters can be on a manifold.
 
-use crate::error::Invalid;
+use crate::error::{Invalid, clause};
 use nalgebra::{DMatrix, DVector};
 use std::{error::Error, fmt};
 
@@ -108,7 +108,8 @@ impl<E: fmt::Display> fmt::Display for FitError<E> {
             Self::Invalid(why) => why.fmt(f),
             Self::Residuals(source) => write!(
                 f,
-                "The residuals failed: {source} Start from other parameters."
+                "The residuals failed: {}. Start from other parameters.",
+                clause(source)
             ),
             Self::Undetermined { combination, ratio } => {
                 write!(f, "The data do not determine the combination")?;

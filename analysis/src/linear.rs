@@ -6,7 +6,7 @@
 //! and Wanner, *Geometric Numerical Integration*, chapter IX.
 
 use crate::eigen::{EigenError, eigen};
-use crate::error::{self, Invalid};
+use crate::error::{self, Invalid, clause};
 use crate::flow::{Flow, checked_difference, checked_tangent};
 use crate::generator::{Generator, generator};
 use crate::mode::{Mode, Verdict, modes, verdict};
@@ -70,7 +70,8 @@ impl<E: fmt::Display> fmt::Display for LinearError<E> {
             Self::Invalid(why) => why.fmt(f),
             Self::Step { h, source } => write!(
                 f,
-                "The step of size {h} failed: {source} Use a smaller step size."
+                "The step of size {h} failed: {}. Use a smaller step size.",
+                clause(source)
             ),
             Self::NotFixed { displacement } => write!(
                 f,
@@ -110,7 +111,7 @@ impl<E> From<EigenError> for LinearError<E> {
 /// The modes of a step of size `h` at the fixed point `at`, and of the continuous system.
 ///
 /// `reversible` says that the step of size -h inverts the step of size h. The extrapolation to the continuous system
-/// then uses even powers of h. If it is wrong, `generator_error` is still an estimate, but too small.
+/// then uses even powers of h. If it is wrong, the generator is less accurate, and `generator_error` shows this.
 ///
 /// # Errors
 ///

@@ -3,7 +3,7 @@
 //! The tangents act on an orthonormal frame, which a QR factorisation restores after every step. The exponents are the
 //! mean logarithms of the diagonal of R (Benettin, Galgani, Giorgilli and Strelcyn, Meccanica 15, 1980).
 
-use crate::error::{self, Invalid};
+use crate::error::{self, Invalid, clause};
 use crate::flow::{Flow, checked_tangent};
 use nalgebra::DMatrix;
 use std::{error::Error, fmt};
@@ -65,7 +65,8 @@ impl<E: fmt::Display> fmt::Display for LyapunovError<E> {
             Self::Step { step, source } => {
                 write!(
                     f,
-                    "Step {step} of the trajectory failed: {source} Use a smaller step size, or start elsewhere."
+                    "Step {step} of the trajectory failed: {}. Use a smaller step size, or start elsewhere.",
+                    clause(source)
                 )
             }
             Self::Collapsed { step, exponent } => write!(
@@ -107,7 +108,7 @@ pub fn lyapunov<F: Flow>(
 ) -> Result<Lyapunov<F::State>, LyapunovError<F::Error>> {
     let n = flow.dimension();
     error::step_size(h)?;
-    error::number("steps", steps, usize::MAX)?;
+    error::number("steps", steps, usize::MAX / ESTIMATES)?;
     error::number("exponents", count, n)?;
     let mut frame = DMatrix::<f64>::identity(n, count);
     let mut state = start.clone();

@@ -5,7 +5,7 @@
 //! and symmetries. See Meyer and Offin, *Introduction to Hamiltonian Dynamical Systems and the N-Body Problem*.
 
 use crate::eigen::{Eigen, EigenError, eigen, pairing_defect};
-use crate::error::{self, Invalid};
+use crate::error::{self, Invalid, clause};
 use crate::flow::{Flow, checked_difference, checked_tangent};
 use crate::newton::{Equations, Search, newton};
 use nalgebra::{DMatrix, DVector};
@@ -68,7 +68,8 @@ impl<E: fmt::Display> fmt::Display for OrbitError<E> {
             Self::Step { step, source } => {
                 write!(
                     f,
-                    "Step {step} of the orbit failed: {source} Use more steps for the period, or start elsewhere."
+                    "Step {step} of the orbit failed: {}. Use more steps for the period, or start elsewhere.",
+                    clause(source)
                 )
             }
             Self::NoConvergence {

@@ -24,7 +24,7 @@ const OUTSIDE: f64 = 1e-4;
 /// What kind of critical point the second variation shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Definiteness {
-    /// Positive definite. The point is stable, also for a potential energy.
+    /// Positive definite, or no directions at all. The point is stable, also for a potential energy.
     Minimum,
     /// Negative definite. The point is stable if the energy is a Hamiltonian, and not if it is a potential.
     Maximum,

@@ -123,6 +123,42 @@ fn damping_attracts_and_drift_is_neutral() {
 }
 
 #[test]
+fn growth_at_the_size_of_rounding_is_undecided() {
+    // The error of a multiplier of a 2 x 2 matrix is about 4 roundings: 1e-15.
+    let verdict = |growth: f64| {
+        let map = Plane(move |[x, y]: [f64; 2], h: f64| {
+            Some((
+                [x * (1.0 + growth * h), y],
+                [1.0 + growth * h, 0.0, 0.0, 1.0],
+            ))
+        });
+        linear(&map, &[0.0, 0.0], 1.0, false)
+            .unwrap()
+            .verdict
+            .stability
+    };
+    assert_eq!(verdict(4e-15), Stability::Undecided);
+    assert_eq!(verdict(1e-13), Stability::Unstable);
+    assert_eq!(verdict(0.0), Stability::SpectrallyStable);
+}
+
+#[test]
+fn a_wrong_claim_of_reversibility_shows_in_the_error() {
+    let flow = Splitting {
+        potential: oscillators(1),
+        leapfrog: false,
+    };
+    let found = linear(&flow, &vec![0.0; 2], 0.2, true).unwrap();
+    let truth = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -1.0, 0.0]);
+    let error = (&found.generator - truth).amax();
+    assert!(
+        error > 1e-8 && error < 3.0 * found.generator_error,
+        "{error} {}",
+        found.generator_error
+    );
+}
+
+#[test]
 fn stiff_units() {
     // Frequencies 1e3 and 1e-3 in one system, and a tangent with entries from 1e-6 to 1e6 h.
     let potential = Potential {

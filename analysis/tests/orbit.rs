@@ -40,7 +40,7 @@ fn pendulum_with_a_period_by_elliptic_integrals() {
             );
         }
     }
-    // The phase decides a part of the error of the energy, so that the ratio for half a step is only about 4.
+    // Second order: about a quarter of the error for half the step. The phase also changes the energy a little.
     assert!(errors[0].abs() < 0.01, "{errors:?}");
     assert!(
         errors

@@ -194,6 +194,33 @@ fn energies() {
 }
 
 #[test]
+fn failed_steps_are_quoted() {
+    let flow = Plane(|_: [f64; 2], _| None);
+    let value = |z: &[f64; 2]| z[0];
+    let section = Section {
+        value: &value,
+        rate: None,
+        direction: Direction::Both,
+    };
+    says(
+        &lyapunov(&flow, &[0.0, 0.0], 0.1, 10, 1).unwrap_err(),
+        "failed: the step is not defined. Use",
+    );
+    says(
+        &orbit(&flow, &[0.0, 0.0], 0.1, 10, &Search::default()).unwrap_err(),
+        "not defined. Use",
+    );
+    says(
+        &linear(&flow, &[0.0, 0.0], 0.1, true).unwrap_err(),
+        "not defined. Use",
+    );
+    says(
+        &sections(&flow, &[0.0, 0.0], 0.1, &section, 1, 10).unwrap_err(),
+        "not defined. Use",
+    );
+}
+
+#[test]
 fn wrong_shapes() {
     struct Wrong;
     impl clebsch_analysis::Flow for Wrong {
