@@ -16,6 +16,9 @@ use nalgebra::{DMatrix, DVector};
 /// Newton's iterations of a correction, after which the step is too long.
 const CORRECTIONS: usize = 10;
 
+/// The value at a located zero, relative to the values at both ends, is at most this.
+const CONTINUOUS: f64 = 1e-6;
+
 /// The least cosine of the angle between the tangents before and after a step.
 const COSINE: f64 = 0.9;
 
@@ -149,7 +152,9 @@ impl<E: Energy> Stepper<'_, E> {
             }
             Ok::<_, ()>(value)
         };
-        let located = bracketed(value, (0.0, start), (1.0, end)).is_ok();
+        let ended = bracketed(value, (0.0, start), (1.0, end)).is_ok();
+        // A jump to another branch changes the sign without a zero.
+        let located = ended && best.0 <= CONTINUOUS * (start.abs() + end.abs());
         Some((best.1, located))
     }
 }

@@ -8,6 +8,10 @@ use crate::kkt::{Kkt, Point};
 use crate::track::{Branch, BranchPoint, ContinuationError, End, Event, Special, Track};
 use nalgebra::DVector;
 
+/// An event that cannot be located may be a jump to another branch. The step is then repeated with half its length,
+/// down to this part of the first step.
+const DOUBTFUL: f64 = 1e-4;
+
 /// The branch of critical points that begins near `start` at p = `a` and leads towards p = `b`, with fixed `values` of
 /// the m conserved quantities.
 ///
@@ -74,13 +78,13 @@ pub fn continuation<E: Energy>(
             step /= 2.0;
             continue;
         };
-        branch.specials.extend(special(
-            &stepper,
-            &here,
-            length,
-            &next,
-            branch.points.len() - 1,
-        ));
+        let special = special(&stepper, &here, length, &next, branch.points.len() - 1);
+        if special.as_ref().is_some_and(|special| !special.located) && step > DOUBTFUL * track.first
+        {
+            step /= 2.0;
+            continue;
+        }
+        branch.specials.extend(special);
         branch.points.push(branch_point(&next));
         if let Some(end) = end {
             branch.end = end;

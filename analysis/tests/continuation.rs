@@ -1,66 +1,11 @@
 //! Branches with known folds and branch points.
 
 use crate::equilibrium::Body;
-use crate::systems::Undefined;
+use crate::systems::{Line, Undefined};
 use clebsch_analysis::{
     ContinuationError, Definiteness, End, Energy, Event, First, Track, continuation,
 };
 use nalgebra::{DMatrix, DVector, Vector3};
-
-/// A potential of one variable: gives V, V', V'' and the derivative of V' in p.
-struct Line<V>(V);
-
-impl<V: Fn(f64, f64) -> Option<[f64; 4]>> Energy for Line<V> {
-    type State = f64;
-    type Error = Undefined;
-
-    fn dimension(&self) -> usize {
-        1
-    }
-
-    fn constraints(&self) -> usize {
-        0
-    }
-
-    fn first(&self, at: &f64, p: f64) -> Result<First, Undefined> {
-        let [energy, slope, ..] = (self.0)(*at, p).ok_or(Undefined)?;
-        let gradient = DVector::from_element(1, slope);
-        Ok(First {
-            energy,
-            gradient,
-            conserved: DVector::zeros(0),
-            gradients: DMatrix::zeros(0, 1),
-        })
-    }
-
-    fn second(&self, at: &f64, p: f64, _: &[f64]) -> Result<DMatrix<f64>, Undefined> {
-        Ok(DMatrix::from_element(
-            1,
-            1,
-            (self.0)(*at, p).ok_or(Undefined)?[2],
-        ))
-    }
-
-    fn in_parameter(
-        &self,
-        at: &f64,
-        p: f64,
-        _: &[f64],
-    ) -> Result<(DVector<f64>, DVector<f64>), Undefined> {
-        Ok((
-            DVector::from_element(1, (self.0)(*at, p).ok_or(Undefined)?[3]),
-            DVector::zeros(0),
-        ))
-    }
-
-    fn moved(&self, at: &f64, by: &[f64]) -> f64 {
-        at + by[0]
-    }
-
-    fn difference(&self, from: &f64, to: &f64) -> Vec<f64> {
-        vec![to - from]
-    }
-}
 
 #[test]
 fn a_fold_turns_the_branch_back() {
@@ -175,6 +120,30 @@ fn an_imperfect_pitchfork_has_no_branch_point() {
         "{:?}",
         branch.specials
     );
+}
+
+#[test]
+fn long_steps_do_not_jump_to_a_near_branch() {
+    // The branch turns sharply near p = 0, at a distance of about 0.1 from the other branch.
+    let fork = Line(|x: f64, p: f64| Some([0.0, p * x + x.powi(3) - 1e-3, p + 3.0 * x * x, x]));
+    let track = Track {
+        first: 1.5,
+        largest: 1.5,
+        ..Track::between(1.0, -1.0)
+    };
+    let branch = continuation(&fork, &1e-3, &[], 1.0, -1.0, &track).unwrap();
+    assert!(
+        branch.end == End::Reached && branch.specials.is_empty(),
+        "{:?}",
+        branch.specials
+    );
+    assert!(
+        branch
+            .points
+            .iter()
+            .all(|point| point.state > 0.0 && point.slope < 0.0)
+    );
+    assert!(branch.points.last().unwrap().state > 0.99);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Relative equilibria with known verdicts.
 
-use crate::systems::Undefined;
+use crate::systems::{Line, Undefined};
 use clebsch_analysis::{Definiteness, Energy, EquilibriumError, First, Search, equilibrium};
 use nalgebra::{DMatrix, DVector, Vector3};
 
@@ -261,4 +261,16 @@ fn values_that_cannot_be_reached() {
     };
     // |m|^2 / 2 + 1/2 is at least 1/2.
     assert!(*residual >= 0.5 && stopped.len() == 3, "{error}");
+}
+
+#[test]
+fn damping_where_full_steps_diverge() {
+    // Newton's method for arctan x = 0 diverges from |x| > 1.4.
+    let energy = Line(|x: f64, _: f64| Some([0.0, x.atan(), 1.0 / (1.0 + x * x), 0.0]));
+    let found = equilibrium(&energy, &10.0, &[], 0.0, &Search::default()).unwrap();
+    assert!(found.state.abs() < 1e-15 && found.variation.definiteness == Definiteness::Minimum);
+    // A trial state without an energy shortens the step as well.
+    let energy = Line(|x: f64, _: f64| (x > 0.0).then(|| [0.0, 1.0 - 1.0 / x, 1.0 / (x * x), 0.0]));
+    let found = equilibrium(&energy, &30.0, &[], 0.0, &Search::default()).unwrap();
+    assert!((found.state - 1.0).abs() < 1e-15, "{}", found.state);
 }

@@ -8,5 +8,6 @@ mod linear;
 mod lyapunov;
 mod orbit;
 mod refusals;
+mod rigid_body;
 mod section;
 mod systems;

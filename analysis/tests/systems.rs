@@ -1,6 +1,6 @@
 //! Discrete systems with closed forms.
 
-use clebsch_analysis::Flow;
+use clebsch_analysis::{Energy, First, Flow};
 use nalgebra::{DMatrix, DVector};
 use std::fmt;
 
@@ -187,5 +187,60 @@ impl Numbers {
     pub fn symmetric(&mut self, n: usize) -> DMatrix<f64> {
         let a = self.matrix(n, n);
         &a + a.transpose()
+    }
+}
+
+/// A potential of one variable: gives V, V', V'' and the derivative of V' in p.
+pub struct Line<V>(pub V);
+
+impl<V: Fn(f64, f64) -> Option<[f64; 4]>> Energy for Line<V> {
+    type State = f64;
+    type Error = Undefined;
+
+    fn dimension(&self) -> usize {
+        1
+    }
+
+    fn constraints(&self) -> usize {
+        0
+    }
+
+    fn first(&self, at: &f64, p: f64) -> Result<First, Undefined> {
+        let [energy, slope, ..] = (self.0)(*at, p).ok_or(Undefined)?;
+        let gradient = DVector::from_element(1, slope);
+        Ok(First {
+            energy,
+            gradient,
+            conserved: DVector::zeros(0),
+            gradients: DMatrix::zeros(0, 1),
+        })
+    }
+
+    fn second(&self, at: &f64, p: f64, _: &[f64]) -> Result<DMatrix<f64>, Undefined> {
+        Ok(DMatrix::from_element(
+            1,
+            1,
+            (self.0)(*at, p).ok_or(Undefined)?[2],
+        ))
+    }
+
+    fn in_parameter(
+        &self,
+        at: &f64,
+        p: f64,
+        _: &[f64],
+    ) -> Result<(DVector<f64>, DVector<f64>), Undefined> {
+        Ok((
+            DVector::from_element(1, (self.0)(*at, p).ok_or(Undefined)?[3]),
+            DVector::zeros(0),
+        ))
+    }
+
+    fn moved(&self, at: &f64, by: &[f64]) -> f64 {
+        at + by[0]
+    }
+
+    fn difference(&self, from: &f64, to: &f64) -> Vec<f64> {
+        vec![to - from]
     }
 }
