@@ -1,0 +1,296 @@
+//! Branches with known folds and branch points.
+
+use crate::equilibrium::Body;
+use crate::systems::{Line, Undefined};
+use clebsch_analysis::{
+    ContinuationError, Definiteness, End, Energy, Event, First, Track, continuation,
+};
+use nalgebra::{DMatrix, DVector, Vector3};
+
+#[test]
+fn a_fold_turns_the_branch_back() {
+    let fold = Line(|x: f64, p: f64| {
+        Some([
+            x.powi(3) / 3.0 + (p - 1.0) * x,
+            x * x + p - 1.0,
+            2.0 * x,
+            1.0,
+        ])
+    });
+    let branch = continuation(&fold, &0.9, &[], 0.0, 3.0, &Track::between(0.0, 3.0)).unwrap();
+    assert_eq!(branch.end, End::Returned);
+    let [special] = branch.specials.as_slice() else {
+        panic!("{:?}", branch.specials)
+    };
+    assert!(special.event == Event::Fold && special.located);
+    // The slope is zero where x is; x has an error of a few roundings over the step, and p its square.
+    assert!(
+        (special.at.p - 1.0).abs() < 1e-14 && special.at.state.abs() < 1e-8,
+        "{special:?}"
+    );
+    assert!(
+        branch
+            .points
+            .iter()
+            .all(|point| (point.state.powi(2) + point.p - 1.0).abs() < 1e-12)
+    );
+    let last = branch.points.last().unwrap();
+    assert!(
+        last.p == 0.0 && (last.state + 1.0).abs() < 1e-14,
+        "{last:?}"
+    );
+    assert_eq!(
+        branch.points[0].variation.definiteness,
+        Definiteness::Minimum
+    );
+    assert_eq!(last.variation.definiteness, Definiteness::Maximum);
+    assert!(branch.points[0].slope > 0.0 && last.slope < 0.0);
+}
+
+#[test]
+fn a_pitchfork_is_a_branch_point() {
+    let fork = Line(|x: f64, p: f64| {
+        Some([
+            p * x * x / 2.0 + x.powi(4) / 4.0,
+            p * x + x.powi(3),
+            p + 3.0 * x * x,
+            x,
+        ])
+    });
+    // Along x = 0, the only eigenvalue is p.
+    let branch = continuation(&fork, &0.0, &[], 1.0, -1.0, &Track::between(1.0, -1.0)).unwrap();
+    assert_eq!(branch.end, End::Reached);
+    let [special] = branch.specials.as_slice() else {
+        panic!("{:?}", branch.specials)
+    };
+    assert!(
+        special.event
+            == Event::BranchPoint {
+                before: 0,
+                after: 1
+            }
+            && special.located
+    );
+    assert!(
+        special.at.p.abs() < 1e-14 && special.at.state == 0.0,
+        "{special:?}"
+    );
+    assert!(
+        branch
+            .points
+            .last()
+            .is_some_and(|last| last.p == -1.0 && last.state == 0.0)
+    );
+    // Along x^2 = -p, the branch turns at p = 0 without a change of stability.
+    let branch = continuation(&fork, &1.0, &[], -1.0, 1.0, &Track::between(-1.0, 1.0)).unwrap();
+    for x in &branch.points {
+        println!(
+            "{} {} {} {:?}",
+            x.p, x.state, x.slope, x.variation.eigenvalues
+        );
+    }
+    println!("{:?}", branch.specials);
+    assert_eq!(branch.end, End::Returned);
+    assert!(
+        branch
+            .specials
+            .iter()
+            .all(|special| special.event == Event::Fold && special.at.p.abs() < 1e-4)
+    );
+    assert!(
+        branch.specials.len() == 1 && (branch.points.last().unwrap().state + 1.0).abs() < 1e-12
+    );
+}
+
+#[test]
+fn an_imperfect_pitchfork_has_no_branch_point() {
+    let fork = Line(|x: f64, p: f64| Some([0.0, p * x + x.powi(3) - 0.1, p + 3.0 * x * x, x]));
+    let branch = continuation(&fork, &0.1, &[], 1.0, -1.0, &Track::between(1.0, -1.0)).unwrap();
+    assert!(
+        branch.end == End::Reached && branch.specials.is_empty(),
+        "{:?}",
+        branch.specials
+    );
+    // The other branch has a fold at p = -3 (0.1 / 2)^(2/3).
+    let branch = continuation(&fork, &-0.94, &[], -1.0, 1.0, &Track::between(-1.0, 1.0)).unwrap();
+    assert!(branch.end == End::Returned && branch.specials.len() == 1);
+    let truth = -3.0 * 0.05_f64.powf(2.0 / 3.0);
+    assert!(
+        (branch.specials[0].at.p - truth).abs() < 1e-12,
+        "{:?}",
+        branch.specials
+    );
+}
+
+#[test]
+fn long_steps_do_not_jump_to_a_near_branch() {
+    // The branch turns sharply near p = 0, at a distance of about 0.1 from the other branch.
+    let fork = Line(|x: f64, p: f64| Some([0.0, p * x + x.powi(3) - 1e-3, p + 3.0 * x * x, x]));
+    let track = Track {
+        first: 1.5,
+        largest: 1.5,
+        ..Track::between(1.0, -1.0)
+    };
+    let branch = continuation(&fork, &1e-3, &[], 1.0, -1.0, &track).unwrap();
+    assert!(
+        branch.end == End::Reached && branch.specials.is_empty(),
+        "{:?}",
+        branch.specials
+    );
+    assert!(
+        branch
+            .points
+            .iter()
+            .all(|point| point.state > 0.0 && point.slope < 0.0)
+    );
+    assert!(branch.points.last().unwrap().state > 0.99);
+}
+
+#[test]
+fn an_axis_of_inertia_loses_its_place() {
+    // The second axis is the middle one for p > 1, and the shortest for p < 1.
+    let body = Body {
+        inertia: [1.0, 0.0, 3.0],
+        symmetric: false,
+    };
+    let branch = continuation(
+        &body,
+        &Vector3::y(),
+        &[0.5],
+        2.0,
+        0.5,
+        &Track::between(2.0, 0.5),
+    )
+    .unwrap();
+    assert_eq!(branch.end, End::Reached);
+    let [special] = branch.specials.as_slice() else {
+        panic!("{:?}", branch.specials)
+    };
+    assert!(
+        special.event
+            == Event::BranchPoint {
+                before: 1,
+                after: 2
+            }
+            && special.located
+    );
+    assert!((special.at.p - 1.0).abs() < 1e-13, "{special:?}");
+    let verdicts: Vec<Definiteness> = [0, branch.points.len() - 1]
+        .map(|i| branch.points[i].variation.definiteness)
+        .to_vec();
+    assert_eq!(
+        verdicts,
+        [
+            Definiteness::Saddle {
+                negative: 1,
+                positive: 1
+            },
+            Definiteness::Maximum
+        ]
+    );
+}
+
+/// H = |p|^2 / 2 + |q|^4 / 4 in the plane with angular momentum equal to the parameter.
+struct Central;
+
+impl Energy for Central {
+    type State = Vec<f64>;
+    type Error = Undefined;
+
+    fn dimension(&self) -> usize {
+        4
+    }
+
+    fn constraints(&self) -> usize {
+        1
+    }
+
+    fn first(&self, at: &Vec<f64>, l: f64) -> Result<First, Undefined> {
+        let [x, y, p, q] = [at[0], at[1], at[2], at[3]];
+        let square = x * x + y * y;
+        Ok(First {
+            energy: (p * p + q * q) / 2.0 + square * square / 4.0,
+            gradient: DVector::from_vec(vec![square * x, square * y, p, q]),
+            conserved: DVector::from_element(1, x * q - y * p - l),
+            gradients: DMatrix::from_row_slice(1, 4, &[q, -p, -y, x]),
+        })
+    }
+
+    fn second(
+        &self,
+        at: &Vec<f64>,
+        _: f64,
+        multipliers: &[f64],
+    ) -> Result<DMatrix<f64>, Undefined> {
+        let (x, y, w) = (at[0], at[1], multipliers[0]);
+        let (a, b, c) = (3.0 * x * x + y * y, 2.0 * x * y, x * x + 3.0 * y * y);
+        Ok(DMatrix::from_row_slice(
+            4,
+            4,
+            &[
+                a, b, 0.0, w, b, c, -w, 0.0, 0.0, -w, 1.0, 0.0, w, 0.0, 0.0, 1.0,
+            ],
+        ))
+    }
+
+    fn in_parameter(
+        &self,
+        _: &Vec<f64>,
+        _: f64,
+        _: &[f64],
+    ) -> Result<(DVector<f64>, DVector<f64>), Undefined> {
+        Ok((DVector::zeros(4), DVector::from_element(1, -1.0)))
+    }
+
+    fn moved(&self, at: &Vec<f64>, by: &[f64]) -> Vec<f64> {
+        at.iter().zip(by).map(|(x, y)| x + y).collect()
+    }
+
+    fn difference(&self, from: &Vec<f64>, to: &Vec<f64>) -> Vec<f64> {
+        to.iter().zip(from).map(|(x, y)| x - y).collect()
+    }
+
+    fn symmetries(&self, at: &Vec<f64>) -> DMatrix<f64> {
+        DMatrix::from_column_slice(4, 1, &[-at[1], at[0], -at[3], at[2]])
+    }
+}
+
+#[test]
+fn circular_orbits_grow_with_angular_momentum() {
+    let start = vec![0.8, 0.6, -0.55, 0.85];
+    let branch = continuation(
+        &Central,
+        &start,
+        &[0.0],
+        1.0,
+        8.0,
+        &Track::between(1.0, 8.0),
+    )
+    .unwrap();
+    assert!(branch.end == End::Reached && branch.specials.is_empty());
+    for point in &branch.points {
+        // A circle of radius r has frequency r and angular momentum r^3.
+        let r = point.state[0].hypot(point.state[1]);
+        assert!((r - point.p.cbrt()).abs() < 1e-12, "{point:?}");
+        assert!((point.multipliers[0] + r).abs() < 1e-12);
+        assert_eq!(
+            (point.variation.definiteness, point.variation.symmetric),
+            (Definiteness::Minimum, 1)
+        );
+    }
+}
+
+#[test]
+fn a_branch_that_ends_is_named() {
+    let ends = Line(|x: f64, p: f64| (p < 0.5).then_some([0.0, x - p, 1.0, -1.0]));
+    let error = continuation(&ends, &0.0, &[], 0.0, 1.0, &Track::between(0.0, 1.0)).unwrap_err();
+    assert!(
+        matches!(error, ContinuationError::Stalled { p, .. } if p > 0.499_999 && p < 0.5),
+        "{error}"
+    );
+    let none = Line(|x: f64, _: f64| Some([x.exp(), x.exp(), x.exp(), 0.0]));
+    let mut track = Track::between(0.0, 1.0);
+    track.search.iterations = 5;
+    let error = continuation(&none, &0.0, &[], 0.0, 1.0, &track).unwrap_err();
+    assert!(matches!(error, ContinuationError::Start(_)), "{error}");
+}

@@ -1,0 +1,276 @@
+//! Relative equilibria with known verdicts.
+
+use crate::systems::{Line, Undefined};
+use clebsch_analysis::{Definiteness, Energy, EquilibriumError, First, Search, equilibrium};
+use nalgebra::{DMatrix, DVector, Vector3};
+
+/// The kinetic energy of a free rigid body as a function of its momentum in R^3, with |m|^2 / 2 fixed. The parameter is
+/// the second moment of inertia.
+pub struct Body {
+    pub inertia: [f64; 3],
+    /// Whether rotations about the third axis count as symmetries.
+    pub symmetric: bool,
+}
+
+impl Body {
+    fn inverse(&self, p: f64) -> DVector<f64> {
+        DVector::from_vec(vec![1.0 / self.inertia[0], 1.0 / p, 1.0 / self.inertia[2]])
+    }
+}
+
+impl Energy for Body {
+    type State = Vector3<f64>;
+    type Error = Undefined;
+
+    fn dimension(&self) -> usize {
+        3
+    }
+
+    fn constraints(&self) -> usize {
+        1
+    }
+
+    fn first(&self, at: &Vector3<f64>, p: f64) -> Result<First, Undefined> {
+        let m = DVector::from_column_slice(at.as_slice());
+        let gradient = self.inverse(p).component_mul(&m);
+        Ok(First {
+            energy: gradient.dot(&m) / 2.0,
+            gradient,
+            conserved: DVector::from_element(1, m.norm_squared() / 2.0),
+            gradients: DMatrix::from_rows(&[m.transpose()]),
+        })
+    }
+
+    fn second(
+        &self,
+        _: &Vector3<f64>,
+        p: f64,
+        multipliers: &[f64],
+    ) -> Result<DMatrix<f64>, Undefined> {
+        Ok(DMatrix::from_diagonal(
+            &self.inverse(p).add_scalar(multipliers[0]),
+        ))
+    }
+
+    fn in_parameter(
+        &self,
+        at: &Vector3<f64>,
+        p: f64,
+        _: &[f64],
+    ) -> Result<(DVector<f64>, DVector<f64>), Undefined> {
+        Ok((
+            DVector::from_vec(vec![0.0, -at.y / (p * p), 0.0]),
+            DVector::zeros(1),
+        ))
+    }
+
+    fn moved(&self, at: &Vector3<f64>, by: &[f64]) -> Vector3<f64> {
+        at + Vector3::new(by[0], by[1], by[2])
+    }
+
+    fn difference(&self, from: &Vector3<f64>, to: &Vector3<f64>) -> Vec<f64> {
+        (to - from).as_slice().to_vec()
+    }
+
+    fn symmetries(&self, at: &Vector3<f64>) -> DMatrix<f64> {
+        let turn = Vector3::z().cross(at);
+        DMatrix::from_column_slice(3, 1, turn.as_slice())
+            .columns(0, usize::from(self.symmetric))
+            .into_owned()
+    }
+}
+
+#[test]
+fn axes_of_a_rigid_body() {
+    let body = Body {
+        inertia: [1.0, 2.0, 3.0],
+        symmetric: false,
+    };
+    let verdicts = [
+        Definiteness::Maximum,
+        Definiteness::Saddle {
+            negative: 1,
+            positive: 1,
+        },
+        Definiteness::Minimum,
+    ];
+    for axis in 0..3 {
+        let mut start = Vector3::new(0.1, -0.05, 0.08);
+        start[axis] = 0.9;
+        let found = equilibrium(&body, &start, &[0.5], 2.0, &Search::default()).unwrap();
+        let mut truth = Vector3::zeros();
+        truth[axis] = 1.0;
+        // A residual of a few roundings, over the smallest difference of inverse inertias, 1/6.
+        assert!((found.state - truth).norm() < 1e-14, "{:?}", found.state);
+        // The multiplier is minus the angular velocity over the momentum.
+        assert!((found.multipliers[0] + 1.0 / body.inertia[axis]).abs() < 1e-14);
+        assert_eq!(found.variation.definiteness, verdicts[axis]);
+        assert_eq!(found.variation.definiteness.is_definite(), axis != 1);
+        let mut eigenvalues: Vec<f64> = (0..3)
+            .filter(|&i| i != axis)
+            .map(|i| 1.0 / body.inertia[i] - 1.0 / body.inertia[axis])
+            .collect();
+        eigenvalues.sort_by(f64::total_cmp);
+        let pairs = eigenvalues.iter().zip(&found.variation.eigenvalues);
+        assert!(
+            pairs.clone().count() == 2 && pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-13)
+        );
+        assert!((found.energy - 0.5 / body.inertia[axis]).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn equator_of_a_symmetric_body() {
+    // All directions on the equator are equilibria. They are one orbit of rotations about the axis.
+    for symmetric in [false, true] {
+        let body = Body {
+            inertia: [1.0, 1.0, 3.0],
+            symmetric,
+        };
+        let start = Vector3::new(0.5, 0.8, 0.2);
+        let found = equilibrium(&body, &start, &[0.5], 1.0, &Search::default()).unwrap();
+        assert!(found.state.z.abs() < 1e-14 && (found.state.norm() - 1.0).abs() < 1e-14);
+        // Steps of least norm do not turn along the equator.
+        assert!((found.state.y / found.state.x - 1.6).abs() < 1e-9);
+        let (verdict, null) = match symmetric {
+            true => (Definiteness::Maximum, 1),
+            false => (
+                Definiteness::Degenerate {
+                    null: 1,
+                    negative: 1,
+                    positive: 0,
+                },
+                0,
+            ),
+        };
+        assert_eq!(
+            (found.variation.definiteness, found.variation.symmetric),
+            (verdict, null)
+        );
+    }
+}
+
+/// The same energy on the unit sphere, in the chart that scales m + b1 e1 + b2 e2 to length 1.
+struct Sphere;
+
+impl Sphere {
+    fn frame(m: &Vector3<f64>) -> [Vector3<f64>; 2] {
+        let aside = if m.x.abs() < 0.6 {
+            Vector3::x()
+        } else {
+            Vector3::y()
+        };
+        let first = m.cross(&aside).normalize();
+        [first, m.cross(&first)]
+    }
+
+    fn gradient(m: &Vector3<f64>) -> Vector3<f64> {
+        m.component_div(&Vector3::new(1.0, 2.0, 3.0))
+    }
+}
+
+impl Energy for Sphere {
+    type State = Vector3<f64>;
+    type Error = Undefined;
+
+    fn dimension(&self) -> usize {
+        2
+    }
+
+    fn constraints(&self) -> usize {
+        0
+    }
+
+    fn first(&self, at: &Vector3<f64>, _: f64) -> Result<First, Undefined> {
+        let gradient = Self::gradient(at);
+        Ok(First {
+            energy: gradient.dot(at) / 2.0,
+            gradient: DVector::from_iterator(2, Self::frame(at).iter().map(|e| e.dot(&gradient))),
+            conserved: DVector::zeros(0),
+            gradients: DMatrix::zeros(0, 2),
+        })
+    }
+
+    fn second(&self, at: &Vector3<f64>, _: f64, _: &[f64]) -> Result<DMatrix<f64>, Undefined> {
+        let frame = Self::frame(at);
+        let radial = Self::gradient(at).dot(at);
+        Ok(DMatrix::from_fn(2, 2, |i, j| {
+            frame[i].dot(&Self::gradient(&frame[j])) - if i == j { radial } else { 0.0 }
+        }))
+    }
+
+    fn in_parameter(
+        &self,
+        _: &Vector3<f64>,
+        _: f64,
+        _: &[f64],
+    ) -> Result<(DVector<f64>, DVector<f64>), Undefined> {
+        Ok((DVector::zeros(2), DVector::zeros(0)))
+    }
+
+    fn moved(&self, at: &Vector3<f64>, by: &[f64]) -> Vector3<f64> {
+        let [first, second] = Self::frame(at);
+        (at + by[0] * first + by[1] * second).normalize()
+    }
+
+    fn difference(&self, from: &Vector3<f64>, to: &Vector3<f64>) -> Vec<f64> {
+        let scaled = to / to.dot(from);
+        Self::frame(from).iter().map(|e| e.dot(&scaled)).collect()
+    }
+}
+
+#[test]
+fn a_manifold_without_conserved_quantities() {
+    let cases = [
+        (Vector3::new(0.9, 0.1, 0.1), Definiteness::Maximum),
+        (
+            Vector3::new(0.1, 0.9, 0.1),
+            Definiteness::Saddle {
+                negative: 1,
+                positive: 1,
+            },
+        ),
+        (Vector3::new(0.1, 0.1, 0.9), Definiteness::Minimum),
+    ];
+    for (start, verdict) in cases {
+        let found = equilibrium(&Sphere, &start.normalize(), &[], 0.0, &Search::default()).unwrap();
+        assert_eq!(found.variation.definiteness, verdict);
+        assert!(
+            found.residual < 1e-15 && found.iterations <= 6,
+            "{} {}",
+            found.residual,
+            found.iterations
+        );
+        assert!((found.state.amax() - 1.0).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn values_that_cannot_be_reached() {
+    let body = Body {
+        inertia: [1.0, 2.0, 3.0],
+        symmetric: false,
+    };
+    let start = Vector3::new(0.3, 0.4, 0.5);
+    let error = equilibrium(&body, &start, &[-0.5], 2.0, &Search::default()).unwrap_err();
+    let EquilibriumError::NoConvergence {
+        residual, stopped, ..
+    } = &error
+    else {
+        panic!("{error}")
+    };
+    // |m|^2 / 2 + 1/2 is at least 1/2.
+    assert!(*residual >= 0.5 && stopped.len() == 3, "{error}");
+}
+
+#[test]
+fn damping_where_full_steps_diverge() {
+    // Newton's method for arctan x = 0 diverges from |x| > 1.4.
+    let energy = Line(|x: f64, _: f64| Some([0.0, x.atan(), 1.0 / (1.0 + x * x), 0.0]));
+    let found = equilibrium(&energy, &10.0, &[], 0.0, &Search::default()).unwrap();
+    assert!(found.state.abs() < 1e-15 && found.variation.definiteness == Definiteness::Minimum);
+    // A trial state without an energy shortens the step as well.
+    let energy = Line(|x: f64, _: f64| (x > 0.0).then(|| [0.0, 1.0 - 1.0 / x, 1.0 / (x * x), 0.0]));
+    let found = equilibrium(&energy, &30.0, &[], 0.0, &Search::default()).unwrap();
+    assert!((found.state - 1.0).abs() < 1e-15, "{}", found.state);
+}
