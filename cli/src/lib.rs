@@ -28,7 +28,7 @@ pub use terminal::{Streams, failure};
 use clap::ArgMatches;
 use clebsch_interpret::Cache;
 use commands::{check, compare, converge, derive, figures, list, new, plot, run, show, sweep};
-use commands::{equilibrium, gradient, linearise, lyapunov, orbit, section};
+use commands::{equilibrium, fit, gradient, linearise, lyapunov, orbit, section};
 use failure::{DONE, FAILED, Failure, USAGE};
 use gallery::Gallery;
 use std::ffi::OsString;
@@ -152,6 +152,7 @@ fn dispatch(
         Some(("linearise", matches)) => linearise::linearise(gallery, matches, streams),
         Some(("equilibrium", matches)) => equilibrium::equilibrium(gallery, matches, streams),
         Some(("orbit", matches)) => orbit::orbit(gallery, matches, streams),
+        Some(("fit", matches)) => fit::fit(gallery, matches, streams),
         Some(("lyapunov", matches)) => lyapunov::lyapunov(gallery, matches, streams),
         Some(("section", matches)) => section::section(gallery, matches, streams),
         Some(("plot", matches)) => plot::plot(matches, streams),

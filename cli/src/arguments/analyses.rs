@@ -1,5 +1,6 @@
 //! The commands that differentiate a case: `gradient`, `linearise`,
-//! `equilibrium`, `orbit`, `section` and `lyapunov`. Takes nothing; gives their clap commands.
+//! `equilibrium`, `orbit`, `section`, `lyapunov` and
+//! `fit`. Takes nothing; gives their clap commands.
 
 use super::of_a_case::of_a_case;
 use super::option::{flag, json, option, positive_count, positive_number};
@@ -109,8 +110,7 @@ pub(super) fn linearise() -> Command {
                  shows the modes of the step, and of the continuous system by extrapolation to small steps.",
             )
             .after_help(
-                "Examples:\n  clebsch linearise hanging-chain --out out/modes\n  clebsch linearise spherical-pendulum --set \
-                 'momentum=[0,0,0]'",
+                "Examples:\n  clebsch linearise toda-chain --out out/modes\n  clebsch linearise my-chain.clebsch:at-rest",
             ),
         "Write linearise.csv, linearise.json and, for chains, modes.svg into this new folder",
     )
@@ -127,8 +127,8 @@ pub(super) fn equilibrium() -> Command {
                  differences; all others are exact.",
             )
             .after_help(
-                "Examples:\n  clebsch equilibrium free-body:steady-rotation\n  clebsch equilibrium spherical-pendulum --fix none\n  \
-                 clebsch equilibrium heavy-top --continue gU.3=1:4 --out out/branch",
+                "Examples:\n  clebsch equilibrium free-body:steady-rotation\n  clebsch equilibrium my-model.clebsch --fix none\n  \
+                 clebsch equilibrium heavy-top --continue gU.3=0.2:1 --out out/branch",
             ),
         "Write equilibrium.json and, with --continue, branch.csv and branch.svg into this new folder",
     )
@@ -136,7 +136,7 @@ pub(super) fn equilibrium() -> Command {
         "fix",
         "NAME,...",
         "Fixed quantities: invariants such as spatial_momentum or spatial_momentum.3, initial values such as body_momentum.3, all \
-         (exact invariants) or none. By default the exact invariants that are not zero. Constraints are always fixed",
+         (exact invariants) or none. By default the independent exact invariants that are not zero",
     ))
     .arg(option(
         "continue",
@@ -169,4 +169,40 @@ pub(super) fn orbit() -> Command {
             .value_parser(value_parser!(std::path::PathBuf)),
     )
     .arg(json())
+}
+
+pub(super) fn fit() -> Command {
+    analysed(
+        Command::new("fit")
+            .about("Fit parameters and initial values of a case to data, with standard errors")
+            .long_about(
+                "Fit parameters and initial values of a case to data, with standard errors.\n\n\
+                 The sum of squares of all differences is minimised by the method of Levenberg and Marquardt with exact \
+                 derivatives. The start is the case. All data have the same weight, and momenta are held fixed unless you vary \
+                 them.",
+            )
+            .after_help(
+                "Examples:\n  clebsch fit kepler --data orbit.csv --vary k,initial:momentum\n  clebsch fit heavy-top --data top.csv \
+                 --vary J.11,J.22,initial:body_momentum --columns Gamma_1,Gamma_3 --out out/fit",
+            ),
+        "Write fit.csv, fit.json and fit.svg into this new folder",
+    )
+    .arg(
+        option(
+            "data",
+            "FILE",
+            "CSV or npz file with a column `t` or `time` and columns named as in trajectory.csv; empty cells have no data",
+        )
+        .required(true)
+        .value_parser(value_parser!(std::path::PathBuf)),
+    )
+    .arg(
+        option(
+            "vary",
+            "NAME,...",
+            "Parameters such as k or J.11, and initial values such as initial:momentum",
+        )
+        .required(true),
+    )
+    .arg(option("columns", "NAME,...", "Columns of the data to use, by default all"))
 }

@@ -99,6 +99,7 @@ pub fn command(width: Option<usize>) -> Command {
         .subcommand(analyses::orbit())
         .subcommand(analyses::section())
         .subcommand(analyses::lyapunov())
+        .subcommand(analyses::fit())
         .subcommand(prints::plot())
         .subcommand(prints::figures())
         .subcommand(prints::derive())

@@ -44,15 +44,7 @@ impl Cost for Observed<'_> {
         }
         let all = [seen.observables, seen.invariants].concat();
         self.value += self.of.value(&all);
-        for (at, slope) in self.of.slopes(&all) {
-            let place = match at.checked_sub(weights.len()) {
-                None => weights.get_mut(at),
-                Some(at) => of_invariants.get_mut(at),
-            };
-            if let Some(place) = place {
-                *place += slope;
-            }
-        }
+        self.of.weigh(&all, weights, of_invariants);
     }
 }
 

@@ -6,6 +6,7 @@ pub(crate) mod converge;
 pub mod derive;
 pub(crate) mod equilibrium;
 pub(crate) mod figures;
+pub(crate) mod fit;
 pub(crate) mod gradient;
 pub(crate) mod linearise;
 pub(crate) mod list;

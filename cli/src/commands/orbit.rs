@@ -10,7 +10,7 @@ use crate::terminal::Streams;
 use crate::terminal::failure::{DONE, Failure};
 use crate::terminal::waiting::Waiting;
 use crate::words::columns::aligned;
-use crate::words::number::{plain, short};
+use crate::words::number::{decimals, plain, short};
 use crate::words::plain::shown;
 use crate::words::width::paragraph;
 use clap::ArgMatches;
@@ -150,9 +150,9 @@ fn multipliers(found: &Orbit<State>, width: Option<usize>) -> String {
     for (i, (z, error)) in all.into_iter().enumerate() {
         rows.push(vec![
             (i + 1).to_string(),
-            format!("{:.9}", z.re),
-            format!("{:.9}", z.im),
-            format!("{:.9}", z.norm()),
+            decimals(z.re, 9),
+            decimals(z.im, 9),
+            decimals(z.norm(), 9),
             format!("{error:.1e}"),
         ]);
     }

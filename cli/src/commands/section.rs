@@ -14,7 +14,7 @@ use crate::terminal::Streams;
 use crate::terminal::failure::{DONE, Failure};
 use crate::terminal::waiting::Waiting;
 use crate::words::columns::aligned;
-use crate::words::number::{plain, short};
+use crate::words::number::{decimals, plain, short};
 use crate::words::width::paragraph;
 use clap::ArgMatches;
 use clebsch::scalar::largest;
@@ -168,7 +168,9 @@ fn chosen(matches: &ArgMatches, problem: &Problem) -> Result<Option<[Expression;
 fn two_that_vary(problem: &Problem, rows: &[Row]) -> Result<[Expression; 2], Failure> {
     let names = coordinates::seen(&problem.card);
     let observables = problem.card.observable_count();
-    let numbers = rows.iter().flat_map(|row| row.seen.iter().take(observables));
+    let numbers = rows
+        .iter()
+        .flat_map(|row| row.seen.iter().take(observables));
     let size = largest(numbers.map(|x| x.abs()));
     let varies = |at: usize| {
         let own = || rows.iter().filter_map(|row| row.seen.get(at).copied());
@@ -202,21 +204,12 @@ fn table(rows: &[Row], [x, y]: [&Expression; 2], width: Option<usize>) -> String
             format!("{:.9}", row.time),
             before.map_or_else(|| "-".to_owned(), |t| format!("{:.9}", row.time - t)),
             if row.upward { "up" } else { "down" }.to_owned(),
-            nine(x.value(&row.seen)),
-            nine(y.value(&row.seen)),
+            decimals(x.value(&row.seen), 9),
+            decimals(y.value(&row.seen), 9),
         ]);
         before = Some(row.time);
     }
     aligned(&all, &[0, 1, 2, 4, 5], width)
-}
-
-/// Nine decimals, without the sign of zero.
-fn nine(x: f64) -> String {
-    let text = format!("{x:.9}");
-    match text.trim_start_matches(['-', '0', '.']).is_empty() {
-        true => text.trim_start_matches('-').to_owned(),
-        false => text,
-    }
 }
 
 fn object(

@@ -2,6 +2,7 @@
 //! tables write them.
 
 use crate::words::columns::aligned;
+use crate::words::number::decimals;
 use clebsch::card::{Card, Field, Kind};
 use clebsch::derivatives::Gradient;
 
@@ -83,6 +84,9 @@ pub(crate) fn seen(card: &Card) -> Vec<String> {
     clebsch::record::columns(card)
 }
 
+/// The rows of such a table, at most.
+const SHOWN: usize = 24;
+
 /// A table of initial values before and after, entry by entry.
 pub(crate) fn compared(
     card: &Card,
@@ -94,12 +98,15 @@ pub(crate) fn compared(
     for ((field, before), after) in card.initial.iter().zip(before).zip(after) {
         for entry in entries(field) {
             let place = entry.places.first().map_or(0, |(place, _)| *place);
-            let number = |of: &[f64]| {
-                of.get(place)
-                    .map_or_else(String::new, |x| format!("{x:.12}"))
-            };
+            let number = |of: &[f64]| of.get(place).map_or_else(String::new, |x| decimals(*x, 12));
             rows.push(vec![entry.name, number(before), number(after)]);
         }
     }
-    aligned(&rows, &[1, 2], width)
+    let more = rows.len().saturating_sub(SHOWN + 1);
+    rows.truncate(SHOWN + 1);
+    let table = aligned(&rows, &[1, 2], width);
+    match more {
+        0 => table,
+        more => format!("{table}... and {more} more, which --json gives\n"),
+    }
 }

@@ -2,11 +2,14 @@
 //! components of invariants, and initial values.
 
 use crate::derivatives::coordinates::{self, turns};
+use crate::derivatives::flow::{Steps, matrix};
 use crate::derivatives::problem::Problem;
 use crate::terminal::failure::Failure;
 use crate::words::plain::shown;
 use crate::words::suggestion::did_you_mean;
 use clebsch::card::{Card, Conserved};
+use clebsch::nalgebra::DVector;
+use clebsch_analysis::Flow;
 
 /// A fixed quantity.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,17 +50,13 @@ fn components(card: &Card) -> impl Iterator<Item = (&'static str, String, bool)>
     })
 }
 
-/// Whether an invariant is a constraint of the model, which defines its states.
-fn is_constraint(name: &str) -> bool {
-    name.starts_with("constraint_")
-}
-
 /// The quantities that `--fix` names. `values` are the invariants at the start.
 ///
 /// # Errors
 /// Usage: a name is not known.
 pub(crate) fn fixed(
     problem: &Problem,
+    steps: &Steps,
     option: Option<&str>,
     values: &[f64],
     dimensions: &[usize],
@@ -80,16 +79,20 @@ pub(crate) fn fixed(
             .is_none_or(|x| x.abs() <= ZERO * largest.max(1.0))
     };
     let Some(option) = option else {
-        return Ok(choose(&|i, name, exact| {
-            exact && (is_constraint(name) || !is_zero(i))
-        }));
+        // All components of an invariant, if one is not zero.
+        let moves = |name: &str| {
+            let mut own = all.iter().enumerate();
+            own.any(|(i, (whole, ..))| *whole == name && !is_zero(i))
+        };
+        let candidates = choose(&|_, name, exact| exact && moves(name));
+        return Ok(independent(steps, candidates, energy(card)));
     };
     match option.trim() {
-        "none" => return Ok(choose(&|_, name, _| is_constraint(name))),
+        "none" => return Ok(Vec::new()),
         "all" => return Ok(choose(&|_, _, exact| exact)),
         _ => {}
     }
-    let mut found = choose(&|_, name, _| is_constraint(name));
+    let mut found = Vec::new();
     let locals = coordinates::local(card, dimensions);
     let moves = card.initial.iter().zip(dimensions);
     let plain: Vec<bool> = moves
@@ -102,7 +105,7 @@ pub(crate) fn fixed(
         let coordinate = locals.iter().position(|own| own == name);
         let coordinate = coordinate.filter(|at| plain.get(*at) == Some(&true));
         match (own.is_empty(), coordinate) {
-            (false, _) => found.extend(own.into_iter().filter(|f| !is_constraint(&f.name))),
+            (false, _) => found.extend(own),
             (true, Some(at)) => found.push(Fixed {
                 name: name.to_owned(),
                 place: Place::Coordinate(at),
@@ -121,4 +124,60 @@ pub(crate) fn fixed(
         }
     }
     Ok(found)
+}
+
+/// The size of the displacement to a state without special properties.
+const NEARBY: f64 = 0.1;
+
+/// A gradient within this part of itself of the span of others depends on them.
+const DEPENDENT: f64 = 1e-8;
+
+/// The quantities whose gradients are independent of those before them, and do not have the gradient of the energy in
+/// their span. With such a quantity, every state would be a critical point.
+fn independent(steps: &Steps, candidates: Vec<Fixed>, energy: Option<usize>) -> Vec<Fixed> {
+    let by = |i: usize| NEARBY * (1.0 + 1.618 * (i + 1) as f64).sin();
+    let by: Vec<f64> = (0..steps.dimension()).map(by).collect();
+    let near = steps.moved(&steps.start(), &by);
+    let Ok(slopes) = near.and_then(|near| steps.with(|own| own.conserved(&near))) else {
+        return candidates;
+    };
+    let slopes = matrix(&slopes);
+    let row = |at: usize| -> Option<DVector<f64>> {
+        (at < slopes.nrows()).then(|| slopes.row(at).transpose())
+    };
+    let energy = energy.and_then(row);
+    // An orthonormal basis of the gradients.
+    let mut basis: Vec<DVector<f64>> = Vec::new();
+    let mut kept = Vec::new();
+    for own in candidates {
+        let Place::Invariant(at) = own.place else {
+            continue;
+        };
+        let Some(gradient) = row(at) else { continue };
+        let rest = outside(&basis, &gradient);
+        if rest.norm() <= DEPENDENT * gradient.norm().max(f64::MIN_POSITIVE) {
+            continue;
+        }
+        basis.push(rest.normalize());
+        let spans = energy
+            .as_ref()
+            .is_some_and(|energy| outside(&basis, energy).norm() <= DEPENDENT * energy.norm());
+        match spans {
+            true => drop(basis.pop()),
+            false => kept.push(own),
+        }
+    }
+    kept
+}
+
+/// The part of a vector orthogonal to a basis.
+fn outside(basis: &[DVector<f64>], of: &DVector<f64>) -> DVector<f64> {
+    let mut rest = of.clone();
+    // The second pass removes rounding of the first.
+    for _ in 0..2 {
+        for own in basis {
+            rest.axpy(-own.dot(&rest), own, 1.0);
+        }
+    }
+    rest
 }

@@ -46,7 +46,7 @@ impl Problem {
             Some(_) => own,
             None => {
                 let _told = Waiting::showing("deriving the equations".to_owned(), streams.progress);
-                from_text(&own, gallery)?
+                from_text(&own, &plan, gallery)?
             }
         };
         Ok(Self { card, plan })
@@ -84,6 +84,18 @@ impl Problem {
     /// # Errors
     /// Failed: the model cannot be differentiated.
     pub fn steps(&self) -> Result<Steps, Failure> {
+        let constraint = self
+            .card
+            .invariants
+            .iter()
+            .find(|i| i.name.starts_with("constraint_"));
+        if let Some(constraint) = constraint {
+            return Err(Failure::Failed(format!(
+                "the states of model `{}` satisfy constraints (`{}`), and clebsch has no local coordinates of such states yet. Use \
+                 a model without constraints, or `clebsch gradient` and `clebsch section`, which work here",
+                self.card.kebab, constraint.name
+            )));
+        }
         let steps = Steps::new(self.open()?);
         // States of some models do not have coordinates.
         let seen = steps
@@ -152,17 +164,20 @@ impl Problem {
 }
 
 /// The card of a compiled model, read from its text.
-fn from_text(compiled: &Card, gallery: &Gallery) -> Result<Card, Failure> {
+fn from_text(compiled: &Card, plan: &Plan, gallery: &Gallery) -> Result<Card, Failure> {
     let no = |why: &dyn std::fmt::Display| {
         Failure::Failed(format!(
-            "model `{}` cannot be read from its text, which derivatives need: {why}",
+            "the text of model `{}`, which derivatives need, cannot be used: {why}",
             compiled.kebab
         ))
     };
-    let (card, _) = gallery
-        .cache
-        .card(compiled.source)
-        .map_err(|why| no(&why))?;
+    // Loops over sites have no derivatives, so that a chain is expanded.
+    if let Some(choice) = &plan.choice {
+        let read = clebsch_interpret::card_body_by_body(compiled.source, choice);
+        return read.map(|(card, _)| card).map_err(|why| no(&why));
+    }
+    let read = gallery.cache.card(compiled.source);
+    let (card, _) = read.map_err(|why| no(&why))?;
     let sizes: Vec<usize> = compiled.dimensions.iter().map(|d| d.value).collect();
     let same = card
         .dimensions

@@ -15,7 +15,7 @@ use crate::terminal::Streams;
 use crate::terminal::failure::{DONE, Failure};
 use crate::terminal::waiting::Waiting;
 use crate::words::columns::aligned;
-use crate::words::number::short;
+use crate::words::number::{decimals, short};
 use crate::words::width::paragraph;
 use clap::ArgMatches;
 use clebsch_analysis::{
@@ -43,7 +43,7 @@ pub(crate) fn equilibrium(
     let at_start = at_start.map_err(|why| problem.refused(&why))?;
     let option = matches.get_one::<String>("fix").map(String::as_str);
     let dimensions = flow.with(|own| own.dimensions());
-    let fixed = fixed::fixed(&problem, option, &at_start, &dimensions)?;
+    let fixed = fixed::fixed(&problem, &flow, option, &at_start, &dimensions)?;
     let continued = match matches.get_one::<String>("continue") {
         None => None,
         Some(text) => Some(branch::Request::read(text, &problem)?),
@@ -86,7 +86,7 @@ pub(crate) fn equilibrium(
     if !fixed.is_empty() {
         let mut rows = vec![["fixed", "multiplier"].map(str::to_owned).to_vec()];
         let pairs = fixed.iter().zip(found.multipliers.iter());
-        rows.extend(pairs.map(|(own, x)| vec![own.name.clone(), format!("{x:.9}")]));
+        rows.extend(pairs.map(|(own, x)| vec![own.name.clone(), decimals(*x, 9)]));
         out.write_all(aligned(&rows, &[1], streams.width).as_bytes())?;
         writeln!(out)?;
     }
@@ -145,9 +145,15 @@ fn verdict(variation: &Variation) -> String {
     match variation.definiteness {
         Definiteness::Minimum => "stable: the second variation is positive definite".to_owned(),
         Definiteness::Maximum => "stable: the second variation is negative definite".to_owned(),
+        // On a symplectic space, an odd number of negative directions means a real growth rate.
+        Definiteness::Saddle { negative, positive } if negative % 2 == 1 && positive % 2 == 1 => {
+            format!(
+                "unstable: the second variation has an odd number of negative directions ({negative} negative, {positive} positive)"
+            )
+        }
         Definiteness::Saddle { negative, positive } => format!(
-            "undecided: the second variation is indefinite ({negative} negative, {positive} positive directions); an odd number \
-             of negative directions means unstable, otherwise use `clebsch linearise` or `clebsch orbit`"
+            "undecided: the second variation is indefinite ({negative} negative, {positive} positive directions). Use `clebsch \
+             linearise` or `clebsch orbit`"
         ),
         Definiteness::Degenerate {
             null,

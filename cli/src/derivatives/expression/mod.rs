@@ -106,8 +106,21 @@ impl Expression {
         self.tree.dual(seen, &mut |_| None).0
     }
 
+    /// Adds its derivatives to the weights of observables and of invariants, as a cost of a run needs.
+    pub fn weigh(&self, seen: &[f64], weights: &mut [f64], of_invariants: &mut [f64]) {
+        for (at, slope) in self.slopes(seen) {
+            let place = match at.checked_sub(weights.len()) {
+                None => weights.get_mut(at),
+                Some(at) => of_invariants.get_mut(at),
+            };
+            if let Some(place) = place {
+                *place += slope;
+            }
+        }
+    }
+
     /// Its derivatives: the places of observables and invariants in it, with the derivative in each.
-    pub fn slopes(&self, seen: &[f64]) -> Vec<(usize, f64)> {
+    fn slopes(&self, seen: &[f64]) -> Vec<(usize, f64)> {
         let along = |at: usize| {
             let unit = &mut |own: usize| (own == at).then_some(1.0);
             (at, self.tree.dual(seen, unit).1)
