@@ -147,6 +147,34 @@ fn long_steps_do_not_jump_to_a_near_branch() {
 }
 
 #[test]
+fn long_steps_do_not_snap_through() {
+    // x^3 - x = p has three branches for |p| < 2 / sqrt(27). The outer two are stable.
+    let snap = Line(|x: f64, p: f64| Some([0.0, x.powi(3) - x - p, 3.0 * x * x - 1.0, -1.0]));
+    for first in [0.1, 0.5, 1.0, 2.0] {
+        let track = Track {
+            first,
+            largest: first,
+            ..Track::between(-1.0, 1.0)
+        };
+        let branch = continuation(&snap, &-1.3, &[], -1.0, 1.0, &track).unwrap();
+        assert_eq!(branch.end, End::Reached);
+        let folds: Vec<f64> = branch.specials.iter().map(|special| special.at.p).collect();
+        let truth = 2.0 / 27.0_f64.sqrt();
+        assert!(folds.len() == 2, "{first}: {folds:?}");
+        assert!(
+            (folds[0] - truth).abs() < 1e-13 && (folds[1] + truth).abs() < 1e-13,
+            "{folds:?}"
+        );
+        assert!(
+            branch
+                .specials
+                .iter()
+                .all(|special| special.event == Event::Fold && special.located)
+        );
+    }
+}
+
+#[test]
 fn an_axis_of_inertia_loses_its_place() {
     // The second axis is the middle one for p > 1, and the shortest for p < 1.
     let body = Body {
