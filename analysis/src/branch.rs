@@ -10,6 +10,7 @@ use crate::kkt::{Kkt, Point};
 use crate::newton::{Equations, Search};
 use crate::root::bracketed;
 use crate::singular::Singular;
+use crate::track::BranchPoint;
 use crate::variation::{Variation, variation};
 use nalgebra::{DMatrix, DVector};
 
@@ -93,6 +94,18 @@ impl<E: Energy> Stepper<'_, E> {
             residual: residual.norm(),
             iterations,
         })
+    }
+
+    /// What a user sees of a place.
+    pub fn branch_point(&self, of: &Place<E::State>) -> BranchPoint<E::State> {
+        BranchPoint {
+            p: of.point.p,
+            state: of.point.state.clone(),
+            multipliers: self.kkt.multipliers(&of.point),
+            residual: of.residual,
+            slope: of.slope(),
+            variation: of.variation.clone(),
+        }
     }
 
     /// The place at distance `s` along the branch, None if the step is too long.
