@@ -1,7 +1,7 @@
 //! Steps along a branch of critical points, by pseudo-arclength.
 //!
 //! A step predicts along the tangent of the branch. Newton's method corrects the prediction orthogonally to the tangent
-//! (Keller, *Applications of Bifurcation Theory*, 1977). The parameter is an unknown like the others, so that folds
+//! (Keller, in *Applications of Bifurcation Theory*, 1977). The parameter is an unknown like the others, so that folds
 //! need no special care.
 
 use crate::equilibrium::EquilibriumError;

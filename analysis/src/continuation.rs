@@ -12,8 +12,8 @@ use nalgebra::DVector;
 /// down to this part of the first step.
 const DOUBTFUL: f64 = 1e-4;
 
-/// The branch of critical points that begins near `start` at p = `a` and leads towards p = `b`, with fixed `values` of
-/// the m conserved quantities.
+/// The branch of critical points that begins near `start` at p = `a` and leads towards p = `b`. The m conserved
+/// quantities keep the given `values`.
 ///
 /// # Errors
 ///
