@@ -1,7 +1,7 @@
 //! Steps along a branch of critical points, by pseudo-arclength.
 //!
 //! A step predicts along the tangent of the branch. Newton's method corrects the prediction orthogonally to the tangent
-//! (Keller, *Applications of Bifurcation Theory*, 1977). The parameter is an unknown like the others, so that folds
+//! (Keller, in *Applications of Bifurcation Theory*, 1977). The parameter is an unknown like the others, so that folds
 //! need no special care.
 
 use crate::equilibrium::EquilibriumError;
@@ -10,6 +10,7 @@ use crate::kkt::{Kkt, Point};
 use crate::newton::{Equations, Search};
 use crate::root::bracketed;
 use crate::singular::Singular;
+use crate::track::BranchPoint;
 use crate::variation::{Variation, variation};
 use nalgebra::{DMatrix, DVector};
 
@@ -93,6 +94,18 @@ impl<E: Energy> Stepper<'_, E> {
             residual: residual.norm(),
             iterations,
         })
+    }
+
+    /// What a user sees of a place.
+    pub fn branch_point(&self, of: &Place<E::State>) -> BranchPoint<E::State> {
+        BranchPoint {
+            p: of.point.p,
+            state: of.point.state.clone(),
+            multipliers: self.kkt.multipliers(&of.point),
+            residual: of.residual,
+            slope: of.slope(),
+            variation: of.variation.clone(),
+        }
     }
 
     /// The place at distance `s` along the branch, None if the step is too long.

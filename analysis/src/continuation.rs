@@ -4,16 +4,16 @@ use crate::branch::{Place, Stepper};
 use crate::equilibrium::equilibrium;
 use crate::error::{self, Invalid};
 use crate::flow::Energy;
-use crate::kkt::{Kkt, Point};
-use crate::track::{Branch, BranchPoint, ContinuationError, End, Event, Special, Track};
+use crate::kkt::Kkt;
+use crate::track::{Branch, ContinuationError, End, Event, Special, Track};
 use nalgebra::DVector;
 
 /// An event that cannot be located may be a jump to another branch. The step is then repeated with half its length,
 /// down to this part of the first step.
 const DOUBTFUL: f64 = 1e-4;
 
-/// The branch of critical points that begins near `start` at p = `a` and leads towards p = `b`, with fixed `values` of
-/// the m conserved quantities.
+/// The branch of critical points that begins near `start` at p = `a` and leads towards p = `b`. The m conserved
+/// quantities keep the given `values`.
 ///
 /// # Errors
 ///
@@ -45,22 +45,19 @@ pub fn continuation<E: Energy>(
     error::number("points", track.points, usize::MAX)?;
     let first =
         equilibrium(energy, start, values, a, &track.search).map_err(ContinuationError::Start)?;
+    let (kkt, point) =
+        Kkt::new(energy, values, &first.state, a).map_err(ContinuationError::Start)?;
     let stepper = Stepper {
-        kkt: Kkt::new(energy, values)?,
+        kkt,
         search: track.search,
     };
     let mut along = DVector::zeros(stepper.kkt.size() + 1);
     along[stepper.kkt.size()] = (b - a).signum();
-    let point = Point {
-        state: first.state,
-        multipliers: first.multipliers,
-        p: a,
-    };
     let mut here = stepper
         .place(point, &along, 0)
         .map_err(ContinuationError::Start)?;
     let mut branch = Branch {
-        points: vec![branch_point(&here)],
+        points: vec![stepper.branch_point(&here)],
         specials: Vec::new(),
         end: End::Points,
     };
@@ -85,7 +82,7 @@ pub fn continuation<E: Energy>(
             continue;
         }
         branch.specials.extend(special);
-        branch.points.push(branch_point(&next));
+        branch.points.push(stepper.branch_point(&next));
         if let Some(end) = end {
             branch.end = end;
             break;
@@ -123,22 +120,6 @@ fn attempt<E: Energy>(
     located.then_some((place, length, Some(end)))
 }
 
-fn branch_point<S: Clone>(of: &Place<S>) -> BranchPoint<S> {
-    let Point {
-        state,
-        multipliers,
-        p,
-    } = of.point.clone();
-    BranchPoint {
-        p,
-        state,
-        multipliers,
-        residual: of.residual,
-        slope: of.slope(),
-        variation: of.variation.clone(),
-    }
-}
-
 /// The fold or branch point between two places at distance `s`.
 fn special<E: Energy>(
     stepper: &Stepper<'_, E>,
@@ -167,7 +148,7 @@ fn special<E: Energy>(
     Some(Special {
         event,
         after_point,
-        at: branch_point(&place),
+        at: stepper.branch_point(&place),
         located,
     })
 }

@@ -6,9 +6,8 @@
 
 use crate::error::{Invalid, clause};
 use crate::flow::Energy;
-use crate::kkt::{Kkt, Point};
+use crate::kkt::Kkt;
 use crate::newton::{Search, newton};
-use crate::singular::Singular;
 use crate::variation::{Variation, variation};
 use nalgebra::DVector;
 use std::{error::Error, fmt};
@@ -22,7 +21,9 @@ pub struct Equilibrium<S> {
     pub multipliers: DVector<f64>,
     /// The energy.
     pub energy: f64,
-    /// The norm of the equations: gradients and differences of conserved quantities together.
+    /// The norm of the equations: gradients and differences of conserved quantities together. The unit of energy is
+    /// the largest second derivative or force at the start. The unit of a conserved quantity is the norm of its
+    /// gradient there.
     pub residual: f64,
     /// The iterations of Newton's method.
     pub iterations: usize,
@@ -46,7 +47,7 @@ pub enum EquilibriumError<E> {
     NoConvergence {
         /// The parameter.
         p: f64,
-        /// The residual where it stopped.
+        /// The residual where it stopped, in the units of [`Equilibrium::residual`].
         residual: f64,
         /// The tolerance.
         tolerance: f64,
@@ -114,17 +115,7 @@ pub fn equilibrium<E: Energy>(
     search: &Search,
 ) -> Result<Equilibrium<E::State>, EquilibriumError<E::Error>> {
     search.check()?;
-    let kkt = Kkt::new(energy, values)?;
-    crate::error::finite("parameter", &[p])?;
-    let first = kkt.first(start, p)?;
-    // The multipliers that come closest to balancing the gradient.
-    let multipliers =
-        -Singular::new(&first.gradients.transpose()).solve(&first.gradient, search.rank, 0.0);
-    let point = Point {
-        state: start.clone(),
-        multipliers,
-        p,
-    };
+    let (kkt, point) = Kkt::new(energy, values, start, p)?;
     let ended = newton(&kkt, point, search)?;
     if !ended.converged {
         return Err(EquilibriumError::NoConvergence {
@@ -138,11 +129,9 @@ pub fn equilibrium<E: Energy>(
     }
     let variation = variation(&kkt, &ended.state)?;
     let energy = kkt.first(&ended.state.state, p)?.energy;
-    let Point {
-        state, multipliers, ..
-    } = ended.state;
+    let multipliers = kkt.multipliers(&ended.state);
     Ok(Equilibrium {
-        state,
+        state: ended.state.state,
         multipliers,
         energy,
         residual: ended.residual,

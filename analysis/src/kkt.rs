@@ -1,12 +1,13 @@
 //! The equations of a critical point at fixed conserved quantities: dE + sum of lambda_i dC_i = 0 and C = c.
 
 use crate::equilibrium::EquilibriumError;
-use crate::error::{self, Invalid};
+use crate::error;
 use crate::flow::{Energy, First};
 use crate::newton::Equations;
+use crate::singular::Singular;
 use nalgebra::{DMatrix, DVector};
 
-/// A state with multipliers and a value of the parameter.
+/// A state with multipliers and a value of the parameter. The multipliers are in the units of the equations.
 #[derive(Clone)]
 pub(crate) struct Point<S> {
     pub state: S,
@@ -14,25 +15,65 @@ pub(crate) struct Point<S> {
     pub p: f64,
 }
 
+/// The equations in units of the start, so that tolerances do not depend on the units of energy and of conserved
+/// quantities.
 pub(crate) struct Kkt<'a, E> {
     pub energy: &'a E,
-    /// The values c of the conserved quantities.
-    pub values: DVector<f64>,
+    /// The values c of the conserved quantities, in their units.
+    values: DVector<f64>,
+    /// The unit of energy: the largest second derivative or force at the start.
+    pub unit: f64,
+    /// The units of the conserved quantities: the norms of their gradients at the start.
+    units: DVector<f64>,
 }
 
 type Result<T, E> = std::result::Result<T, EquilibriumError<<E as Energy>::Error>>;
 
 impl<'a, E: Energy> Kkt<'a, E> {
-    /// Accepts as many finite values as the energy has conserved quantities.
-    pub fn new(energy: &'a E, values: &[f64]) -> std::result::Result<Self, Invalid> {
-        error::number("coordinates", energy.dimension(), usize::MAX)?;
+    /// The equations, and the multipliers that come closest to balancing the gradient at the start. Accepts as many
+    /// finite values as the energy has conserved quantities.
+    pub fn new(
+        energy: &'a E,
+        values: &[f64],
+        start: &E::State,
+        p: f64,
+    ) -> Result<(Self, Point<E::State>), E> {
+        let (n, m) = (energy.dimension(), energy.constraints());
+        error::number("coordinates", n, usize::MAX)?;
+        error::finite("parameter", &[p])?;
         let values = DVector::from_column_slice(values);
-        error::vector(
-            "values of the conserved quantities",
-            &values,
-            energy.constraints(),
-        )?;
-        Ok(Self { energy, values })
+        error::vector("values of the conserved quantities", &values, m)?;
+        let mut kkt = Self {
+            energy,
+            values,
+            unit: 1.0,
+            units: DVector::from_element(m, 1.0),
+        };
+        let first = kkt.first(start, p)?;
+        let balance = Singular::new(&first.gradients.transpose());
+        let multipliers = -balance.solve(&first.gradient, f64::EPSILON, 0.0);
+        let mut point = Point {
+            state: start.clone(),
+            multipliers,
+            p,
+        };
+        let one_if_zero = |x: f64| if x > 0.0 && x.is_finite() { x } else { 1.0 };
+        kkt.unit = one_if_zero(kkt.second(&point)?.amax().max(first.gradient.amax()));
+        kkt.units = DVector::from_iterator(
+            m,
+            first
+                .gradients
+                .row_iter()
+                .map(|row| one_if_zero(row.norm())),
+        );
+        kkt.values.component_div_assign(&kkt.units);
+        point.multipliers = point.multipliers.component_mul(&kkt.units) / kkt.unit;
+        Ok((kkt, point))
+    }
+
+    /// The multipliers in the units of the user.
+    pub fn multipliers(&self, at: &Point<E::State>) -> DVector<f64> {
+        at.multipliers.component_div(&self.units) * self.unit
     }
 
     /// The number of equations at a fixed parameter.
@@ -40,9 +81,9 @@ impl<'a, E: Energy> Kkt<'a, E> {
         self.energy.dimension() + self.energy.constraints()
     }
 
-    /// The energy and conserved quantities, checked.
+    /// The energy in the unit of the user, and all other values in the units of the equations, checked.
     pub fn first(&self, at: &E::State, p: f64) -> Result<First, E> {
-        let first = self
+        let mut first = self
             .energy
             .first(at, p)
             .map_err(|source| EquilibriumError::Energy { p, source })?;
@@ -55,6 +96,11 @@ impl<'a, E: Energy> Kkt<'a, E> {
             &first.gradients,
             (m, n),
         )?;
+        first.gradient /= self.unit;
+        first.conserved.component_div_assign(&self.units);
+        for (mut row, unit) in first.gradients.row_iter_mut().zip(self.units.iter()) {
+            row /= *unit;
+        }
         Ok(first)
     }
 
@@ -62,18 +108,18 @@ impl<'a, E: Energy> Kkt<'a, E> {
     pub fn second(&self, at: &Point<E::State>) -> Result<DMatrix<f64>, E> {
         let second = self
             .energy
-            .second(&at.state, at.p, at.multipliers.as_slice());
+            .second(&at.state, at.p, self.multipliers(at).as_slice());
         let second = second.map_err(|source| EquilibriumError::Energy { p: at.p, source })?;
         let n = self.energy.dimension();
         error::matrix("Hessian", &second, (n, n))?;
-        Ok((&second + second.transpose()) * 0.5)
+        Ok((&second + second.transpose()) * (0.5 / self.unit))
     }
 
     /// The derivative of the equations with respect to the parameter.
     pub fn in_parameter(&self, at: &Point<E::State>) -> Result<DVector<f64>, E> {
         let both = self
             .energy
-            .in_parameter(&at.state, at.p, at.multipliers.as_slice());
+            .in_parameter(&at.state, at.p, self.multipliers(at).as_slice());
         let (gradient, conserved) =
             both.map_err(|source| EquilibriumError::Energy { p: at.p, source })?;
         let (n, m) = (self.energy.dimension(), self.energy.constraints());
@@ -83,7 +129,10 @@ impl<'a, E: Energy> Kkt<'a, E> {
             &conserved,
             m,
         )?;
-        Ok(stacked(&gradient, &conserved))
+        Ok(stacked(
+            &(gradient / self.unit),
+            &conserved.component_div(&self.units),
+        ))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Least squares by the method of Levenberg and Marquardt, with parameters on a manifold.
 //!
-//! Each step minimises |r + J x|^2 + lambda |D x|^2, where D has the largest norms so far of the columns of J (More,
-//! Lecture Notes in Mathematics 630, 1978). The factor lambda follows the ratio of actual to predicted reduction
+//! Each step minimises |r + J x|^2 + lambda |D x|^2. The diagonal D has the largest norms so far of the columns of J
+//! (More, Lecture Notes in Mathematics 630, 1978). The factor lambda follows the ratio of actual to predicted reduction
 //! (Nielsen, Technical University of Denmark, report IMM-REP-1999-05).
 
 use crate::error;
@@ -30,7 +30,7 @@ struct Linearised<P> {
 
 /// The parameters near `start` with the least sum of squares of the residuals.
 ///
-/// The method ends where no step reduces the residuals beyond rounding, and all columns of J are orthogonal to the
+/// The method ends where no step reduces the residuals beyond rounding. There, all columns of J are orthogonal to the
 /// residuals, or the residuals are zero up to rounding.
 ///
 /// # Errors

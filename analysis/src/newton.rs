@@ -2,8 +2,8 @@
 //!
 //! The derivative J at a solution maps directions of symmetry to zero. Each step is the x of least norm that minimises
 //! |J x + r|^2 + damping |x|^2, from the singular values of J. Values up to `rank` times the largest one count as zero.
-//! The damping falls with the square of the residual r, so that the last steps converge quadratically, and grows while
-//! a step does not reduce the residual (Fan and Yuan, Computing 74, 2005).
+//! The damping falls with the square of the residual r, so that the last steps converge quadratically (Fan and Yuan,
+//! Computing 74, 2005). It grows while a step does not reduce the residual.
 
 use crate::error::{self, Invalid};
 use crate::singular::Singular;

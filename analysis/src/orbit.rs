@@ -115,6 +115,22 @@ struct Return<'a, F> {
     steps: usize,
 }
 
+impl<F: Flow> Return<'_, F> {
+    /// The largest norm of the coordinates of a state of the trajectory, at its first state.
+    fn size(&self, at: &F::State) -> Result<f64, OrbitError<F::Error>> {
+        let mut size = 0.0_f64;
+        let mut state = at.clone();
+        for step in 0..self.steps {
+            state = self
+                .flow
+                .step(&state, self.h)
+                .map_err(|source| OrbitError::Step { step, source })?;
+            size = size.max(checked_difference(self.flow, at, &state)?.norm());
+        }
+        Ok(size)
+    }
+}
+
 impl<F: Flow> Equations for Return<'_, F> {
     type State = F::State;
     type Error = OrbitError<F::Error>;
@@ -156,6 +172,9 @@ impl<F: Flow> Equations for Return<'_, F> {
 
 /// The periodic orbit of `steps` steps of size `h` near `start`, by damped Newton's method with steps of least norm.
 ///
+/// If the trajectory from the start has a size above 1, the tolerance is relative to this size. With few steps for a
+/// period, the phase of a discrete orbit is not free. The method then takes more iterations.
+///
 /// # Errors
 ///
 /// An argument cannot be used, a step fails, or the method does not converge.
@@ -171,11 +190,19 @@ pub fn orbit<F: Flow>(
     error::number("coordinates", flow.dimension(), usize::MAX)?;
     search.check()?;
     let problem = Return { flow, h, steps };
-    let ended = newton(&problem, start.clone(), search)?;
+    let tolerance = search.tolerance * problem.size(start)?.max(1.0);
+    let ended = newton(
+        &problem,
+        start.clone(),
+        &Search {
+            tolerance,
+            ..*search
+        },
+    )?;
     if !ended.converged {
         return Err(OrbitError::NoConvergence {
             residual: ended.residual,
-            tolerance: search.tolerance,
+            tolerance,
             iterations: ended.iterations,
             rejected: ended.rejected,
             stopped: flow.difference(start, &ended.state),
@@ -184,14 +211,7 @@ pub fn orbit<F: Flow>(
     let (difference, derivative) = problem.linearised(&ended.state)?;
     let n = flow.dimension();
     let monodromy = derivative + DMatrix::identity(n, n);
-    let mut size = 0.0_f64;
-    let mut state = ended.state.clone();
-    for step in 0..steps {
-        size = size.max(checked_difference(flow, &ended.state, &state)?.norm());
-        state = flow
-            .step(&state, h)
-            .map_err(|source| OrbitError::Step { step, source })?;
-    }
+    let size = problem.size(&ended.state)?;
     let mut floquet = eigen(&monodromy)?;
     // The product of tangents has a rounding in each factor, with random signs.
     let roundings = n as f64 * (1.0 + (steps as f64).sqrt());

@@ -1,8 +1,8 @@
 //! Crossings of a surface g(z) = 0 by a trajectory.
 //!
-//! A change of sign of g within a step is located by steps of size theta h from the node before it, with theta between
-//! 0 and 1. A located state is thus a state of the method, and its error has the order of the method. Compare Henon,
-//! Physica D 5, 1982, who changes the independent variable instead.
+//! Steps of size theta h from the last node, with theta between 0 and 1, locate a change of sign of g. A located state
+//! is thus a state of the method, and its error has the order of the method. Compare Henon, Physica D 5, 1982, who
+//! changes the independent variable instead.
 //!
 //! Two crossings within one step leave the sign unchanged. They are found only with [`Section::rate`], which reveals a
 //! turn of g within the step.

@@ -1,6 +1,6 @@
 //! Singular values by one-sided Jacobi rotations.
 //!
-//! The method cannot fail to converge in practice, and it computes small singular values to high relative accuracy
+//! The method converges for every finite matrix in practice. It computes small singular values to high accuracy
 //! (Demmel and Veselic, SIAM J. Matrix Anal. Appl. 13, 1992). Decisions about rank need this accuracy.
 
 use nalgebra::{DMatrix, DVector};

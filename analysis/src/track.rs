@@ -7,7 +7,8 @@ use crate::variation::Variation;
 use nalgebra::DVector;
 use std::{error::Error, fmt};
 
-/// The sizes of steps. They are lengths in the space of states, multipliers and the parameter together.
+/// The sizes of steps. They are lengths in the space of states, multipliers and the parameter together. Multipliers
+/// are in the units of [`Equilibrium::residual`](crate::Equilibrium::residual).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Track {
     /// The first step.
@@ -46,7 +47,7 @@ pub struct BranchPoint<S> {
     pub state: S,
     /// The m multipliers.
     pub multipliers: DVector<f64>,
-    /// The norm of the equations.
+    /// The norm of the equations, in the units of [`Equilibrium::residual`](crate::Equilibrium::residual).
     pub residual: f64,
     /// The derivative of p along the branch, per unit of length. It is zero at a fold.
     pub slope: f64,

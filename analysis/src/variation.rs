@@ -128,7 +128,7 @@ pub(crate) fn variation<E: Energy>(
         },
     };
     Ok(Variation {
-        eigenvalues: values,
+        eigenvalues: values.into_iter().map(|x| x * kkt.unit).collect(),
         directions: vectors,
         symmetric,
         negative,

@@ -1,11 +1,9 @@
 //! Branches with known folds and branch points.
 
-use crate::equilibrium::Body;
-use crate::systems::{Line, Undefined};
-use clebsch_analysis::{
-    ContinuationError, Definiteness, End, Energy, Event, First, Track, continuation,
-};
-use nalgebra::{DMatrix, DVector, Vector3};
+use crate::bodies::Body;
+use crate::systems::Line;
+use clebsch_analysis::{ContinuationError, Definiteness, End, Event, Track, continuation};
+use nalgebra::Vector3;
 
 #[test]
 fn a_fold_turns_the_branch_back() {
@@ -147,6 +145,34 @@ fn long_steps_do_not_jump_to_a_near_branch() {
 }
 
 #[test]
+fn long_steps_do_not_snap_through() {
+    // x^3 - x = p has three branches for |p| < 2 / sqrt(27). The outer two are stable.
+    let snap = Line(|x: f64, p: f64| Some([0.0, x.powi(3) - x - p, 3.0 * x * x - 1.0, -1.0]));
+    for first in [0.1, 0.5, 1.0, 2.0] {
+        let track = Track {
+            first,
+            largest: first,
+            ..Track::between(-1.0, 1.0)
+        };
+        let branch = continuation(&snap, &-1.3, &[], -1.0, 1.0, &track).unwrap();
+        assert_eq!(branch.end, End::Reached);
+        let folds: Vec<f64> = branch.specials.iter().map(|special| special.at.p).collect();
+        let truth = 2.0 / 27.0_f64.sqrt();
+        assert!(folds.len() == 2, "{first}: {folds:?}");
+        assert!(
+            (folds[0] - truth).abs() < 1e-13 && (folds[1] + truth).abs() < 1e-13,
+            "{folds:?}"
+        );
+        assert!(
+            branch
+                .specials
+                .iter()
+                .all(|special| special.event == Event::Fold && special.located)
+        );
+    }
+}
+
+#[test]
 fn an_axis_of_inertia_loses_its_place() {
     // The second axis is the middle one for p > 1, and the shortest for p < 1.
     let body = Body {
@@ -188,96 +214,6 @@ fn an_axis_of_inertia_loses_its_place() {
             Definiteness::Maximum
         ]
     );
-}
-
-/// H = |p|^2 / 2 + |q|^4 / 4 in the plane with angular momentum equal to the parameter.
-struct Central;
-
-impl Energy for Central {
-    type State = Vec<f64>;
-    type Error = Undefined;
-
-    fn dimension(&self) -> usize {
-        4
-    }
-
-    fn constraints(&self) -> usize {
-        1
-    }
-
-    fn first(&self, at: &Vec<f64>, l: f64) -> Result<First, Undefined> {
-        let [x, y, p, q] = [at[0], at[1], at[2], at[3]];
-        let square = x * x + y * y;
-        Ok(First {
-            energy: (p * p + q * q) / 2.0 + square * square / 4.0,
-            gradient: DVector::from_vec(vec![square * x, square * y, p, q]),
-            conserved: DVector::from_element(1, x * q - y * p - l),
-            gradients: DMatrix::from_row_slice(1, 4, &[q, -p, -y, x]),
-        })
-    }
-
-    fn second(
-        &self,
-        at: &Vec<f64>,
-        _: f64,
-        multipliers: &[f64],
-    ) -> Result<DMatrix<f64>, Undefined> {
-        let (x, y, w) = (at[0], at[1], multipliers[0]);
-        let (a, b, c) = (3.0 * x * x + y * y, 2.0 * x * y, x * x + 3.0 * y * y);
-        Ok(DMatrix::from_row_slice(
-            4,
-            4,
-            &[
-                a, b, 0.0, w, b, c, -w, 0.0, 0.0, -w, 1.0, 0.0, w, 0.0, 0.0, 1.0,
-            ],
-        ))
-    }
-
-    fn in_parameter(
-        &self,
-        _: &Vec<f64>,
-        _: f64,
-        _: &[f64],
-    ) -> Result<(DVector<f64>, DVector<f64>), Undefined> {
-        Ok((DVector::zeros(4), DVector::from_element(1, -1.0)))
-    }
-
-    fn moved(&self, at: &Vec<f64>, by: &[f64]) -> Vec<f64> {
-        at.iter().zip(by).map(|(x, y)| x + y).collect()
-    }
-
-    fn difference(&self, from: &Vec<f64>, to: &Vec<f64>) -> Vec<f64> {
-        to.iter().zip(from).map(|(x, y)| x - y).collect()
-    }
-
-    fn symmetries(&self, at: &Vec<f64>) -> DMatrix<f64> {
-        DMatrix::from_column_slice(4, 1, &[-at[1], at[0], -at[3], at[2]])
-    }
-}
-
-#[test]
-fn circular_orbits_grow_with_angular_momentum() {
-    let start = vec![0.8, 0.6, -0.55, 0.85];
-    let branch = continuation(
-        &Central,
-        &start,
-        &[0.0],
-        1.0,
-        8.0,
-        &Track::between(1.0, 8.0),
-    )
-    .unwrap();
-    assert!(branch.end == End::Reached && branch.specials.is_empty());
-    for point in &branch.points {
-        // A circle of radius r has frequency r and angular momentum r^3.
-        let r = point.state[0].hypot(point.state[1]);
-        assert!((r - point.p.cbrt()).abs() < 1e-12, "{point:?}");
-        assert!((point.multipliers[0] + r).abs() < 1e-12);
-        assert_eq!(
-            (point.variation.definiteness, point.variation.symmetric),
-            (Definiteness::Minimum, 1)
-        );
-    }
 }
 
 #[test]

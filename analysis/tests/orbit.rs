@@ -146,6 +146,35 @@ fn circular_orbit_with_phase_and_rotation_as_symmetries() {
 }
 
 #[test]
+fn large_coordinates() {
+    // The frequency is the radius over 1e7.
+    let potential = Potential {
+        dimension: 2,
+        gradient: |q| 1e-14 * (q[0] * q[0] + q[1] * q[1]) * DVector::from_column_slice(q),
+        hessian: |q| {
+            let v = DVector::from_column_slice(q);
+            1e-14 * (2.0 * &v * v.transpose() + v.norm_squared() * DMatrix::identity(2, 2))
+        },
+    };
+    let h = 2.0 / 1.2 * (PI / 100.0).sin();
+    let start = vec![1.21e7, 0.0, 2e5, 1.43e7];
+    let found = orbit(
+        &Splitting::leapfrog(potential),
+        &start,
+        h,
+        100,
+        &Search::default(),
+    )
+    .unwrap();
+    // Rounding of coordinates of size 1e7.
+    assert!(
+        found.residual < 1e-6 && found.residual > 0.0,
+        "{}",
+        found.residual
+    );
+}
+
+#[test]
 fn an_equilibrium_has_size_zero() {
     let flow = Splitting::leapfrog(pendulum());
     let found = orbit(&flow, &vec![0.1, 0.0], 0.1, 30, &Search::default()).unwrap();

@@ -1,15 +1,14 @@
 //! Arguments that are refused, and the sentences that say so.
 
-use crate::equilibrium::Body;
+use crate::bodies::Body;
 use crate::systems::{Plane, Splitting, oscillators, pendulum};
 use clebsch_analysis::{
-    Direction, Invalid, Search, Section, Track, continuation, equilibrium, linear, lyapunov, orbit,
-    sections,
+    Direction, Search, Section, Track, continuation, equilibrium, linear, lyapunov, orbit, sections,
 };
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::Vector3;
 
 /// Checks that an error says what is wrong and what to do, in at most two sentences.
-fn says(error: &dyn std::error::Error, words: &str) {
+pub fn says(error: &dyn std::error::Error, words: &str) {
     let text = error.to_string();
     assert!(text.contains(words), "{text}");
     let sentences = text.matches(". ").count() + usize::from(text.ends_with('.'));
@@ -217,40 +216,5 @@ fn failed_steps_are_quoted() {
     says(
         &sections(&flow, &[0.0, 0.0], 0.1, &section, 1, 10).unwrap_err(),
         "not defined. Use",
-    );
-}
-
-#[test]
-fn wrong_shapes() {
-    struct Wrong;
-    impl clebsch_analysis::Flow for Wrong {
-        type State = f64;
-        type Error = std::fmt::Error;
-        fn dimension(&self) -> usize {
-            1
-        }
-        fn step(&self, at: &f64, _: f64) -> Result<f64, std::fmt::Error> {
-            Ok(*at)
-        }
-        fn tangent(&self, at: &f64, _: f64) -> Result<(f64, DMatrix<f64>), std::fmt::Error> {
-            Ok((*at, DMatrix::zeros(2, 1)))
-        }
-        fn moved(&self, at: &f64, by: &[f64]) -> f64 {
-            at + by[0]
-        }
-        fn difference(&self, _: &f64, _: &f64) -> Vec<f64> {
-            Vec::new()
-        }
-    }
-    let error = lyapunov(&Wrong, &0.0, 1.0, 1, 1).unwrap_err();
-    let shape = Invalid::Shape {
-        what: "tangent of a step",
-        shape: (2, 1),
-        expected: (1, 1),
-    };
-    assert_eq!(error, shape.into());
-    says(
-        &orbit(&Wrong, &0.0, 1.0, 1, &Search::default()).unwrap_err(),
-        "rows",
     );
 }
