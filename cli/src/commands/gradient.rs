@@ -13,7 +13,9 @@ use crate::words::columns::aligned;
 use crate::words::number::plain;
 use crate::words::width::paragraph;
 use clap::ArgMatches;
-use clebsch::derivatives::{Cost, Seen};
+use clebsch::card::Kind;
+use clebsch::derivatives::{Cost, Gradient, Seen};
+use clebsch::scalar::largest;
 use serde_json::{Value, json};
 
 /// Files of the command.
@@ -46,6 +48,70 @@ impl Cost for Observed<'_> {
         self.value += self.of.value(&all);
         self.of.weigh(&all, weights, of_invariants);
     }
+}
+
+/// The size of entries beside the diagonal where derivatives in them are taken, relative to the matrix.
+const NEARBY: f64 = 1e-9;
+
+/// Smaller differences of derivatives, relative to the largest one, are rounding or of second order.
+const NONE: f64 = 1e-6;
+
+/// Steps of bodies in their principal axes do not read the entries beside the diagonal of the moments, so that recorded
+/// steps miss derivatives in them. Puts the derivatives of a body with small entries in their place; gives whether
+/// there are any.
+fn off_diagonal(
+    problem: &Problem,
+    of: &Expression,
+    sum: bool,
+    found: &mut Gradient,
+) -> Result<bool, Failure> {
+    let mut case = problem.plan.case.clone();
+    let mut entries: Vec<(usize, usize)> = Vec::new();
+    let fields = problem.card.parameters.iter().zip(&mut case.parameters);
+    for (field, (own, values)) in fields.enumerate() {
+        if !matches!(own.kind, Kind::Symmetric | Kind::SecondMoments) {
+            continue;
+        }
+        let size = largest(values.iter().map(|x| x.abs()));
+        for (at, value) in values.iter_mut().enumerate() {
+            let is_beside = at / own.cols != at % own.cols;
+            if is_beside && *value == 0.0 {
+                *value = NEARBY * size;
+                entries.push((field, at));
+            }
+        }
+    }
+    if entries.is_empty() {
+        return Ok(false);
+    }
+    let steps = problem.plan.case.steps;
+    let mut cost = Observed {
+        of,
+        last: steps,
+        sum,
+        value: 0.0,
+    };
+    let nearby = problem
+        .open_case(&case)
+        .and_then(|mut flow| flow.gradient(steps, &mut cost))
+        .map_err(|why| problem.refused(&why))?;
+    let all = || nearby.parameters.iter().chain(&nearby.initial).flatten();
+    let size = largest(all().map(|x| x.abs()));
+    let mut any = false;
+    for (field, at) in entries {
+        let slope = nearby.parameters.get(field).and_then(|own| own.get(at));
+        let place = found
+            .parameters
+            .get_mut(field)
+            .and_then(|own| own.get_mut(at));
+        if let (Some(slope), Some(place)) = (slope, place)
+            && (slope - *place).abs() > NONE * size
+        {
+            *place = *slope;
+            any = true;
+        }
+    }
+    Ok(any)
 }
 
 /// One row of the result: name, value and derivative.
@@ -81,7 +147,8 @@ pub(crate) fn gradient(
         let _told = Waiting::showing("differentiating the run".to_owned(), streams.progress);
         flow.gradient(steps, &mut cost)
     };
-    let found = found.map_err(|why| problem.refused(&why))?;
+    let mut found = found.map_err(|why| problem.refused(&why))?;
+    let nearby = off_diagonal(&problem, &of, cost.sum, &mut found)?;
     let rows = rows(&problem, &flow.dimensions(), &found);
     if let Some(row) = rows.iter().find(|row| !row.derivative.is_finite()) {
         return Err(Failure::Failed(format!(
@@ -119,6 +186,11 @@ pub(crate) fn gradient(
     let mut notes = vec![
         "Derivatives are exact for the discrete motion, at fixed momenta and a fixed number of steps.".to_owned(),
     ];
+    if nearby {
+        notes.push(format!(
+            "Derivatives in zero entries beside the diagonal of a symmetric matrix are taken at entries of {NEARBY:e}."
+        ));
+    }
     if problem.card.initial.iter().any(turns) {
         notes.push("turn_i(X) turns X about body axis i, in radians.".to_owned());
     }
@@ -128,11 +200,7 @@ pub(crate) fn gradient(
     Ok(DONE)
 }
 
-fn rows(
-    problem: &Problem,
-    dimensions: &[usize],
-    found: &clebsch::derivatives::Gradient,
-) -> Vec<Row> {
+fn rows(problem: &Problem, dimensions: &[usize], found: &Gradient) -> Vec<Row> {
     let card = &problem.card;
     let case = &problem.plan.case;
     let value = |own: Option<&Vec<f64>>, at: usize| own.and_then(|own| own.get(at)).copied();

@@ -159,9 +159,11 @@ fn figure<S>(problem: &Problem, found: &Lyapunov<S>) -> Result<String, String> {
     let curve = |i: usize| Curve {
         label: format!("exponent {}", i + 1),
         note: found.exponents.get(i).map(|x| short(*x)),
+        // The first averages are large, and would hide the others.
         points: found
             .estimates
             .iter()
+            .skip(found.estimates.len() / 40)
             .filter_map(|e| Some((e.time, *e.exponents.get(i)?)))
             .collect(),
         stroke: Stroke::number(i),

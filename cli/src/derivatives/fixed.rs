@@ -146,6 +146,7 @@ fn independent(steps: &Steps, candidates: Vec<Fixed>, energy: Option<usize>) -> 
         (at < slopes.nrows()).then(|| slopes.row(at).transpose())
     };
     let energy = energy.and_then(row);
+    let size = slopes.amax().max(f64::MIN_POSITIVE);
     // An orthonormal basis of the gradients.
     let mut basis: Vec<DVector<f64>> = Vec::new();
     let mut kept = Vec::new();
@@ -155,7 +156,7 @@ fn independent(steps: &Steps, candidates: Vec<Fixed>, energy: Option<usize>) -> 
         };
         let Some(gradient) = row(at) else { continue };
         let rest = outside(&basis, &gradient);
-        if rest.norm() <= DEPENDENT * gradient.norm().max(f64::MIN_POSITIVE) {
+        if rest.norm() <= DEPENDENT * size {
             continue;
         }
         basis.push(rest.normalize());

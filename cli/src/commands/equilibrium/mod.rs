@@ -3,6 +3,7 @@
 
 mod branch;
 mod draw;
+mod report;
 
 use crate::derivatives::coordinates;
 use crate::derivatives::energy::CaseEnergy;

@@ -5,6 +5,7 @@ use crate::derivatives::expression::{Expression, parts};
 use crate::derivatives::problem::Problem;
 use crate::terminal::bounded;
 use crate::terminal::failure::Failure;
+use crate::words::number::plain;
 use crate::words::plain::shown;
 use crate::words::suggestion::did_you_mean;
 use std::path::Path;
@@ -127,7 +128,7 @@ fn nodes(times: &[f64], h: f64, file: &str) -> Result<Vec<u64>, Failure> {
                 "{file}, row {}: time {time} is no node of steps h = {h}; the nearest is {}. Choose --h so that all times are \
                  nodes",
                 row + 1,
-                nearest * h
+                plain(nearest * h)
             ))),
         }
     });

@@ -22,7 +22,7 @@ pub(super) fn figure(
     found: &Linear,
 ) -> Option<Result<String, String>> {
     let sites = sites(problem, dimensions)?;
-    let mut modes: Vec<&Mode> = half(&found.modes).collect();
+    let mut modes = half(&found.modes);
     modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     let first = sites.places.first()?.0;
     let last = sites.places.last()?.0;

@@ -2,30 +2,24 @@
 //! for chains, a plot of the modes.
 
 mod draw;
+mod report;
 
-use crate::derivatives::coordinates;
 use crate::derivatives::flow::{State, Steps};
 use crate::derivatives::problem::Problem;
 use crate::models::gallery::Gallery;
-use crate::output::results::{Results, csv, drawn};
+use crate::output::results::{Results, drawn};
 use crate::terminal::Streams;
 use crate::terminal::failure::{DONE, Failure};
 use crate::terminal::waiting::Waiting;
-use crate::words::columns::aligned;
 use crate::words::number::{plain, short};
 use crate::words::width::paragraph;
 use clap::ArgMatches;
 use clebsch::derivatives::NoDerivative;
-use clebsch_analysis::{
-    FIXED, Flow, Linear, LinearError, Mode, OrbitError, Search, Stability, Verdict, linear, orbit,
-};
-use serde_json::{Value, json};
+use clebsch_analysis::{FIXED, Flow, LinearError, Mode, OrbitError, Search, linear, orbit};
+use report::{SHOWN, object, state_table, table, table_file, verdict};
 
 /// Files of the command. Only chains have a picture.
 const FILES: [&str; 3] = ["linearise.csv", "linearise.json", "modes.svg"];
-
-/// The largest number of modes that the terminal shows.
-const SHOWN: usize = 40;
 
 /// A fixed point, and where it was found.
 struct Found {
@@ -101,7 +95,7 @@ pub(crate) fn linearise(
         format!("discrete system: {}", verdict(&found.verdict)),
         format!("continuous system: {}", verdict(&found.limit_verdict)),
     ];
-    let more = half(&found.modes).count();
+    let more = half(&found.modes).len();
     if more > SHOWN {
         notes.push(format!(
             "The table shows {SHOWN} of {more} modes; --out writes all."
@@ -151,19 +145,22 @@ fn told(why: LinearError<NoDerivative>) -> Failure {
     Failure::Failed(why.to_string())
 }
 
-/// Modes with a frequency that is not negative: one of each pair.
-fn half(modes: &[Mode]) -> impl Iterator<Item = &Mode> {
-    modes.iter().filter(|mode| mode.eigenvalue.im >= 0.0)
-}
-
-fn verdict(of: &Verdict) -> String {
-    let growth = format!("growth {} with error {}", short(of.growth), short(of.error));
-    match of.stability {
-        Stability::Unstable => format!("unstable ({growth})"),
-        Stability::Undecided => format!("undecided: a growth may be rounding ({growth})"),
-        Stability::SpectrallyStable => "spectrally stable: no mode grows".to_owned(),
-        Stability::Attracting => format!("attracting: all modes decay ({growth})"),
-    }
+/// One mode of each pair of frequencies with opposite signs. Half of the modes without frequency and growth are kept,
+/// since each comes with a drift.
+fn half(modes: &[Mode]) -> Vec<&Mode> {
+    let mut drifts = false;
+    let mut keep = |mode: &&Mode| {
+        let frequency = sure(mode.frequency, mode.error);
+        match (frequency == 0.0, sure(mode.growth, mode.error) == 0.0) {
+            (true, true) => {
+                drifts = !drifts;
+                drifts
+            }
+            (true, false) => true,
+            (false, _) => frequency > 0.0,
+        }
+    };
+    modes.iter().filter(|mode| keep(mode)).collect()
 }
 
 /// A number, or zero if it is within ten errors of zero.
@@ -173,132 +170,4 @@ fn sure(value: f64, error: f64) -> f64 {
     } else {
         value
     }
-}
-
-fn table(found: &Linear, width: Option<usize>) -> String {
-    let head = [
-        "mode",
-        "frequency",
-        "growth",
-        "period",
-        "continuous: frequency",
-        "growth",
-    ];
-    let mut rows = vec![head.map(str::to_owned).to_vec()];
-    let mut limits = half(&found.limit_modes);
-    let number = |x: f64| {
-        if x == 0.0 {
-            "0".to_owned()
-        } else {
-            format!("{x:.9}")
-        }
-    };
-    for (i, mode) in half(&found.modes).enumerate().take(SHOWN) {
-        let frequency = sure(mode.frequency, mode.error);
-        let mut row = vec![
-            (i + 1).to_string(),
-            number(frequency),
-            number(sure(mode.growth, mode.error)),
-            match frequency > 0.0 {
-                true => format!("{:.6}", std::f64::consts::TAU / frequency),
-                false => "-".to_owned(),
-            },
-        ];
-        row.extend(match limits.next() {
-            Some(limit) => [
-                sure(limit.frequency, limit.error),
-                sure(limit.growth, limit.error),
-            ]
-            .map(number),
-            None => ["-", "-"].map(str::to_owned),
-        });
-        rows.push(row);
-    }
-    aligned(&rows, &[0, 1, 2, 3, 4, 5], width)
-}
-
-/// The initial values of the case and of a state.
-fn state_table(
-    problem: &Problem,
-    flow: &Steps,
-    at: &State,
-    width: Option<usize>,
-) -> Result<String, Failure> {
-    let found = at
-        .clone()
-        .and_then(|at| flow.with(|own| problem.case_at(&problem.plan.case, own, &at)));
-    let found = found.map_err(|why| problem.refused(&why))?;
-    Ok(coordinates::compared(
-        &problem.card,
-        &problem.plan.case.initial,
-        &found.initial,
-        width,
-    ))
-}
-
-fn object(
-    problem: &Problem,
-    flow: &Steps,
-    fixed: &Found,
-    found: &Linear,
-) -> Result<Value, Failure> {
-    let mode = |mode: &Mode| {
-        let parts = |part: &dyn Fn(&clebsch::nalgebra::Complex<f64>) -> f64| {
-            mode.vector.iter().map(part).collect::<Vec<f64>>()
-        };
-        json!({
-            "eigenvalue": [mode.eigenvalue.re, mode.eigenvalue.im],
-            "frequency": mode.frequency,
-            "growth": mode.growth,
-            "error": mode.error,
-            "vector": {"re": parts(&|z| z.re), "im": parts(&|z| z.im)},
-        })
-    };
-    let modes = |all: &[Mode]| all.iter().map(mode).collect::<Vec<_>>();
-    let dimensions = flow.with(|own| own.dimensions());
-    let at = fixed
-        .state
-        .clone()
-        .and_then(|at| flow.with(|own| problem.case_at(&problem.plan.case, own, &at)));
-    let at = at.map_err(|why| problem.refused(&why))?;
-    let initial = problem.card.initial.iter().zip(&at.initial);
-    let initial: serde_json::Map<String, Value> = initial
-        .map(|(field, values)| (field.ascii.to_owned(), json!(values)))
-        .collect();
-    Ok(problem.object(json!({
-        "state": initial,
-        "found_nearby": fixed.away.is_some(),
-        "distance": fixed.away.unwrap_or(0.0),
-        "displacement": found.residual,
-        "coordinates": coordinates::local(&problem.card, &dimensions),
-        "stability": format!("{:?}", found.verdict.stability),
-        "modes": modes(&found.modes),
-        "continuous": {
-            "stability": format!("{:?}", found.limit_verdict.stability),
-            "modes": modes(&found.limit_modes),
-        },
-    })))
-}
-
-fn table_file(found: &Linear) -> String {
-    let names = [
-        "mode",
-        "frequency",
-        "growth",
-        "error",
-        "multiplier_re",
-        "multiplier_im",
-    ];
-    let names = names.map(str::to_owned).to_vec();
-    let rows = found.modes.iter().enumerate().map(|(i, mode)| {
-        vec![
-            i as f64 + 1.0,
-            mode.frequency,
-            mode.growth,
-            mode.error,
-            mode.eigenvalue.re,
-            mode.eigenvalue.im,
-        ]
-    });
-    csv(&names, rows)
 }

@@ -4,12 +4,13 @@
 mod names;
 mod parse;
 mod tokens;
+mod tree;
 
 use crate::terminal::failure::Failure;
 use crate::words::plain::shown;
 use clebsch::card::Card;
 use names::Names;
-use parse::Tree;
+use tree::Tree;
 
 /// A function of one number, with its name and derivative.
 type Function = (&'static str, fn(f64) -> f64, fn(f64) -> f64);

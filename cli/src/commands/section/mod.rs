@@ -1,20 +1,19 @@
 //! `clebsch section`: where a motion crosses a surface. Takes a case and an expression; gives a table, JSON, CSV and a
 //! plot of two quantities.
 
+mod draw;
+
 use crate::derivatives::coordinates;
 use crate::derivatives::expression::{Expression, parts};
 use crate::derivatives::flow::{State, Steps};
 use crate::derivatives::problem::Problem;
 use crate::models::gallery::Gallery;
 use crate::output::results::{Results, csv, drawn};
-use crate::plots::axis::Axis;
-use crate::plots::curve::{Curve, Marks, Stroke};
-use crate::plots::figure::{Figure, Panel};
 use crate::terminal::Streams;
 use crate::terminal::failure::{DONE, Failure};
 use crate::terminal::waiting::Waiting;
 use crate::words::columns::aligned;
-use crate::words::number::{decimals, plain, short};
+use crate::words::number::{decimals, short};
 use crate::words::width::paragraph;
 use clap::ArgMatches;
 use clebsch::scalar::largest;
@@ -72,7 +71,7 @@ pub(crate) fn section(
     let written = match results.is_wanted() {
         false => None,
         true => {
-            let svg = drawn(figure(&problem, &at, &rows, [&x, &y]), svg_name)?;
+            let svg = drawn(draw::figure(&problem, &at, &rows, [&x, &y]), svg_name)?;
             let head = ["crossing", "time", "upward"].map(str::to_owned);
             let head: Vec<String> = head.into_iter().chain(names).collect();
             let table = rows.iter().enumerate().map(|(i, row)| {
@@ -227,55 +226,4 @@ fn object(
         "names": names,
         "crossings": rows.iter().map(row).collect::<Vec<_>>(),
     }))
-}
-
-fn figure(
-    problem: &Problem,
-    at: &Expression,
-    rows: &[Row],
-    [x, y]: [&Expression; 2],
-) -> Result<String, String> {
-    let mut curves = Vec::new();
-    let ways = [(true, "up", Marks::Full), (false, "down", Marks::Hollow)];
-    for (index, (upward, label, marks)) in ways.into_iter().enumerate() {
-        let own = rows.iter().filter(|row| row.upward == upward);
-        // Each crossing is a curve of one point, so that no line joins them.
-        for (i, row) in own.enumerate() {
-            curves.push(Curve {
-                label: if i == 0 {
-                    label.to_owned()
-                } else {
-                    String::new()
-                },
-                note: None,
-                points: vec![(x.value(&row.seen), y.value(&row.seen))],
-                stroke: Stroke::number(index).marked(marks),
-            });
-        }
-    }
-    let turned = |curve: &Curve| Curve {
-        points: curve.points.iter().map(|(x, y)| (*y, *x)).collect(),
-        ..curve.clone()
-    };
-    let turned: Vec<Curve> = curves.iter().map(turned).collect();
-    let figure = Figure {
-        paper: false,
-        title: format!("{}: section {} = 0", problem.title(), at.text()),
-        subtitle: format!(
-            "{} crossings, h = {}",
-            rows.len(),
-            plain(problem.plan.case.h)
-        ),
-        x: Axis::around(&turned),
-        x_label: x.text().to_owned(),
-        panels: vec![Panel {
-            map: None,
-            caption: format!("{} against {}", y.text(), x.text()),
-            y_label: y.text().to_owned(),
-            y: Axis::around(&curves),
-            height: 520,
-            curves,
-        }],
-    };
-    figure.svg()
 }
