@@ -7,6 +7,7 @@
 pub mod arguments;
 pub mod case_file;
 mod commands;
+mod derivatives;
 mod models;
 mod named;
 mod output;
@@ -27,6 +28,7 @@ pub use terminal::{Streams, failure};
 use clap::ArgMatches;
 use clebsch_interpret::Cache;
 use commands::{check, compare, converge, derive, figures, list, new, plot, run, show, sweep};
+use commands::{equilibrium, fit, gradient, linearise, lyapunov, orbit, section};
 use failure::{DONE, FAILED, Failure, USAGE};
 use gallery::Gallery;
 use std::ffi::OsString;
@@ -97,8 +99,8 @@ pub fn execute(
         }
     };
     let as_json = matches.subcommand().is_some_and(|(name, matches)| {
-        ["run", "sweep", "collect", "compare", "converge", "figures"].contains(&name)
-            && matches.get_flag("json")
+        let flag = matches.try_get_one::<bool>("json");
+        !["list"].contains(&name) && flag.is_ok_and(|given| given == Some(&true))
     });
     let without_cache = matches.subcommand().is_some_and(|(_, matches)| {
         let flag = matches.try_get_one::<bool>(arguments::NO_CACHE);
@@ -146,6 +148,13 @@ fn dispatch(
         Some(("collect", matches)) => sweep::collect(matches, streams),
         Some(("compare", matches)) => compare::compare(gallery, matches, streams),
         Some(("converge", matches)) => converge::converge(gallery, matches, streams),
+        Some(("gradient", matches)) => gradient::gradient(gallery, matches, streams),
+        Some(("linearise", matches)) => linearise::linearise(gallery, matches, streams),
+        Some(("equilibrium", matches)) => equilibrium::equilibrium(gallery, matches, streams),
+        Some(("orbit", matches)) => orbit::orbit(gallery, matches, streams),
+        Some(("fit", matches)) => fit::fit(gallery, matches, streams),
+        Some(("lyapunov", matches)) => lyapunov::lyapunov(gallery, matches, streams),
+        Some(("section", matches)) => section::section(gallery, matches, streams),
         Some(("plot", matches)) => plot::plot(matches, streams),
         Some(("figures", matches)) => figures::figures(gallery, matches, streams),
         Some(("derive", matches)) => {

@@ -1,6 +1,7 @@
 //! The command line: subcommands, options and the checks that need no model.
 //! Takes the width of the terminal; gives the clap command, whose matches the commands read.
 
+mod analyses;
 mod foreign_option;
 mod of_a_case;
 mod option;
@@ -92,6 +93,13 @@ pub fn command(width: Option<usize>) -> Command {
         .subcommand(runs::collect())
         .subcommand(runs::compare())
         .subcommand(runs::converge())
+        .subcommand(analyses::gradient())
+        .subcommand(analyses::linearise())
+        .subcommand(analyses::equilibrium())
+        .subcommand(analyses::orbit())
+        .subcommand(analyses::section())
+        .subcommand(analyses::lyapunov())
+        .subcommand(analyses::fit())
         .subcommand(prints::plot())
         .subcommand(prints::figures())
         .subcommand(prints::derive())

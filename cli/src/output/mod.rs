@@ -9,6 +9,7 @@ mod multipliers;
 mod output_target;
 pub(crate) mod places;
 pub(crate) mod points;
+pub(crate) mod results;
 pub(crate) mod run_json;
 pub(crate) mod sample_selection;
 pub(crate) mod samples;

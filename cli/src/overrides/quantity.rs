@@ -109,6 +109,20 @@ impl Quantity {
         }
     }
 
+    /// For a parameter: the fields and entries that it sets, each with a sign.
+    pub fn of_parameter(&self) -> Option<Vec<(usize, usize, f64)>> {
+        let Place::Parameter(fields, entries) = &self.place else {
+            return None;
+        };
+        let of = |field: &usize| {
+            let field = *field;
+            entries
+                .iter()
+                .map(move |(entry, sign)| (field, *entry, *sign))
+        };
+        Some(fields.iter().flat_map(of).collect())
+    }
+
     /// Sets a value in a case, or in its initial velocities.
     pub fn put(&self, value: f64, case: &mut Case, motion: &mut Motion) {
         let entries = |list: &mut Vec<Vec<f64>>, fields: &[usize], entries: &[(usize, f64)]| {

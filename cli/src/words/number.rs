@@ -55,9 +55,24 @@ pub(crate) fn short(number: f64) -> String {
     plain(format!("{number:.3e}").parse().unwrap_or(number))
 }
 
+/// A number with this many decimals. Zero has no sign.
+pub(crate) fn decimals(number: f64, count: usize) -> String {
+    let text = format!("{number:.count$}");
+    match text.trim_start_matches(['-', '0', '.']).is_empty() {
+        true => text.trim_start_matches('-').to_owned(),
+        false => text,
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{value, whole};
+    use super::{decimals, value, whole};
+
+    #[test]
+    fn zero_has_no_sign() {
+        assert_eq!(decimals(-1e-9, 3), "0.000");
+        assert_eq!(decimals(-0.25, 3), "-0.250");
+    }
 
     #[test]
     fn expressions_have_values_and_others_say_why_not() {

@@ -1,6 +1,7 @@
 //! The commands as a user types them: what they print, write and reject. A single binary, since linking is most of
 //! the cost of a test.
 
+mod analyses;
 mod attitudes;
 mod bits;
 mod book;

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 /// The folders of the command, each after the folders from which it may import.
-const ORDER: [&str; 14] = [
+const ORDER: [&str; 15] = [
     "words",
     "terminal",
     "arguments",
@@ -14,6 +14,7 @@ const ORDER: [&str; 14] = [
     "overrides",
     "named",
     "plan",
+    "derivatives",
     "trajectory",
     "output",
     "plots",
