@@ -305,6 +305,12 @@ impl Recording {
         self.steps.len()
     }
 
+    /// The steps so far.
+    #[must_use]
+    pub fn steps(&self) -> &[Step] {
+        &self.steps
+    }
+
     /// The number of decisions.
     #[must_use]
     pub fn guards(&self) -> usize {

@@ -37,7 +37,7 @@ impl Started {
         state: &Value<f64>,
         then: impl FnOnce(&mut Places<Traced>) -> Recorded,
     ) -> Option<Linear> {
-        let made = record_with_derivatives(|| {
+        let made = record_with_derivatives(self.steady(), || {
             let mut places = self.places(h)?;
             *places.get_mut(at::STATE)? = map(state, &mut Traced::input)?;
             then(&mut places)
@@ -92,7 +92,7 @@ impl Started {
         xi: &[f64],
         then: impl FnOnce(&mut Places<Traced>) -> Recorded,
     ) -> Option<Linear> {
-        let made = record_with_derivatives(|| {
+        let made = record_with_derivatives(self.steady(), || {
             let mut places = self.places(self.h)?;
             let own = map(given, &mut Traced::input)?;
             let xi: Vec<Traced> = xi.iter().map(|x| Traced::input(*x)).collect();
@@ -106,7 +106,7 @@ impl Started {
 
     /// The numbers of the model and then of the initial state, as functions of parameters and initial values.
     pub fn record_start(&self) -> Option<Linear> {
-        let made = record_with_derivatives(|| {
+        let made = record_with_derivatives(0, || {
             let mut places = self.functions().places();
             let parameters = map(&self.begun.parameters, &mut Traced::input)?;
             let model = self.functions().model(parameters, &mut places)?;

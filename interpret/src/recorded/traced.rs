@@ -28,6 +28,30 @@ struct Here {
     cuts: Vec<RecordingPause>,
     /// Whether derivatives of the tape must be exact, too.
     has_derivatives: bool,
+    /// The number of first inputs that are the same whenever the tape runs.
+    steady: usize,
+    /// For the first steps, whether they depend on other inputs.
+    late: Vec<bool>,
+}
+
+impl Here {
+    /// Whether a number depends on inputs that change.
+    fn is_late(&mut self, at: Option<Scalar>) -> bool {
+        let Some(at) = at else {
+            return false;
+        };
+        for step in self.recording.steps().iter().skip(self.late.len()) {
+            let by_use = step.uses().into_iter().flatten();
+            let by_use = by_use.fold(false, |any, used| any | self.late[used.step()]);
+            let is_late = match step {
+                Step::Input(index) => *index as usize >= self.steady,
+                Step::Output(..) => true,
+                _ => by_use,
+            };
+            self.late.push(is_late);
+        }
+        self.late.get(at.step()).copied().unwrap_or(true)
+    }
 }
 
 thread_local! {
@@ -72,12 +96,15 @@ pub struct WithDerivatives {
     pub serves_others: bool,
 }
 
-/// Records `body` with exact derivatives. Returns nothing if it gives nothing, or if the tape is too long.
+/// Records `body` with exact derivatives, for runs whose first `steady` inputs stay the same. Returns nothing if it gives
+/// nothing, or if the tape is too long.
 pub fn record_with_derivatives(
+    steady: usize,
     body: impl FnOnce() -> Option<Vec<Traced>>,
 ) -> Option<WithDerivatives> {
     HERE.set(Some(Here {
         has_derivatives: true,
+        steady,
         ..Here::default()
     }));
     let outputs = body();
@@ -220,7 +247,7 @@ impl Traced {
     /// Takes the value off the tape, which invalidates the recording.
     fn read(self) -> f64 {
         if self.at.is_some() {
-            noted(|here| here.spoiled = true);
+            noted(|here| here.spoiled |= here.is_late(self.at));
         }
         self.value
     }
