@@ -88,14 +88,7 @@ pub(super) fn branch(
         let values = energy
             .values(&start, from)
             .map_err(|why| problem.refused(&why))?;
-        continuation(
-            &energy,
-            &start,
-            &values,
-            from,
-            to,
-            &Track::between(from, to),
-        )
+        continuation(&energy, &start, &values, from, to, &track(from, to))
     };
     let found = found.map_err(|why| match why {
         ContinuationError::Start(why) => none(problem, &why),
@@ -160,4 +153,14 @@ pub(super) fn branch(
         out.write_all(paragraph(&line, streams.width, 2).as_bytes())?;
     }
     Ok(DONE)
+}
+
+/// Steps that are short enough for a picture.
+fn track(from: f64, to: f64) -> Track {
+    let span = (to - from).abs();
+    Track {
+        first: span / 100.0,
+        largest: span / 40.0,
+        ..Track::between(from, to)
+    }
 }

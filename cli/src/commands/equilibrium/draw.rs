@@ -102,7 +102,7 @@ pub(super) fn figure(problem: &Problem, followed: &Followed) -> Result<String, S
         paper: false,
         title: format!("{}: branch of critical points", problem.title()),
         subtitle: format!(
-            "{} points; discs mark {folds} folds, circles mark {} changes of stability",
+            "{} points; folds (discs): {folds}, changes of stability (circles): {}",
             branch.points.len(),
             branch.specials.len() - folds
         ),

@@ -1,6 +1,8 @@
 //! `clebsch gradient`: the derivative of an observed quantity in all parameters, initial values and the step size.
 //! Takes a case and an expression; gives a table, JSON and CSV.
 
+mod beside;
+
 use crate::derivatives::coordinates::{self, turns};
 use crate::derivatives::expression::Expression;
 use crate::derivatives::problem::Problem;
@@ -13,9 +15,7 @@ use crate::words::columns::aligned;
 use crate::words::number::plain;
 use crate::words::width::paragraph;
 use clap::ArgMatches;
-use clebsch::card::Kind;
 use clebsch::derivatives::{Cost, Gradient, Seen};
-use clebsch::scalar::largest;
 use serde_json::{Value, json};
 
 /// Files of the command.
@@ -48,70 +48,6 @@ impl Cost for Observed<'_> {
         self.value += self.of.value(&all);
         self.of.weigh(&all, weights, of_invariants);
     }
-}
-
-/// The size of entries beside the diagonal where derivatives in them are taken, relative to the matrix.
-const NEARBY: f64 = 1e-9;
-
-/// Smaller differences of derivatives, relative to the largest one, are rounding or of second order.
-const NONE: f64 = 1e-6;
-
-/// Steps of bodies in their principal axes do not read the entries beside the diagonal of the moments, so that recorded
-/// steps miss derivatives in them. Puts the derivatives of a body with small entries in their place; gives whether
-/// there are any.
-fn off_diagonal(
-    problem: &Problem,
-    of: &Expression,
-    sum: bool,
-    found: &mut Gradient,
-) -> Result<bool, Failure> {
-    let mut case = problem.plan.case.clone();
-    let mut entries: Vec<(usize, usize)> = Vec::new();
-    let fields = problem.card.parameters.iter().zip(&mut case.parameters);
-    for (field, (own, values)) in fields.enumerate() {
-        if !matches!(own.kind, Kind::Symmetric | Kind::SecondMoments) {
-            continue;
-        }
-        let size = largest(values.iter().map(|x| x.abs()));
-        for (at, value) in values.iter_mut().enumerate() {
-            let is_beside = at / own.cols != at % own.cols;
-            if is_beside && *value == 0.0 {
-                *value = NEARBY * size;
-                entries.push((field, at));
-            }
-        }
-    }
-    if entries.is_empty() {
-        return Ok(false);
-    }
-    let steps = problem.plan.case.steps;
-    let mut cost = Observed {
-        of,
-        last: steps,
-        sum,
-        value: 0.0,
-    };
-    let nearby = problem
-        .open_case(&case)
-        .and_then(|mut flow| flow.gradient(steps, &mut cost))
-        .map_err(|why| problem.refused(&why))?;
-    let all = || nearby.parameters.iter().chain(&nearby.initial).flatten();
-    let size = largest(all().map(|x| x.abs()));
-    let mut any = false;
-    for (field, at) in entries {
-        let slope = nearby.parameters.get(field).and_then(|own| own.get(at));
-        let place = found
-            .parameters
-            .get_mut(field)
-            .and_then(|own| own.get_mut(at));
-        if let (Some(slope), Some(place)) = (slope, place)
-            && (slope - *place).abs() > NONE * size
-        {
-            *place = *slope;
-            any = true;
-        }
-    }
-    Ok(any)
 }
 
 /// One row of the result: name, value and derivative.
@@ -148,7 +84,7 @@ pub(crate) fn gradient(
         flow.gradient(steps, &mut cost)
     };
     let mut found = found.map_err(|why| problem.refused(&why))?;
-    let nearby = off_diagonal(&problem, &of, cost.sum, &mut found)?;
+    let nearby = beside::off_diagonal(&problem, &of, cost.sum, &mut found)?;
     let rows = rows(&problem, &flow.dimensions(), &found);
     if let Some(row) = rows.iter().find(|row| !row.derivative.is_finite()) {
         return Err(Failure::Failed(format!(
@@ -165,6 +101,7 @@ pub(crate) fn gradient(
         "sum": cost.sum,
         "steps": steps,
         "quantity": value,
+        "beside_the_diagonal_at": nearby.then_some(beside::NEARBY),
         "derivatives": rows.iter().map(row).collect::<Vec<Value>>(),
     }));
     let [csv, json] = FILES;
@@ -188,7 +125,8 @@ pub(crate) fn gradient(
     ];
     if nearby {
         notes.push(format!(
-            "Derivatives in zero entries beside the diagonal of a symmetric matrix are taken at entries of {NEARBY:e}."
+            "Derivatives in zero entries beside the diagonal of a symmetric matrix are taken at entries of {:e}.",
+            beside::NEARBY
         ));
     }
     if problem.card.initial.iter().any(turns) {
