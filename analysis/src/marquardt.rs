@@ -134,7 +134,7 @@ fn cosine<P>(of: &Linearised<P>) -> f64 {
         .iter()
         .zip(of.norms.iter())
         .map(product)
-        .fold(0.0, f64::max);
+        .fold(0.0, |most: f64, x| if x.is_nan() { x } else { most.max(x) });
     if of.r.norm() > 0.0 {
         largest / of.r.norm()
     } else {

@@ -12,7 +12,6 @@ use crate::words::plain::shown;
 use clap::ArgMatches;
 use clebsch::card::{Card, Settings};
 use clebsch::derivatives::{Derivatives, NoDerivative, Point};
-use clebsch_interpret::MOST_BODY_BY_BODY;
 use serde_json::{Value, json};
 
 /// A model with a plan.
@@ -172,20 +171,8 @@ fn from_text(compiled: &Card, plan: &Plan, gallery: &Gallery) -> Result<Card, Fa
             compiled.kebab
         ))
     };
-    // Loops over sites have no derivatives, so that a chain is expanded.
     if let Some(choice) = &plan.choice {
-        if let Some(count) = choice
-            .counts
-            .iter()
-            .find(|count| **count > MOST_BODY_BY_BODY)
-        {
-            return Err(Failure::Failed(format!(
-                "the case of model `{}` has {count} sites, and clebsch differentiates chains of at most {MOST_BODY_BY_BODY}. Use a \
-                 case with fewer sites",
-                compiled.kebab
-            )));
-        }
-        let read = clebsch_interpret::card_body_by_body(compiled.source, choice);
+        let read = gallery.cache.card_on_lattice(compiled.source, choice);
         return read.map(|(card, _)| card).map_err(|why| no(&why));
     }
     let read = gallery.cache.card(compiled.source);

@@ -10,9 +10,9 @@ use clebsch_core::lattice::{ChainConfig, Lattice};
 use clebsch_core::pipeline;
 use clebsch_models::Case;
 
-const TODA: &str = include_str!("../../../models/lattices/toda-chain.clebsch");
-const TOPS: &str = include_str!("../../../models/lattices/coupled-tops.clebsch");
-const SINE_GORDON: &str = include_str!("../../../models/lattices/sine-gordon.clebsch");
+pub const TODA: &str = include_str!("../../../models/lattices/toda-chain.clebsch");
+pub const TOPS: &str = include_str!("../../../models/lattices/coupled-tops.clebsch");
+pub const SINE_GORDON: &str = include_str!("../../../models/lattices/sine-gordon.clebsch");
 
 clebsch::model! {
     pub model Three {
@@ -27,7 +27,7 @@ clebsch::model! {
     }
 }
 
-fn choice(source: &str, count: usize, ring: bool, ends: [&str; 2]) -> ChainConfig {
+pub fn choice(source: &str, count: usize, ring: bool, ends: [&str; 2]) -> ChainConfig {
     let model = pipeline::parse_source(source).unwrap();
     let lattice = Lattice::read(&model).unwrap();
     let choice = ChainConfig::representative(&lattice, 1);
@@ -41,14 +41,14 @@ fn choice(source: &str, count: usize, ring: bool, ends: [&str; 2]) -> ChainConfi
     }
 }
 
-fn card(source: &str, count: usize, ring: bool, ends: [&str; 2]) -> Card {
+pub fn card(source: &str, count: usize, ring: bool, ends: [&str; 2]) -> Card {
     clebsch_interpret::card_on_lattice(source, &choice(source, count, ring, ends))
         .expect("is read")
         .0
 }
 
 /// The values of fields in the order of the card, by the name of the quantity and the site.
-fn values(
+pub fn values(
     fields: &[clebsch::card::Field],
     of: &dyn Fn(&str, Option<usize>) -> Vec<f64>,
 ) -> Vec<Vec<f64>> {
@@ -267,7 +267,7 @@ fn tops_in_phase_with_free_ends_are_one_top() {
 }
 
 /// Beads on hoops with springs across: a drive along the hoops does not act on the positions across.
-const BEADS: &str = "model Beads { label i in 0..N; periodic; param m, k: Real; field x: Real at nodes; field q: Real at nodes;
+pub const BEADS: &str = "model Beads { label i in 0..N; periodic; param m, k: Real; field x: Real at nodes; field q: Real at nodes;
     lagrangian = m*((next(x) - x)^2 + (1 + (x^2 + next(x)^2)/2)*(next(q) - q)^2)/(2*h) - (h*k/2)*(next(x, i) - x)^2; }";
 
 #[test]

@@ -1,8 +1,6 @@
 //! `clebsch gradient`: the derivative of an observed quantity in all parameters, initial values and the step size.
 //! Takes a case and an expression; gives a table, JSON and CSV.
 
-mod beside;
-
 use crate::derivatives::coordinates::{self, turns};
 use crate::derivatives::expression::Expression;
 use crate::derivatives::problem::Problem;
@@ -83,8 +81,7 @@ pub(crate) fn gradient(
         let _told = Waiting::showing("differentiating the run".to_owned(), streams.progress);
         flow.gradient(steps, &mut cost)
     };
-    let mut found = found.map_err(|why| problem.refused(&why))?;
-    let nearby = beside::off_diagonal(&problem, &of, cost.sum, &mut found)?;
+    let found = found.map_err(|why| problem.refused(&why))?;
     let rows = rows(&problem, &flow.dimensions(), &found);
     if let Some(row) = rows.iter().find(|row| !row.derivative.is_finite()) {
         return Err(Failure::Failed(format!(
@@ -101,7 +98,6 @@ pub(crate) fn gradient(
         "sum": cost.sum,
         "steps": steps,
         "quantity": value,
-        "beside_the_diagonal_at": nearby.then_some(beside::NEARBY),
         "derivatives": rows.iter().map(row).collect::<Vec<Value>>(),
     }));
     let [csv, json] = FILES;
@@ -123,12 +119,6 @@ pub(crate) fn gradient(
     let mut notes = vec![
         "Derivatives are exact for the discrete motion, at fixed momenta and a fixed number of steps.".to_owned(),
     ];
-    if nearby {
-        notes.push(format!(
-            "Derivatives in zero entries beside the diagonal of a symmetric matrix are taken at entries of {:e}.",
-            beside::NEARBY
-        ));
-    }
     if problem.card.initial.iter().any(turns) {
         notes.push("turn_i(X) turns X about body axis i, in radians.".to_owned());
     }

@@ -1,7 +1,7 @@
 //! Every model of the gallery: tangents of steps, slopes of observables and invariants, gradients of runs.
 
 use super::differences::{NEAR, columns, off, off_by, slope};
-use clebsch::card::{Card, Settings};
+use clebsch::card::{Card, Kind, Settings};
 use clebsch::derivatives::{Cost, Derivatives, Seen};
 use clebsch_models::{Case, Entry, gallery};
 use nalgebra::{DMatrix, DVector};
@@ -33,12 +33,12 @@ fn cases(of_each: usize) -> impl Iterator<Item = (Card, Case)> {
 }
 
 /// The weight of an observable in the cost.
-fn weight(i: usize) -> f64 {
+pub fn weight(i: usize) -> f64 {
     1.0 / (1.0 + i as f64)
 }
 
 /// A weighted sum of all observables at one node.
-struct Last(u64);
+pub struct Last(pub u64);
 
 impl Cost for Last {
     fn is_at(&self, node: u64) -> bool {
@@ -199,20 +199,32 @@ fn gradients_in_parameters_and_the_step_size_are_limits_of_differences() {
             gradient.step
         );
         for (k, field) in card.parameters.iter().enumerate() {
-            // Entries of matrices cannot be changed alone.
-            if field.cols != 1 {
-                continue;
-            }
             for i in 0..field.count() {
+                // Both entries of a symmetric matrix change; the derivative is their sum.
+                let (row, col) = (i / field.cols, i % field.cols);
+                let mirrored = match field.kind {
+                    Kind::Symmetric | Kind::SecondMoments => col * field.cols + row,
+                    Kind::Diagonal | Kind::Skew => continue,
+                    _ => i,
+                };
+                let largest = case.parameters[k]
+                    .iter()
+                    .fold(1e-2, |m: f64, x| m.max(x.abs()));
                 let by_entry = slope(
                     &mut |by| {
                         let mut case = case.clone();
                         case.parameters[k][i] += by;
+                        if mirrored != i {
+                            case.parameters[k][mirrored] += by;
+                        }
                         vec![cost(&mut *open(&card, &case, settings), STEPS)]
                     },
-                    1e-3 * case.parameters[k][i].abs().max(1e-2),
+                    1e-3 * largest,
                 );
-                let found = gradient.parameters[k][i];
+                let found = match mirrored == i {
+                    true => gradient.parameters[k][i],
+                    false => gradient.parameters[k][i] + gradient.parameters[k][mirrored],
+                };
                 // Rounding of a run, divided by the smallest distance.
                 assert!(
                     (by_entry[0] - found).abs() < 1e-7 * found.abs().max(1.0),

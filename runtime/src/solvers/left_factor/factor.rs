@@ -330,7 +330,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
     #[inline]
     pub(super) fn framed_momentum(&self, v: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         // If the frame is the identity, nothing is computed.
-        match self.plain {
+        match self.plain && T::order() == 0 {
             true => *v,
             false => self.left.tr_mul(&(v * self.left)),
         }
@@ -339,7 +339,7 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
     /// Transforms a rotation from the principal frame to the given frame.
     #[inline]
     pub(super) fn unframed(&self, r: &SMatrix<T, N, N>) -> Orthogonal<N, T> {
-        match self.plain {
+        match self.plain && T::order() == 0 {
             true => Orthogonal::nearby(r),
             false => Orthogonal::nearby(&(self.left * r * self.right.transpose())),
         }

@@ -39,7 +39,7 @@ pub fn forced<T: Real>(
     h_n: &Vector3<T>,
 ) -> Result<Rotation<T>, MoserVeselovError> {
     if T::LANES > 1 {
-        let (all, found) = match body.diagonal {
+        let (all, found) = match body.is_diagonal() {
             true => in_all_lanes::<T, true>(body, h_n),
             false => in_all_lanes::<T, false>(body, h_n),
         };
@@ -61,7 +61,7 @@ pub(in crate::solvers) fn forced_together<T: Real, const COUNT: usize>(
     body: &Poinsot<T>,
     h_n: &[Vector3<T>; COUNT],
 ) -> ([Rotation<T>; COUNT], bool) {
-    match body.diagonal {
+    match body.is_diagonal() {
         true => in_a_loop::<T, true, COUNT>(body, h_n),
         false => in_a_loop::<T, false, COUNT>(body, h_n),
     }
@@ -85,7 +85,7 @@ fn in_a_loop<T: Real, const DIAGONAL: bool, const COUNT: usize>(
 #[inline(always)]
 pub(super) fn turn<T: Real>(body: &Poinsot<T>, u: [T; 3]) -> Option<[T; 4]> {
     // There is one branch, with straight-line code on both sides.
-    if body.diagonal {
+    if body.is_diagonal() {
         principal::<T, true>(body, u)
     } else {
         principal::<T, false>(body, u)

@@ -277,10 +277,11 @@ impl<T: Real> Poinsot<T> {
         Self::with_constants(j.map(|x| x * T::from_f64(self.unit)), inertia, self.unit)
     }
 
-    /// Whether the body is given in principal axes; the solver is then faster.
+    /// Whether the body is given in principal axes; the solver is then faster. Always false for a scalar with derivatives,
+    /// because entries that are zero may have derivatives.
     #[inline(always)]
     pub fn is_diagonal(&self) -> bool {
-        self.diagonal
+        T::order() == 0 && self.diagonal
     }
 
     /// One lane of the body, without derivatives.

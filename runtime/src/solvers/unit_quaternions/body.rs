@@ -60,10 +60,11 @@ crate::scalar::of_scalars!(QuaternionBody {
 });
 
 impl<T: Real> QuaternionBody<T> {
-    /// Whether the off-diagonal entries are exactly zero; steps are then cheaper.
+    /// Whether the off-diagonal entries are exactly zero; steps are then cheaper. Always false for a scalar with
+    /// derivatives, because these entries may have derivatives.
     #[doc(hidden)]
     pub fn is_diagonal(&self) -> bool {
-        self.diagonal
+        T::order() == 0 && self.diagonal
     }
 
     /// Validates `A` (symmetric up to a few roundings) and `β`, in every lane. `field` is the name of `A` in errors.

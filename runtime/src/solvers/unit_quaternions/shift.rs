@@ -92,7 +92,7 @@ fn gyroscopic<T: Real, const DIAGONAL: bool>(
 pub(super) fn change<T: Real>(body: &QuaternionBody<T>, scale: T, turn: &Turn<T>) -> [T; 3] {
     let [_, x, y, z] = turn.omega;
     let n = [x, y, z];
-    let gyro = if body.diagonal {
+    let gyro = if body.is_diagonal() {
         gyroscopic::<T, true>(body, n, n)
     } else {
         let image = symmetric_times::<T, false>(body.moments, body.products, n);
@@ -280,7 +280,7 @@ impl<T: Real> Equation<T> {
 #[inline(always)]
 pub(super) fn turn<T: Real>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<Turn<T>> {
     // One branch, with straight-line code on both sides.
-    if body.diagonal {
+    if body.is_diagonal() {
         principal::<T, true>(body, u)
     } else {
         principal::<T, false>(body, u)
