@@ -122,6 +122,11 @@ fn results() {
 }
 
 #[test]
+fn derivatives() {
+    follow("derivatives");
+}
+
+#[test]
 fn long_runs() {
     follow("long-runs");
 }
@@ -222,6 +227,7 @@ fn every_chapter_is_followed() {
         "constraints",
         "fluids",
         "results",
+        "derivatives",
         "long-runs",
         // Its code runs in `python/tests/test_book.py`.
         "python",

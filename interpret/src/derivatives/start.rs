@@ -8,6 +8,9 @@ use clebsch::derivatives::{NoDerivative, Point};
 use clebsch::integrate::{Offer, Way};
 use std::ops::Range;
 
+/// The step size of a substep, with its workspace.
+pub type Substep = (f64, Box<dyn Stepping>);
+
 /// A model, its initial state, and how it is stepped.
 #[derive(Clone)]
 pub struct Started {
@@ -61,7 +64,7 @@ impl Started {
     }
 
     /// The step sizes of the substeps, with workspaces for a step from this state.
-    pub fn parts(&self, state: &Point) -> Result<Vec<(f64, Box<dyn Stepping>)>, NoDerivative> {
+    pub fn parts(&self, state: &Point) -> Result<Vec<Substep>, NoDerivative> {
         let each = self.factors.iter().map(|factor| {
             let h = self.h * factor;
             let part = self.source.stepping(&self.begun, state, h, &self.choice)?;
