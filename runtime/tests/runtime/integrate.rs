@@ -47,6 +47,7 @@ static CARD: Card = Card {
     solvers: &[],
     dimensions: &[],
     sized: &|_| None,
+    differentiate: None,
 };
 
 /// Counts steps; its invariant deviates at node 5 only, and it fails beyond `stop`.

@@ -16,13 +16,13 @@ fn read(entry: &Entry, case: &Case) -> Card {
     (card.sized)(&sizes).expect("a size of the gallery")
 }
 
-fn open(card: &Card, case: &Case, settings: Settings) -> Box<dyn Derivatives> {
+pub fn open(card: &Card, case: &Case, settings: Settings) -> Box<dyn Derivatives> {
     let differentiate = card.differentiate.expect("a model from its text");
     differentiate(&case.parameters, &case.initial, settings).expect("a case of the gallery")
 }
 
 /// The models with their first cases.
-fn cases(of_each: usize) -> impl Iterator<Item = (Card, Case)> {
+pub fn cases(of_each: usize) -> impl Iterator<Item = (Card, Case)> {
     gallery().into_iter().flat_map(move |entry| {
         let cases: Vec<Case> = entry.cases.iter().take(of_each).cloned().collect();
         cases

@@ -3,3 +3,4 @@
 mod chains;
 mod differences;
 mod gallery;
+mod symplectic;
