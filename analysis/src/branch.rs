@@ -96,7 +96,7 @@ impl<E: Energy> Stepper<'_, E> {
         })
     }
 
-    /// What a user sees of a place.
+    /// A place as users see it.
     pub fn branch_point(&self, of: &Place<E::State>) -> BranchPoint<E::State> {
         BranchPoint {
             p: of.point.p,
@@ -140,7 +140,7 @@ impl<E: Energy> Stepper<'_, E> {
     }
 
     /// The place between two places where `function` is zero, and whether it was located to rounding. Steps near other
-    /// branches may fail; the place is then the best one before. None if `function` has no change of sign.
+    /// branches may fail; the place is then the best one before. None if `function` keeps its sign.
     pub fn zero(
         &self,
         from: &Place<E::State>,

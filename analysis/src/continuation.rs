@@ -17,7 +17,7 @@ const DOUBTFUL: f64 = 1e-4;
 ///
 /// # Errors
 ///
-/// An argument cannot be used, there is no critical point at the start, or steps become too small.
+/// An argument cannot be used, the search at the start fails, or steps become too small.
 pub fn continuation<E: Energy>(
     energy: &E,
     start: &E::State,

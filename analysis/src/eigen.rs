@@ -244,5 +244,8 @@ pub fn pairing_defect(multipliers: &[Complex<f64>]) -> f64 {
             .map(|b| (a * b - 1.0).norm())
             .fold(f64::INFINITY, f64::min)
     };
-    multipliers.iter().map(best).fold(0.0, f64::max)
+    multipliers
+        .iter()
+        .map(best)
+        .fold(0.0, |most: f64, x| if x.is_nan() { x } else { most.max(x) })
 }

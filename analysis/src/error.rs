@@ -13,12 +13,12 @@ pub enum Invalid {
     },
     /// A number that must be positive is zero.
     Zero {
-        /// What the number counts.
+        /// The counted things.
         what: &'static str,
     },
     /// A number is larger than allowed.
     TooMany {
-        /// What the number counts.
+        /// The counted things.
         what: &'static str,
         /// The number.
         given: usize,
@@ -27,12 +27,12 @@ pub enum Invalid {
     },
     /// A value is infinite or NaN.
     NotFinite {
-        /// What has this value.
+        /// The quantity with this value.
         what: &'static str,
     },
     /// An array has a wrong shape.
     Shape {
-        /// What has this shape.
+        /// The quantity with this shape.
         what: &'static str,
         /// Its rows and columns.
         shape: (usize, usize),
@@ -41,7 +41,7 @@ pub enum Invalid {
     },
     /// A number is outside its range.
     Range {
-        /// What the number is.
+        /// The name of the number.
         what: &'static str,
         /// The number.
         given: f64,

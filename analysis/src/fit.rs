@@ -1,4 +1,4 @@
-//! What a fit by least squares needs and gives. Parameters can be on a manifold.
+//! The input and the result of a fit by least squares. Parameters can be on a manifold.
 
 use crate::error::{Invalid, clause};
 use nalgebra::{DMatrix, DVector};

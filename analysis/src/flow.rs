@@ -1,4 +1,4 @@
-//! What the algorithms need of a discrete system.
+//! The interface between the algorithms and a discrete system.
 
 use crate::error::{self, Invalid};
 use nalgebra::{DMatrix, DVector};
@@ -109,7 +109,7 @@ pub trait Energy {
     fn difference(&self, from: &Self::State, to: &Self::State) -> Vec<f64>;
 
     /// The directions of symmetry at a state: n rows, one column for each generator of the group. Null directions of
-    /// the second variation in their span do not count as degenerate. The default has no columns.
+    /// the second variation in their span do not count as degenerate. The default is a matrix without columns.
     fn symmetries(&self, _at: &Self::State) -> DMatrix<f64> {
         DMatrix::zeros(self.dimension(), 0)
     }

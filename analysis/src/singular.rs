@@ -52,7 +52,10 @@ impl Singular {
 
     /// The largest singular value, zero without columns.
     pub fn largest(&self) -> f64 {
-        self.values.iter().copied().fold(0.0, f64::max)
+        self.values.iter().fold(
+            0.0,
+            |most: f64, x| if x.is_nan() { *x } else { most.max(*x) },
+        )
     }
 
     /// The number of singular values above `relative` times the largest one.

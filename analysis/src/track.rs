@@ -55,12 +55,12 @@ pub struct BranchPoint<S> {
     pub variation: Variation,
 }
 
-/// What happens between two points of a branch.
+/// Events between two points of a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// The branch turns back in p.
     Fold,
-    /// The number of negative directions of the second variation changes, so that other branches may meet this one.
+    /// The number of negative directions of the second variation changes, so that other branches may meet here.
     BranchPoint {
         /// The number before.
         before: usize,
@@ -72,7 +72,7 @@ pub enum Event {
 /// An event of a branch.
 #[derive(Clone, Debug)]
 pub struct Special<S> {
-    /// What happens.
+    /// The event.
     pub event: Event,
     /// The number of the point before it.
     pub after_point: usize,
@@ -109,7 +109,7 @@ pub struct Branch<S> {
 pub enum ContinuationError<E> {
     /// An argument cannot be used.
     Invalid(Invalid),
-    /// There is no critical point at p = a near the start.
+    /// The search for a critical point at p = a fails near the start.
     Start(EquilibriumError<E>),
     /// Steps became too small.
     Stalled {

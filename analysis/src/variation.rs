@@ -21,7 +21,7 @@ const RANK: f64 = 1e-9;
 /// How much of a null direction may lie outside the directions of symmetry, as the sine of an angle.
 const OUTSIDE: f64 = 1e-4;
 
-/// What kind of critical point the second variation shows.
+/// The kind of a critical point by its second variation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Definiteness {
     /// Positive definite, or no directions at all. The point is stable, also for a potential energy.
@@ -35,7 +35,7 @@ pub enum Definiteness {
         /// The number of positive directions.
         positive: usize,
     },
-    /// Some directions that are no symmetry have eigenvalue zero, so that higher derivatives decide.
+    /// Some directions outside the symmetries have eigenvalue zero, so that higher derivatives decide.
     Degenerate {
         /// The number of these directions.
         null: usize,

@@ -172,7 +172,7 @@ fn stiff_units() {
         .iter()
         .map(|mode| mode.frequency)
         .collect();
-    // Errors are those of the fast mode: 1e3 times 1e-12.
+    // The fast mode determines the errors: 1e3 times 1e-12.
     assert!(
         (frequency[3] - 1e3).abs() < 1e-8 && (frequency[2] - 1e-3).abs() < 1e-8,
         "{frequency:?}"

@@ -163,7 +163,7 @@ fn two_crossings_within_a_step_need_the_rate() {
         "{times:?}"
     );
     assert!(!found.crossings[0].upward && found.crossings[1].upward);
-    // A turn that stays on one side is no crossing.
+    // A turn that stays on one side does not count as a crossing.
     let above = |z: &[f64; 2]| z[0] * z[0] + 0.01;
     let with = Section {
         value: &above,

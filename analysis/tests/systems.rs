@@ -4,7 +4,7 @@ use clebsch_analysis::{Energy, First, Flow};
 use nalgebra::{DMatrix, DVector};
 use std::fmt;
 
-/// Why a test system has no step.
+/// Why a step of a test system fails.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Undefined;
 

@@ -1,7 +1,7 @@
 //! Exact derivatives of steps, of observed quantities and of whole runs, for a model whose Rust type is hidden.
 //!
-//! States have local coordinates: a group element `g` is moved to `g retract(xi)` (coordinates in the body frame), and
-//! every other initial value is moved entry by entry. They are the coordinates of [`Card::initial`](crate::card::Card),
+//! States have local coordinates: a rotation or a rigid motion `g` is moved to `g retract(xi)` (coordinates in the body
+//! frame), and every other initial value is moved entry by entry. They are the coordinates of [`Card::initial`](crate::card::Card),
 //! in its order, so a state of a heavy top has three coordinates of its attitude and three of its body momentum.
 
 use crate::card::{Card, OpenError};
@@ -50,7 +50,7 @@ pub trait Cost {
     fn weigh(&mut self, node: u64, seen: &Seen<'_>, weights: &mut [f64], of_invariants: &mut [f64]);
 }
 
-/// What is observed at a node.
+/// The observables and invariants at a node.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen<'a> {
     /// The observables, in the order of [`Trajectory::observe`](crate::card::Trajectory::observe).
@@ -69,7 +69,7 @@ pub enum NoDerivative {
     Step(StepError),
     /// A function of the model cannot be recorded with its derivatives.
     Unrecorded {
-        /// What the function computes.
+        /// The quantity that the function computes.
         what: &'static str,
     },
     /// A chain whose group elements the program stores in coordinates.

@@ -155,7 +155,7 @@ pub(super) fn orbit() -> Command {
                  unless you give --steps.",
             )
             .after_help(
-                "Examples:\n  clebsch orbit kepler --period 2*pi\n  clebsch orbit kepler:eccentric --period 2*pi --steps 600 \
+                "Examples:\n  clebsch orbit kepler --period 2*pi\n  clebsch orbit kepler --period 2*pi --steps 600 \
                  --write-case orbit.toml",
             ),
     )

@@ -24,7 +24,7 @@ const FILES: [&str; 3] = ["lyapunov.csv", "lyapunov.json", "lyapunov.svg"];
 /// Runs the command.
 ///
 /// # Errors
-/// Usage: the request is wrong. Failed: a step fails, or has no tangent.
+/// Usage: the request is wrong. Failed: a step or its tangent fails.
 pub(crate) fn lyapunov(
     gallery: &Gallery,
     matches: &ArgMatches,
@@ -120,7 +120,7 @@ fn is_positive(exponent: f64, error: f64) -> bool {
     exponent > 4.0 * error
 }
 
-/// What the largest exponent says. A regular motion has an exponent that falls like 1/t.
+/// The verdict of the largest exponent. A regular motion has an exponent that falls like 1/t.
 fn verdict<S>(found: &Lyapunov<S>) -> String {
     let first = |values: &[f64]| values.first().copied().unwrap_or(f64::NAN);
     let (exponent, error) = (first(&found.exponents), first(&found.errors));
@@ -130,7 +130,7 @@ fn verdict<S>(found: &Lyapunov<S>) -> String {
         return "Fewer than 40 steps give no error. Use more --steps.".to_owned();
     }
     if !is_positive(exponent, error) {
-        return "The largest exponent is zero within its error: the motion looks regular."
+        return "The largest exponent is at most four standard errors above zero: the motion looks regular."
             .to_owned();
     }
     match exponent < 0.75 * before {

@@ -26,7 +26,7 @@ const CERTAIN: f64 = 10.0;
 /// Runs the command.
 ///
 /// # Errors
-/// Usage: the request is wrong. Failed: there is no orbit near, or a step fails.
+/// Usage: the request is wrong. Failed: the search or a step fails.
 pub(crate) fn orbit(
     gallery: &Gallery,
     matches: &ArgMatches,
@@ -77,6 +77,7 @@ pub(crate) fn orbit(
             "distance": away,
             "residual": found.residual,
             "size": found.size,
+            "is_equilibrium": found.size <= STILL,
             "multipliers": multipliers
                 .map(|(z, error)| json!({"re": z.re, "im": z.im, "error": error}))
                 .collect::<Vec<_>>(),
@@ -106,6 +107,9 @@ pub(crate) fn orbit(
     }
     Ok(DONE)
 }
+
+/// An orbit of at most this size is an equilibrium.
+const STILL: f64 = 1e-6;
 
 /// The number of steps of a period: the option, or the nearest to the step size of the case.
 fn steps(problem: &Problem, period: f64, matches: &ArgMatches) -> Result<usize, Failure> {
@@ -166,7 +170,7 @@ fn notes(found: &Orbit<State>, away: f64) -> Vec<String> {
         short(found.residual)
     )];
     // The residual of an equilibrium is the same after every step.
-    if found.size <= 1e-6 {
+    if found.size <= STILL {
         notes.push("The orbit is an equilibrium, which has every period. `clebsch linearise` gives its modes.".to_owned());
     }
     notes.push(match unstable(found) {

@@ -40,7 +40,7 @@ impl<'a> CaseEnergy<'a> {
     /// The energy of a problem.
     ///
     /// # Errors
-    /// Failed: the model has no energy.
+    /// Failed: the model lacks an energy.
     pub fn new(
         problem: &'a Problem,
         steps: &'a Steps,

@@ -29,6 +29,17 @@ pub(crate) enum Place {
     Coordinate(usize),
 }
 
+/// The fixed quantities that are not proved invariants. A critical point at these need not be a steady motion.
+pub(crate) fn unproved<'a>(card: &Card, fixed: &'a [Fixed]) -> Vec<&'a str> {
+    let exact: Vec<bool> = components(card).map(|(_, _, exact)| exact).collect();
+    let is_proved = |own: &&Fixed| match own.place {
+        Place::Invariant(at) => exact.get(at) == Some(&true),
+        Place::Coordinate(_) => false,
+    };
+    let others = fixed.iter().filter(|own| !is_proved(own));
+    others.map(|own| own.name.as_str()).collect()
+}
+
 /// A value counts as zero below this part of the largest one.
 const ZERO: f64 = 1e-12;
 

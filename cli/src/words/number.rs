@@ -55,7 +55,7 @@ pub(crate) fn short(number: f64) -> String {
     plain(format!("{number:.3e}").parse().unwrap_or(number))
 }
 
-/// A number with this many decimals. Zero has no sign.
+/// A number with this many decimals. Zero is printed without a sign.
 pub(crate) fn decimals(number: f64, count: usize) -> String {
     let text = format!("{number:.count$}");
     match text.trim_start_matches(['-', '0', '.']).is_empty() {

@@ -311,7 +311,7 @@ fn signs_of(one: &Value<f64>, other: &Value<f64>, out: &mut Vec<f64>) {
             let turned = match one {
                 Value::Rotation(_) | Value::Attitude(_) => 0..4,
                 Value::Motion(g) => {
-                    // The numbers of the rotation are among those of the motion, in one piece.
+                    // The numbers of the motion contain the numbers of the rotation, in one piece.
                     let mut own = Vec::new();
                     let _ = numbers(&Value::Rotation(g.rotation), &mut own);
                     let from = a.windows(4).position(|four| four == own).unwrap_or(0);

@@ -1,5 +1,5 @@
-//! Local coordinates of initial values. A group element is moved from the right, by coordinates in the body frame; every other
-//! value is moved entry by entry, within the symmetric, skew or diagonal matrices if it is one of these.
+//! Local coordinates of initial values. A rotation or a rigid motion is moved from the right, by coordinates in the body frame. Every
+//! other value is moved entry by entry, within the symmetric, skew or diagonal matrices if it is one of these.
 
 use super::source::Coordinates;
 use super::values::{count, map, numbers};
@@ -14,7 +14,7 @@ use clebsch::linalg::Dense;
 /// How an initial value is moved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LocalForm {
-    /// A group element.
+    /// A rotation or a rigid motion.
     Element,
     /// A symmetric matrix: entries on and above the diagonal, row by row.
     Symmetric,
@@ -53,8 +53,7 @@ impl LocalForm {
             (_, Kind::Diagonal) => LocalForm::Diagonal,
             (
                 InitialForm::Of(
-                    "Rotation" | "UnitQuaternion" | "RigidMotion" | "PlaneMotion" | "Orthogonal"
-                    | "Linear" | "Additive",
+                    "Rotation" | "UnitQuaternion" | "RigidMotion" | "PlaneMotion" | "Orthogonal",
                 ),
                 _,
             ) => LocalForm::Element,
@@ -138,7 +137,7 @@ fn moved_one<T: Real>(value: &Value<T>, form: LocalForm, xi: &[T]) -> Option<Val
     numbers(value, &mut all)?;
     let shape = match value {
         Value::Matrix(_) => [3, 3],
-        Value::Dense(a) | Value::Impulse(_, a) => [a.rows, a.cols],
+        Value::Dense(a) | Value::Impulse(_, a) | Value::Element(_, a) => [a.rows, a.cols],
         _ => [all.len(), 1],
     };
     let change = change(form, shape, xi);

@@ -1,4 +1,4 @@
-//! What derivatives need of a model: its functions over the recording scalar, its start, and its steps.
+//! The interface between derivatives and a model: its functions over the recording scalar, its start, and its steps.
 
 use super::coordinates::LocalForm;
 use crate::code::Places;

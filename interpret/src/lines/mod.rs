@@ -422,7 +422,7 @@ impl LineModel {
         Ok(model)
     }
 
-    /// The parameters of the whole chain, and those of sites and ends.
+    /// The parameters of the whole chain, then the parameters of sites and ends.
     fn parameter_values(
         &self,
         choice: &ChainConfig,

@@ -39,7 +39,7 @@ impl Tape {
 }
 
 impl Copied {
-    /// What a step with this weight adds to the weights of its operands.
+    /// The terms that a step with this weight adds to the weights of its operands.
     fn pulled(&mut self, step: Step, at: usize, weight: Scalar) -> [Option<(Scalar, Scalar)>; 2] {
         match step {
             Step::Input(_) | Step::Double(_) | Step::Output(..) => [None, None],

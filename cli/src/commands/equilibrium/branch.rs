@@ -5,7 +5,7 @@ use super::report::{notes, object, table, table_file};
 use super::{FILES, case_at, none};
 use crate::derivatives::coordinates::entries;
 use crate::derivatives::energy::{CaseEnergy, Parameter};
-use crate::derivatives::fixed::Fixed;
+use crate::derivatives::fixed::{self, Fixed};
 use crate::derivatives::flow::{State, Steps};
 use crate::derivatives::problem::Problem;
 use crate::output::results::{Results, drawn};
@@ -147,9 +147,10 @@ pub(super) fn branch(
     );
     out.write_all(paragraph(&title, streams.width, 2).as_bytes())?;
     writeln!(out)?;
-    out.write_all(table(&followed, streams.width).as_bytes())?;
+    let unproved = fixed::unproved(&problem.card, &fixed);
+    out.write_all(table(&followed, &unproved, streams.width).as_bytes())?;
     writeln!(out)?;
-    for line in notes(&followed).into_iter().chain(written) {
+    for line in notes(&followed, &unproved).into_iter().chain(written) {
         out.write_all(paragraph(&line, streams.width, 2).as_bytes())?;
     }
     Ok(DONE)

@@ -7,7 +7,7 @@ mod report;
 
 use crate::derivatives::coordinates;
 use crate::derivatives::energy::CaseEnergy;
-use crate::derivatives::fixed::{self, Fixed};
+use crate::derivatives::fixed::{self, Fixed, unproved};
 use crate::derivatives::flow::{State, Steps};
 use crate::derivatives::problem::Problem;
 use crate::models::gallery::{Case, Gallery};
@@ -24,13 +24,13 @@ use clebsch_analysis::{
 };
 use serde_json::{Map, Value, json};
 
-/// Files of the command. The table and the picture are those of a branch.
+/// Files of the command. The table and the picture show a branch.
 const FILES: [&str; 3] = ["branch.csv", "equilibrium.json", "branch.svg"];
 
 /// Runs the command.
 ///
 /// # Errors
-/// Usage: the request is wrong. Failed: there is no equilibrium near.
+/// Usage: the request is wrong. Failed: the search finds none.
 pub(crate) fn equilibrium(
     gallery: &Gallery,
     matches: &ArgMatches,
@@ -98,7 +98,7 @@ pub(crate) fn equilibrium(
             short(found.residual),
             found.iterations
         ),
-        verdict(&found.variation),
+        verdict(&found.variation, &unproved(&problem.card, &fixed)),
         eigenvalues(&found.variation),
     ];
     for line in notes.into_iter().chain(written) {
@@ -141,8 +141,15 @@ fn at_fixed(fixed: &[Fixed]) -> String {
     }
 }
 
-/// What the second variation says about stability.
-fn verdict(variation: &Variation) -> String {
+/// The verdict of the second variation on stability, with the fixed quantities that are not proved invariants.
+fn verdict(variation: &Variation, unproved: &[&str]) -> String {
+    if !unproved.is_empty() {
+        return format!(
+            "no verdict on stability: clebsch has not proved that the motion conserves {}, so the state need not be a steady motion. \
+             Run it to see, or fix invariants only",
+            unproved.join(", ")
+        );
+    }
     match variation.definiteness {
         Definiteness::Minimum => "stable: the second variation is positive definite".to_owned(),
         Definiteness::Maximum => "stable: the second variation is negative definite".to_owned(),
@@ -163,6 +170,29 @@ fn verdict(variation: &Variation) -> String {
         } => format!(
             "undecided: the second variation has {null} null, {negative} negative and {positive} positive directions"
         ),
+    }
+}
+
+/// The verdict on stability as one word.
+fn word(variation: &Variation, unproved: &[&str]) -> &'static str {
+    match stable(variation, unproved) {
+        Some(true) => "stable",
+        Some(false) => "unstable",
+        None => "undecided",
+    }
+}
+
+/// Whether the state is stable, if the second variation decides it.
+fn stable(variation: &Variation, unproved: &[&str]) -> Option<bool> {
+    if !unproved.is_empty() {
+        return None;
+    }
+    match variation.definiteness {
+        Definiteness::Minimum | Definiteness::Maximum => Some(true),
+        Definiteness::Saddle { negative, positive } if negative % 2 == 1 && positive % 2 == 1 => {
+            Some(false)
+        }
+        _ => None,
     }
 }
 
@@ -202,8 +232,9 @@ fn object(problem: &Problem, case: &Case, fixed: &[Fixed], found: &Equilibrium<S
         "multipliers": found.multipliers.as_slice(),
         "energy": found.energy,
         "residual": found.residual,
-        "stability": format!("{:?}", found.variation.definiteness),
-        "stable": found.variation.definiteness.is_definite(),
+        "unproved": unproved(&problem.card, fixed),
+        "stability": word(&found.variation, &unproved(&problem.card, fixed)),
+        "stable": stable(&found.variation, &unproved(&problem.card, fixed)),
         "second_variation": found.variation.eigenvalues,
         "symmetric_directions": found.variation.symmetric,
     }))

@@ -1,8 +1,8 @@
-//! What a branch is: tables, remarks and JSON. Takes a branch; gives texts.
+//! Reports of a branch: tables, remarks and JSON. Takes a branch; gives texts.
 
 use super::branch::Followed;
-use super::verdict;
-use crate::derivatives::fixed::Fixed;
+use super::{stable, verdict, word};
+use crate::derivatives::fixed::{Fixed, unproved};
 use crate::derivatives::flow::State;
 use crate::derivatives::problem::Problem;
 use crate::output::results::csv;
@@ -22,17 +22,14 @@ fn nearest_to_zero<S>(point: &BranchPoint<S>) -> f64 {
 }
 
 /// In one word.
-fn stability<S>(point: &BranchPoint<S>) -> String {
-    match (
-        point.variation.definiteness.is_definite(),
-        point.variation.negative,
-    ) {
-        (true, _) => "stable".to_owned(),
-        (false, count) => format!("{count} negative"),
+fn stability<S>(point: &BranchPoint<S>, unproved: &[&str]) -> String {
+    match stable(&point.variation, unproved) {
+        Some(true) => "stable".to_owned(),
+        _ => format!("{} negative", point.variation.negative),
     }
 }
 
-pub(super) fn table(followed: &Followed, width: Option<usize>) -> String {
+pub(super) fn table(followed: &Followed, unproved: &[&str], width: Option<usize>) -> String {
     let head = [
         "point",
         &followed.name,
@@ -50,7 +47,7 @@ pub(super) fn table(followed: &Followed, width: Option<usize>) -> String {
         rows.push(vec![
             (i + 1).to_string(),
             format!("{:.6}", point.p),
-            stability(point),
+            stability(point, unproved),
             short(nearest_to_zero(point)),
             format!("{:.1e}", point.residual),
         ]);
@@ -73,7 +70,7 @@ fn special(of: &Special<State>, name: &str) -> String {
     }
 }
 
-pub(super) fn notes(followed: &Followed) -> Vec<String> {
+pub(super) fn notes(followed: &Followed, unproved: &[&str]) -> Vec<String> {
     let name = &followed.name;
     let mut notes: Vec<String> = followed
         .branch
@@ -82,7 +79,10 @@ pub(super) fn notes(followed: &Followed) -> Vec<String> {
         .map(|s| special(s, name))
         .collect();
     if let Some(last) = followed.branch.points.last() {
-        notes.push(format!("at the end: {}", verdict(&last.variation)));
+        notes.push(format!(
+            "at the end: {}",
+            verdict(&last.variation, unproved)
+        ));
         notes.push(match followed.branch.end {
             End::Reached => format!("The branch reaches {name} = {}.", last.p),
             End::Returned => format!("The branch turned back and returns to {name} = {}.", last.p),
@@ -104,7 +104,7 @@ pub(super) fn object(problem: &Problem, fixed: &[Fixed], followed: &Followed) ->
             "state": numbers,
             "multipliers": point.multipliers.as_slice(),
             "residual": point.residual,
-            "stability": format!("{:?}", point.variation.definiteness),
+            "stability": word(&point.variation, &unproved(&problem.card, fixed)),
             "second_variation": point.variation.eigenvalues,
         })
     };

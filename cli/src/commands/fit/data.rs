@@ -135,7 +135,7 @@ fn nodes(times: &[f64], h: f64, file: &str) -> Result<Vec<u64>, Failure> {
     each.collect()
 }
 
-/// The columns of a CSV file. An empty cell is no number.
+/// The columns of a CSV file. An empty cell is missing.
 fn csv(path: &Path) -> Result<Table, Failure> {
     let text = bounded::text(path, "data file")?;
     let file = shown(path).to_string();
@@ -181,7 +181,7 @@ fn csv(path: &Path) -> Result<Table, Failure> {
     Ok(Table { names, columns })
 }
 
-/// The columns of an npz file, named as those of a CSV file.
+/// The columns of an npz file, with the same names as in a CSV file.
 fn npz(path: &Path) -> Result<Table, Failure> {
     let archive = Archive::open(path).map_err(Failure::Usage)?;
     let mut table = Table {

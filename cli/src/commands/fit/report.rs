@@ -1,4 +1,4 @@
-//! What a fit found: tables, remarks and JSON. Takes a fit; gives texts.
+//! Reports of a fit: tables, remarks and JSON. Takes a fit; gives texts.
 
 use super::data::Data;
 use super::vary::Vary;

@@ -20,7 +20,7 @@ pub(super) struct Misfit<'a> {
 }
 
 impl Misfit<'_> {
-    /// What is observed at every node of a datum, in the order of the data.
+    /// The observables at every node of a datum, in the order of the data.
     pub fn observed(&self, case: &Case) -> Result<Vec<f64>, NoDerivative> {
         let mut flow = self.problem.open_case(case)?;
         let mut values = Vec::with_capacity(self.data.all.len());
@@ -71,7 +71,7 @@ impl Misfit<'_> {
     }
 }
 
-/// What is done at a node with data.
+/// The work at a node with data.
 type Visit<'a> = &'a mut dyn FnMut(
     &mut dyn Derivatives,
     &Point,
@@ -151,7 +151,7 @@ impl Residuals for Misfit<'_> {
             let at = flow.moved(&start, &local)?;
             self.problem.case_at(&case, &mut *flow, &at)
         });
-        // A case that does not exist has no residuals, and the step is shortened.
+        // If a case does not exist, the search shortens its step.
         moved.unwrap_or(Case {
             h: f64::NAN,
             ..case

@@ -7,7 +7,7 @@ use crate::terminal::failure::Failure;
 use crate::words::plain::shown;
 use crate::words::suggestion::did_you_mean;
 
-/// What is varied.
+/// The varied quantities.
 pub(super) enum Vary {
     /// A number of a parameter: fields and entries, each with a sign.
     Parameter {

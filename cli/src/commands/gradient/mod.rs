@@ -92,6 +92,12 @@ pub(crate) fn gradient(
         )));
     }
     let value = cost.value;
+    if !value.is_finite() {
+        return Err(Failure::Failed(format!(
+            "`{}` is {value} on this run. Choose a quantity that is a number there",
+            of.text()
+        )));
+    }
     let row = |row: &Row| json!({"kind": row.kind, "name": row.name, "value": row.value, "derivative": row.derivative});
     let object = problem.object(json!({
         "of": of.text(),

@@ -33,7 +33,7 @@ struct Found {
 /// Runs the command.
 ///
 /// # Errors
-/// Usage: the request is wrong. Failed: there is no equilibrium, or a step fails.
+/// Usage: the request is wrong. Failed: the search for an equilibrium or a step fails.
 pub(crate) fn linearise(
     gallery: &Gallery,
     matches: &ArgMatches,

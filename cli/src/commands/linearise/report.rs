@@ -1,4 +1,4 @@
-//! What a linearisation found: tables, verdicts and JSON. Takes modes; gives texts.
+//! Reports of a linearisation: tables, verdicts and JSON. Takes modes; gives texts.
 
 use super::{Found, half, sure};
 use crate::derivatives::coordinates;

@@ -37,7 +37,7 @@ struct Row {
 /// Runs the command.
 ///
 /// # Errors
-/// Usage: the request is wrong. Failed: a step fails, or there is no crossing.
+/// Usage: the request is wrong. Failed: a step fails, or the motion does not cross the surface.
 pub(crate) fn section(
     gallery: &Gallery,
     matches: &ArgMatches,

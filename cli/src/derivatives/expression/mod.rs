@@ -50,9 +50,9 @@ struct Mistake {
     at: usize,
     /// The number of wrong characters.
     length: usize,
-    /// What is wrong.
+    /// The fault.
     what: String,
-    /// What to do.
+    /// The way out.
     remedy: String,
 }
 

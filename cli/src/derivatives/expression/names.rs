@@ -5,7 +5,7 @@ use crate::words::suggestion::nearest;
 use clebsch::card::Card;
 use std::collections::HashMap;
 
-/// What a name stands for: its place, rows and columns.
+/// The meaning of a name: its place, rows and columns.
 #[derive(Clone, Copy, Debug)]
 struct Quantity {
     first: usize,

@@ -191,7 +191,7 @@ impl<'a> Parser<'a> {
             loop {
                 let own = self.peek();
                 match own.piece {
-                    // Larger numbers are no components.
+                    // Components have smaller numbers.
                     Piece::Number(x) if x.fract() == 0.0 && (0.0..1e9).contains(&x) => {
                         components.push(x as usize);
                     }

@@ -50,7 +50,7 @@ impl Tree {
                 let Some((_, of, slope)) = FUNCTIONS.get(*function) else {
                     return (f64::NAN, f64::NAN);
                 };
-                // A constant argument has no derivative, even where the function has none.
+                // A constant argument contributes nothing, even where the function lacks a derivative.
                 (of(x), if dx == 0.0 { 0.0 } else { slope(x) * dx })
             }
             Tree::Sum(all) => all.iter().fold((0.0, 0.0), |(sum, dsum), (minus, a)| {

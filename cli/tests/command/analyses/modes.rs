@@ -33,7 +33,7 @@ fn a_ring_at_rest_has_the_frequencies_of_its_springs() {
     for (found, expected) in sorted(&object["continuous"]["modes"]).iter().zip(&expected) {
         near(*found, *expected, 1e-7);
     }
-    // The step is that of Störmer and Verlet.
+    // The step is the method of Störmer and Verlet.
     for (found, expected) in sorted(&object["modes"]).iter().zip(&expected) {
         near(*found, 20.0 * (0.05 * expected).asin(), 1e-7);
     }

@@ -16,7 +16,7 @@ fn a_circular_orbit_crosses_once_a_period() {
         }
         number(&all[1]["time"]) - number(&all[0]["time"]) - TAU
     };
-    // Of second order, and the period of this step is longer than 2 pi by 2 h^2 or so.
+    // The error is of second order, and the period of this step is longer than 2 pi by 2 h^2 or so.
     let (coarse, fine) = (gap(0.04), gap(0.02));
     assert!(coarse > 0.0 && coarse < 4e-3, "{coarse}");
     near(coarse / fine, 4.0, 0.1);
@@ -48,6 +48,8 @@ fn directions_and_files_of_a_section() {
 #[test]
 fn a_surface_that_is_never_met_is_told() {
     clebsch("section kepler --at X[1]-7 --steps 300").fails(["No crossing in 300 steps", "X[1]-7"]);
+    // The sign changes at poles, without a zero.
+    clebsch("section kepler --at 1/(X[2]-0.1) --steps 300").fails(["No crossing"]);
     clebsch("section kepler --at X[1]-7 --plot X[1]").refuses("--plot names 1 quantities");
     clebsch("section kepler --at X[4]").refuses("no component [4]");
     clebsch("section kepler --at X[1] --up --down").ended(2);

@@ -237,3 +237,29 @@ fn gradients_in_parameters_and_the_step_size_are_limits_of_differences() {
         }
     }
 }
+
+/// Coordinates of a linear map are its entries, so that derivatives carry the names of entries.
+#[test]
+fn entries_of_a_linear_map_are_moved_alone() {
+    let (card, case) = cases(1)
+        .find(|(card, _)| card.name == "EllipsoidConvective")
+        .expect("a model on GL(n)");
+    let mut flow = open(&card, &case, Settings::step(case.h));
+    let mut at = flow.start();
+    for _ in 0..5 {
+        at = flow.step(&at).expect("a step");
+    }
+    let before = flow.observe(&at).expect("observables");
+    let count = flow.dimensions()[0];
+    for k in 0..count {
+        let mut by = vec![0.0; flow.start_dimension()];
+        by[k] = 0.125;
+        let moved = flow.moved(&at, &by).expect("a state nearby");
+        let after = flow.observe(&moved).expect("observables");
+        for (i, (a, b)) in after.iter().zip(&before).take(count).enumerate() {
+            let expected = if i == k { 0.125 } else { 0.0 };
+            // Rounding of a sum of two numbers near 1.
+            assert!((a - b - expected).abs() < 1e-14, "{i} {k}: {a} {b}");
+        }
+    }
+}

@@ -54,7 +54,8 @@ fn form(flow: &mut dyn Derivatives, at: &Point) -> Option<DMatrix<f64>> {
             ) | (_, Kind::FieldMomentum)
         );
         let is_known = match place.kind {
-            Kind::Rotation => *size == 3,
+            // Rotations given by a skew momentum have other coordinates.
+            Kind::Rotation => *size == 3 && momentum.cols == 1,
             Kind::RigidMotion => *size == 6,
             _ => true,
         };
