@@ -10,7 +10,11 @@ fn defect(a: &DMatrix<f64>, of: &Eigen) -> f64 {
     let each = |(i, &value): (usize, &Complex<f64>)| {
         (&a * of.vectors.column(i) - of.vectors.column(i) * value).norm()
     };
-    of.values.iter().enumerate().map(each).fold(0.0, f64::max)
+    of.values
+        .iter()
+        .enumerate()
+        .map(each)
+        .fold(0.0, |most: f64, x| if x.is_nan() { x } else { most.max(x) })
 }
 
 /// The distance of -lambda, or of its conjugate, to the nearest eigenvalue, at most over the eigenvalues.
@@ -21,7 +25,10 @@ fn asymmetry(values: &[Complex<f64>]) -> f64 {
             .map(|b| (a + b).norm())
             .fold(f64::INFINITY, f64::min)
     };
-    values.iter().map(nearest).fold(0.0, f64::max)
+    values
+        .iter()
+        .map(nearest)
+        .fold(0.0, |most: f64, x| if x.is_nan() { x } else { most.max(x) })
 }
 
 /// J S for a symmetric S.
