@@ -1,6 +1,6 @@
 //! Surfaces, their crossings, and why none is found.
 
-use crate::error::{Invalid, clause};
+use crate::error::{Invalid, failed_step};
 use std::{error::Error, fmt};
 
 /// Which crossings count.
@@ -77,13 +77,7 @@ impl<E: fmt::Display> fmt::Display for SectionError<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Invalid(why) => why.fmt(f),
-            Self::Step { step, source } => {
-                write!(
-                    f,
-                    "Step {step} of the trajectory failed: {}. Use a smaller step size, or start elsewhere.",
-                    clause(source)
-                )
-            }
+            Self::Step { step, source } => failed_step(f, *step, source),
             Self::Never {
                 steps,
                 least,

@@ -87,6 +87,19 @@ impl fmt::Display for Invalid {
 
 impl std::error::Error for Invalid {}
 
+/// Says that a step of a trajectory failed, and why.
+pub(crate) fn failed_step(
+    f: &mut fmt::Formatter<'_>,
+    step: usize,
+    source: &impl fmt::Display,
+) -> fmt::Result {
+    write!(
+        f,
+        "Step {step} of the trajectory failed: {}. Use a smaller step size, or start elsewhere.",
+        clause(source)
+    )
+}
+
 /// Accepts a step size that is finite and not zero.
 pub(crate) fn step_size(h: f64) -> Result<(), Invalid> {
     match h.is_finite() && h != 0.0 {

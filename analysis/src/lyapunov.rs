@@ -3,7 +3,7 @@
 //! The tangents act on an orthonormal frame, which a QR factorisation restores after every step. The exponents are the
 //! mean logarithms of the diagonal of R (Benettin, Galgani, Giorgilli and Strelcyn, Meccanica 15, 1980).
 
-use crate::error::{self, Invalid, clause};
+use crate::error::{self, Invalid, failed_step};
 use crate::flow::{Flow, checked_tangent};
 use nalgebra::DMatrix;
 use std::{error::Error, fmt};
@@ -62,13 +62,7 @@ impl<E: fmt::Display> fmt::Display for LyapunovError<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Invalid(why) => why.fmt(f),
-            Self::Step { step, source } => {
-                write!(
-                    f,
-                    "Step {step} of the trajectory failed: {}. Use a smaller step size, or start elsewhere.",
-                    clause(source)
-                )
-            }
+            Self::Step { step, source } => failed_step(f, *step, source),
             Self::Collapsed { step, exponent } => write!(
                 f,
                 "The tangent of step {step} maps direction {exponent} of the frame to zero. Ask for at most {exponent} exponents."

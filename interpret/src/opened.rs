@@ -173,9 +173,8 @@ impl Opened {
     }
 
     /// The functions that are recorded with derivatives.
-    pub fn traced(&self) -> &TracedBody {
-        let traced = || TracedBody::of(&self.functions, self.places);
-        self.traced.get_or_init(traced)
+    pub fn traced(&'static self) -> &'static TracedBody {
+        self.traced.get_or_init(|| TracedBody::of(self))
     }
 
     /// Places for its functions, with the model where they expect it.

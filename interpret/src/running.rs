@@ -37,7 +37,8 @@ pub fn put(places: &mut Places<f64>, at: usize, value: Value<f64>) {
     }
 }
 
-fn take(places: &mut Places<f64>, at: usize) -> Value<f64> {
+/// Takes a value out of its place.
+pub fn take(places: &mut Places<f64>, at: usize) -> Value<f64> {
     places
         .get_mut(at)
         .map_or(Value::Unit, |p| std::mem::replace(p, Value::Unit))

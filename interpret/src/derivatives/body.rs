@@ -6,10 +6,10 @@ use super::values::{map, set_node};
 use crate::code::{Places, Routine};
 use crate::composed::{Model, Part};
 use crate::failure::Failure;
-use crate::opened::{Functions, Opened, at};
+use crate::opened::{Opened, at};
 use crate::packed::{self, Packed};
-use crate::recorded::{Traced, value_of};
-use crate::running::{self, put, run};
+use crate::recorded::{Recordable, Traced, Watched, value_of};
+use crate::running::{self, put, run, take};
 use crate::value::Value;
 use clebsch::StepError;
 use clebsch::card::{Card, Settings};
@@ -22,24 +22,21 @@ pub struct TracedBody {
     new: Option<Routine<Traced>>,
     begin: Option<Routine<Traced>>,
     prepared: Option<Routine<Traced>>,
-    step: Option<Routine<Traced>>,
-    observe: Option<Routine<Traced>>,
-    invariants: Option<Routine<Traced>>,
+    /// The step and the observers.
+    recordable: &'static Recordable,
     places: usize,
 }
 
 impl TracedBody {
-    /// The functions of a model, which need this number of places.
-    pub fn of(functions: &Functions, places: usize) -> Self {
+    /// The functions of a model.
+    pub fn of(opened: &'static Opened) -> Self {
         let over = |routine: &Routine<f64>| routine.map_scalar(Traced::constant);
         TracedBody {
-            new: over(&functions.new),
-            begin: over(&functions.begin),
-            prepared: over(&functions.prepared),
-            step: over(&functions.step),
-            observe: over(&functions.observe),
-            invariants: over(&functions.invariants),
-            places,
+            new: over(&opened.functions.new),
+            begin: over(&opened.functions.begin),
+            prepared: over(&opened.functions.prepared),
+            recordable: opened.recordable(),
+            places: opened.places,
         }
     }
 }
@@ -52,19 +49,6 @@ fn with(
 ) -> Option<Value<Traced>> {
     *places.get_mut(at)? = value;
     value_of(&routine?.body, places)
-}
-
-/// The numbers that an observer of the state appends to a list.
-fn listed(routine: Option<&Routine<Traced>>, places: &mut Places<Traced>) -> Option<Vec<Traced>> {
-    with(routine, (at::OUT, Value::List(Vec::new())), places)?;
-    let Value::List(list) = places.get(at::OUT)? else {
-        return None;
-    };
-    let each = list.iter().map(|x| match x {
-        Value::Real(x) => Some(*x),
-        _ => None,
-    });
-    each.collect()
 }
 
 impl TracedFunctions for TracedBody {
@@ -94,16 +78,15 @@ impl TracedFunctions for TracedBody {
     }
 
     fn step(&self, places: &mut Places<Traced>) -> Option<()> {
-        value_of(&self.step.as_ref()?.body, places)?;
-        Some(())
+        self.recordable.traced_step(places)
     }
 
     fn observe(&self, places: &mut Places<Traced>) -> Option<Vec<Traced>> {
-        listed(self.observe.as_ref(), places)
+        self.recordable.traced_watch(Watched::Observables, places)
     }
 
     fn invariants(&self, places: &mut Places<Traced>) -> Option<Vec<Traced>> {
-        listed(self.invariants.as_ref(), places)
+        self.recordable.traced_watch(Watched::Invariants, places)
     }
 }
 
@@ -148,12 +131,8 @@ impl Source for Opened {
             initial,
             ..
         } = Opened::begin(self, parameters, initial, settings)?;
-        let mut taken = |at: usize| {
-            places
-                .get_mut(at)
-                .map_or(Value::Unit, |value| std::mem::replace(value, Value::Unit))
-        };
-        let (model, state) = (taken(at::MODEL), taken(at::STATE));
+        let model = take(&mut places, at::MODEL);
+        let state = take(&mut places, at::STATE);
         if Packed::of(&state).is_none() {
             return Err(NoDerivative::TooLarge {
                 numbers: super::values::count(&state),

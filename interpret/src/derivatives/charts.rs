@@ -22,6 +22,20 @@ struct Chart {
     numbers: Vec<f64>,
 }
 
+impl Chart {
+    fn of(given: Value<f64>) -> Result<Self, NoDerivative> {
+        let mut all = Vec::new();
+        let counted = numbers(&given, &mut all);
+        counted.ok_or(NoDerivative::Unrecorded {
+            what: "the initial values",
+        })?;
+        Ok(Chart {
+            given,
+            numbers: all,
+        })
+    }
+}
+
 impl Differentiated {
     /// The number of local coordinates.
     pub fn dimension(&self) -> usize {
@@ -33,15 +47,7 @@ impl Differentiated {
         let lists = self.initial_of(at)?;
         let started = &self.started;
         let given = started.source.initial_value(&started.lists, &lists)?;
-        let mut all = Vec::new();
-        let counted = numbers(&given, &mut all);
-        counted.ok_or(NoDerivative::Unrecorded {
-            what: "the initial values",
-        })?;
-        Ok(Chart {
-            given,
-            numbers: all,
-        })
+        Chart::of(given)
     }
 
     /// The initial values that the observables of a state give, one list for each field.
@@ -63,10 +69,7 @@ impl Differentiated {
         at: &Point,
         changes: &[Vec<f64>],
     ) -> Result<Vec<Vec<f64>>, NoDerivative> {
-        let pushed = self.at_observables(at, &|linear, late| {
-            let each = changes.iter().map(|x| linear.push_from(late, 0, x));
-            each.collect::<Option<Vec<_>>>()
-        })?;
+        let pushed = self.at_observables(at, &|linear, late| linear.push_each(late, changes))?;
         let each = pushed.iter().map(|seen| Ok(self.among(seen)?.concat()));
         each.collect()
     }
@@ -116,20 +119,9 @@ impl Differentiated {
 
     /// The derivatives of the numbers of the initial state along the coordinates of the initial values.
     pub fn columns_at_start(&mut self) -> Result<Vec<Vec<f64>>, NoDerivative> {
-        let given = self.started.begun.initial.clone();
-        let mut all = Vec::new();
-        let counted = numbers(&given, &mut all);
-        counted.ok_or(NoDerivative::Unrecorded {
-            what: "the initial values",
-        })?;
+        let chart = Chart::of(self.started.begun.initial.clone())?;
         let zero = vec![0.0; self.dimension()];
-        self.columns_at(
-            &Chart {
-                given,
-                numbers: all,
-            },
-            &zero,
-        )
+        self.columns_at(&chart, &zero)
     }
 
     /// The derivatives of the numbers of a state along each of its coordinates.

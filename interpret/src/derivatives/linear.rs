@@ -124,6 +124,12 @@ impl Linear {
             .copy_from_slice(direction);
         self.push(late, &all)
     }
+
+    /// The derivatives of the outputs along each of several directions of the first changing inputs.
+    pub fn push_each(&mut self, late: &[f64], directions: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+        let each = directions.iter().map(|x| self.push_from(late, 0, x));
+        each.collect()
+    }
 }
 
 /// The tape that `made` gives, ready to run.

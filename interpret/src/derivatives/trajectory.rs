@@ -242,11 +242,9 @@ impl Derivatives for Differentiated {
         let mut taken = Vec::new();
         self.advance(&mut state, Some(&mut taken))?;
         for (stage, taken) in taken.iter().enumerate() {
-            let pushed = |linear: &mut Linear, late: &[f64]| -> Option<Vec<Vec<f64>>> {
-                let each = columns.iter().map(|x| linear.push_from(late, 0, x));
-                each.collect()
-            };
-            columns = self.at_step(stage, taken, &pushed)?;
+            columns = self.at_step(stage, taken, &|linear, late| {
+                linear.push_each(late, &columns)
+            })?;
         }
         let tangent = self.in_coordinates(&state, &columns)?;
         Ok((state, tangent))
@@ -254,11 +252,7 @@ impl Derivatives for Differentiated {
 
     fn observed(&mut self, at: &Point) -> Result<Jacobian, NoDerivative> {
         let columns = self.columns(at)?;
-        let pushed = |linear: &mut Linear, late: &[f64]| -> Option<Vec<Vec<f64>>> {
-            let each = columns.iter().map(|x| linear.push_from(late, 0, x));
-            each.collect()
-        };
-        let pushed = self.at_observables(at, &pushed)?;
+        let pushed = self.at_observables(at, &|linear, late| linear.push_each(late, &columns))?;
         Ok(Jacobian {
             rows: self.card().observable_count(),
             cols: pushed.len(),

@@ -8,7 +8,7 @@ use crate::derivatives::{
 };
 use crate::opened::at;
 use crate::recorded::{Traced, value_of};
-use crate::running::{put, run};
+use crate::running::{put, run, take};
 use crate::value::Value;
 use clebsch::StepError;
 use clebsch::card::{Card, Settings};
@@ -187,15 +187,21 @@ impl Stepping for LineSteps {
 impl LineModel {
     /// A state with the number of its node, which no workspace knows.
     fn at_node(&self, mut state: Value<f64>, node: u64) -> Value<f64> {
-        if let Value::Struct(s) = &mut state {
-            if let Some(Value::Int(own)) = s.field_mut(self.node) {
-                *own = i64::try_from(node).unwrap_or(i64::MAX);
-            }
-            if let Some(stamp) = s.field_mut(self.stamp) {
-                *stamp = Value::Stamp(Stamp::fresh());
-            }
+        self.set_node(&mut state, node);
+        if let Value::Struct(s) = &mut state
+            && let Some(stamp) = s.field_mut(self.stamp)
+        {
+            *stamp = Value::Stamp(Stamp::fresh());
         }
         state
+    }
+
+    fn set_node(&self, state: &mut Value<f64>, node: u64) {
+        if let Value::Struct(s) = state
+            && let Some(Value::Int(own)) = s.field_mut(self.node)
+        {
+            *own = i64::try_from(node).unwrap_or(i64::MAX);
+        }
     }
 
     /// The model and its state in places, for steps of size `h`.
@@ -237,13 +243,8 @@ impl Source for Carded {
         self.read(parameters, initial, |numbers| {
             let started = self.model.start(&self.choice, h, numbers);
             let mut started = started.map_err(|e| self.refused(e))?;
-            let mut taken = |at: usize| {
-                let places = &mut started.places;
-                places
-                    .get_mut(at)
-                    .map_or(Value::Unit, |value| std::mem::replace(value, Value::Unit))
-            };
-            let (model, state) = (taken(at::MODEL), taken(at::STATE));
+            let model = take(&mut started.places, at::MODEL);
+            let state = take(&mut started.places, at::STATE);
             let given = self.model.parameter_values(&self.choice, numbers);
             let initial = self.model.initial.value(numbers, &|_| None);
             Ok(Begun {
@@ -325,11 +326,7 @@ impl Source for Carded {
     }
 
     fn set_node(&self, state: &mut Value<f64>, node: u64) {
-        if let Value::Struct(s) = state
-            && let Some(Value::Int(own)) = s.field_mut(self.model.node)
-        {
-            *own = i64::try_from(node).unwrap_or(i64::MAX);
-        }
+        self.model.set_node(state, node);
     }
 
     fn choice(&self, _way: Way) -> Value<f64> {

@@ -172,8 +172,7 @@ impl Kind {
             self,
             G => write(&Group::retract_from_left(&read::<G>(at), xi), out),
             matrix => {
-                let moved = matrix.retract(&matrix.identity(), xi);
-                out.extend(composed_kept(matrix.0, &moved, &matrix.read(at)).data);
+                out.extend(matrix.retract_from_left(&matrix.read(at), xi).data);
             }
         );
     }
@@ -245,13 +244,7 @@ pub fn moved<T: Real>(element: &Value<T>, xi: &[T], from_left: bool) -> Option<V
         Value::Element(group, a) => {
             let matrix = Matrix(*group, a.rows, a.cols);
             let moved = match from_left {
-                true => {
-                    let one = match group {
-                        MatrixGroup::Field => Dense::zeros(a.rows, a.cols),
-                        _ => Dense::identity(a.rows, a.cols),
-                    };
-                    composed_kept(*group, &matrix.retract(&one, xi), a)
-                }
+                true => matrix.retract_from_left(a, xi),
                 false => matrix.retract(a, xi),
             };
             Value::Element(*group, moved)
@@ -285,7 +278,7 @@ impl Matrix {
         Value::Element(self.0, self.read(numbers))
     }
 
-    fn identity(self) -> Dense<f64> {
+    fn identity<T: Real>(self) -> Dense<T> {
         match self.0 {
             MatrixGroup::Field => Dense::zeros(self.1, self.2),
             _ => Dense::identity(self.1, self.2),
@@ -338,6 +331,10 @@ impl Matrix {
                 }
             }
         }
+    }
+
+    fn retract_from_left<T: Real>(self, a: &Dense<T>, xi: &[T]) -> Dense<T> {
+        composed_kept(self.0, &self.retract(&self.identity(), xi), a)
     }
 
     fn compared(self, a: &[f64], xi: &[f64]) -> [f64; 2] {

@@ -190,7 +190,7 @@ impl RecordedSolve {
         &self,
         sought: &Sought,
         solved: &Solved<Reals>,
-        places: &mut Places<Traced>,
+        places: &Places<Traced>,
     ) -> Result<Value<Traced>, Exit<Traced>> {
         let found = sought.all().value(&solved.element);
         let Some(Value::List(found)) = map_scalar(&found, &mut Traced::input) else {
@@ -198,36 +198,30 @@ impl RecordedSolve {
         };
         let trial = sought.shape.part_of(&found);
         let size = sought.shape.parts().dimension();
-        let in_part = self.with.completed_at.is_some();
-        let at_trial = |body: &Option<Code<Traced>>, place: usize, trial: &[Value<Traced>]| {
-            let mut own = places.clone();
-            *own.get_mut(place)? = Value::List(trial.to_vec());
-            value_of(body.as_ref()?, &mut own)
+        let wanted = |wanted| {
+            let value = self.at_trial(wanted, Value::List(trial.clone()), places)?;
+            wanted_numbers(wanted, value, [size; 2], false)
         };
-        let residual = |trial: &[Value<Traced>]| {
-            let place = self.with.residual.place;
-            match at_trial(&self.residual, place, trial)? {
-                Value::List(both) => Some(both),
-                _ => None,
-            }
+        let residual = unfit(wanted(NewtonFunction::Residual))?;
+        let mut tangent = unfit(wanted(NewtonFunction::Tangent))?;
+        let unit = unfit(tangent.pop())?;
+        let tangent = Dense {
+            rows: size,
+            cols: size,
+            data: tangent,
         };
-        let own = unfit(residual(&trial).and_then(|both| vector(both.last()?, size)))?;
-        let tangent = unfit(at_trial(&self.tangent, self.with.tangent.place, &trial))?;
-        let (tangent, unit) = match &tangent {
-            Value::List(both) => match both.as_slice() {
-                [tangent, Value::Real(unit)] => (unfit(matrix(tangent, size))?, *unit),
-                _ => return unfit(None),
-            },
-            _ => return unfit(None),
-        };
-        let right = own.iter().map(|x| -*x * unit).collect();
+        let right = residual.iter().map(|x| -*x * unit).collect();
         let correction = unfit(tangent.solved(&Dense::column_of(right)))?.data;
         let from_left = self.with.from_left;
         let mut moved = unfit(sought.shape.moved(&trial, &correction, from_left))?;
-        if in_part {
-            let both = unfit(residual(&moved))?;
-            moved = match both.into_iter().next() {
-                Some(Value::List(whole)) => whole,
+        if self.with.completed_at.is_some() {
+            // The residual also gives the whole trial.
+            let both = self.at_trial(NewtonFunction::Residual, Value::List(moved), places);
+            moved = match unfit(both)? {
+                Value::List(both) => match both.into_iter().next() {
+                    Some(Value::List(whole)) => whole,
+                    _ => return unfit(None),
+                },
                 _ => return unfit(None),
             };
         }
@@ -246,6 +240,27 @@ impl RecordedSolve {
 type Parts = ([Option<Part>; 5], Vec<usize>);
 
 impl RecordedSolve {
+    /// The value of a function of Newton's method at a trial. Returns nothing for the residual alone.
+    fn at_trial(
+        &self,
+        wanted: NewtonFunction,
+        trial: Value<Traced>,
+        places: &Places<Traced>,
+    ) -> Option<Value<Traced>> {
+        let (body, trial_at) = match wanted {
+            NewtonFunction::Residual => (&self.residual, Some(self.with.residual.place)),
+            NewtonFunction::Tangent => (&self.tangent, Some(self.with.tangent.place)),
+            NewtonFunction::AtRest => (&self.at_rest, None),
+            NewtonFunction::Convex => (&self.convex, Some(self.with.convex.as_ref()?.place)),
+            NewtonFunction::Alone => return None,
+        };
+        let mut places = places.clone();
+        if let Some(at) = trial_at {
+            *places.get_mut(at)? = trial;
+        }
+        value_of(body.as_ref()?, &mut places)
+    }
+
     /// Records what Newton's method evaluates at a trial, with the inputs of the solution as the trial.
     fn parts(
         &self,
@@ -267,27 +282,14 @@ impl RecordedSolve {
         // Tests of a solution evaluate the residual alone only if a part of the unknowns lacks a scale.
         let is_asked_alone = !in_part && sought.shape.parts().open.contains(&true);
         let wanted = |wanted: NewtonFunction| {
-            let (body, trial_at) = match wanted {
-                NewtonFunction::Residual => {
-                    (self.residual.as_ref()?, Some(self.with.residual.place))
-                }
-                NewtonFunction::Tangent => (self.tangent.as_ref()?, Some(self.with.tangent.place)),
-                NewtonFunction::AtRest => (self.at_rest.as_ref()?, None),
-                NewtonFunction::Convex => {
-                    let convex = self.with.convex.as_ref()?;
-                    (self.convex.as_ref()?, Some(convex.place))
-                }
-                NewtonFunction::Alone if is_asked_alone => {
-                    return self.alone(&trial, sizes, places);
-                }
-                NewtonFunction::Alone => return None,
-            };
+            if wanted == NewtonFunction::Alone {
+                return is_asked_alone
+                    .then(|| self.alone(&trial, sizes, places))
+                    .flatten();
+            }
             let (numbers, guards) = aside(|| {
-                let mut places = places.clone();
-                if let Some(at) = trial_at {
-                    *places.get_mut(at)? = trial.clone();
-                }
-                wanted_numbers(wanted, value_of(body, &mut places)?, sizes, in_part)
+                let value = self.at_trial(wanted, trial.clone(), places)?;
+                wanted_numbers(wanted, value, sizes, in_part)
             })?;
             Some(part(&numbers, guards))
         };

@@ -52,6 +52,17 @@ impl Recordable {
         }
     }
 
+    /// Takes a step within a recording, from the state and the workspace in the places.
+    pub fn traced_step(&self, places: &mut Places<Traced>) -> Option<()> {
+        value_of(&self.step.as_ref()?.routine.body, places)?;
+        Some(())
+    }
+
+    /// The numbers of an observer of the state, within a recording.
+    pub fn traced_watch(&self, which: Watched, places: &mut Places<Traced>) -> Option<Vec<Traced>> {
+        listed(&self.watched.get(which as usize)?.as_ref()?.routine, places)
+    }
+
     /// Places with the model and the step size of a trajectory: as inputs, or as constants if the tapes serve one model
     /// only. Also gives the number of inputs.
     fn places(&self, from: &Places<f64>, is_bound: bool) -> Option<(Places<Traced>, usize)> {
@@ -347,6 +358,20 @@ fn input(value: &Value<f64>, counts: &mut Chosen) -> Option<Value<Traced>> {
     Some(value)
 }
 
+/// The numbers that an observer of the state appends to a list.
+fn listed(routine: &Routine<Traced>, places: &mut Places<Traced>) -> Option<Vec<Traced>> {
+    *places.get_mut(at::OUT)? = Value::List(Vec::new());
+    value_of(&routine.body, places)?;
+    let Value::List(list) = places.get(at::OUT)? else {
+        return None;
+    };
+    let numbers = list.iter().map(|x| match x {
+        Value::Real(x) => Some(*x),
+        _ => None,
+    });
+    numbers.collect()
+}
+
 /// Records for all models; if the recording would depend on numbers of the model, records for one model.
 fn stored(
     tapes: &SharedTapes,
@@ -411,16 +436,7 @@ impl Recordable {
                 if let Some(work) = input(from.get(at::WORK)?, &mut chosen) {
                     *places.get_mut(at::WORK)? = work;
                 }
-                *places.get_mut(at::OUT)? = Value::List(Vec::new());
-                value_of(&tapes.routine.body, &mut places)?;
-                let Value::List(list) = places.get(at::OUT)? else {
-                    return None;
-                };
-                let numbers = list.iter().map(|x| match x {
-                    Value::Real(x) => Some(*x),
-                    _ => None,
-                });
-                numbers.collect()
+                listed(&tapes.routine, &mut places)
             })?;
             // An evaluation at a node solves no equations.
             recorded.2.is_empty().then_some(StepRecording {

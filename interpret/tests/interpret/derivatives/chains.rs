@@ -1,7 +1,7 @@
 //! Chains, stepped by loops over sites: tangents against differences, gradients against products of tangents.
 
 use super::differences::{NEAR, off_by, slope};
-use super::gallery::{Last, weight};
+use super::gallery::{Last, by_tangents};
 use crate::lattices::{BEADS, SINE_GORDON, TOPS, card, values};
 use clebsch::card::{Card, Settings};
 use clebsch::derivatives::Derivatives;
@@ -43,18 +43,8 @@ fn compare(mut flow: Box<dyn Derivatives>) {
         assert!(off < NEAR, "{name}: {off:e}");
     }
     let gradient = flow.gradient(STEPS, &mut Last(STEPS)).expect("a gradient");
-    let (mut at, mut product) = (flow.start(), DMatrix::<f64>::identity(n, n));
-    for _ in 0..STEPS {
-        let (next, tangent) = flow.tangent(&at).expect("a tangent");
-        product = DMatrix::from_column_slice(n, n, &tangent.entries) * product;
-        at = next;
-    }
-    let seen = flow.observed(&at).expect("slopes");
-    let seen = DMatrix::from_column_slice(seen.rows, seen.cols, &seen.entries);
-    let weights = DVector::from_fn(seen.nrows(), |i, _| weight(i));
-    let pushed = (seen * product).tr_mul(&weights);
     // Rounding of five products of matrices.
-    let off = off_by(&gradient.initial.concat(), pushed.as_slice());
+    let off = off_by(&gradient.initial.concat(), &by_tangents(&mut *flow, STEPS));
     assert!(off < 1e-12, "{name}: {off:e}");
 }
 
